@@ -40,9 +40,9 @@ def run(args: argparse.Namespace) -> int:
     around = read_context(args)
     source = read_source(path, args)
     timeline = Timeline.from_program(source, around.setup, around.machine, ideal=args.ideal)
-    figures = importlib.import_module(f"app.cli.figures.{source.dialect}_figures")
+    figures = importlib.import_module(f"app.cli.figures.{source.dialect}_output")
     if not args.json:
-        sys.stdout.write(figures.HEAD)
+        sys.stdout.write(figures.TABLE_HEAD)
     with ProgressBar(f"expanding {path.name}", len(source.lines)) as progress:
         for last, text in _block_texts(timeline, source, figures, json_output=args.json):
             sys.stdout.write(text)
@@ -59,12 +59,16 @@ def _block_texts(
 
     for each in iter_timed_series(timeline):
         if isinstance(each, TimedSeries):
-            text = output_module.series_json(each) if json_output else output_module.series_rows(each)
+            text = output_module.make_series_json(each) if json_output else output_module.format_series(each)
             yield int(each.series.n[-1]), text
             continue
         block, t0, t1 = each
-        told = output_module.block_json(block, source.lines[block.line - 1], t0, t1) if json_output else None
-        yield block.n, output_module.row(block, t0) if told is None else json.dumps(told) + "\n"
+        told = (
+            output_module.make_block_json(block, source.lines[block.line - 1], t0, t1)
+            if json_output
+            else None
+        )
+        yield block.n, output_module.format_row(block, t0) if told is None else json.dumps(told) + "\n"
 
 
 def print_diagnostics(path: Path, timeline: Timeline) -> int:

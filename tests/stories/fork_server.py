@@ -117,8 +117,8 @@ def _preload() -> None:
     import_module("app.cli.main").build_parser()
     for name in _PRELOADED:
         import_module(name)
-    pages = import_module("app.screen.page_table").PAGES
-    for name in (name for page in pages for name in (page.view, page.model) if name):
+    pages = import_module("app.screen.page_table").ALL_PAGES
+    for name in (name for page in pages for name in (page.view_class, page.model_class) if name):
         import_module(name.rpartition(".")[0])
     gc.freeze()  # a collection would copy what all of them share
 

@@ -98,7 +98,9 @@ def test_a_slide_pushed_by_hand_with_the_drives_off_is_told(story: Story) -> Non
     operator.sees(wording("stories.axis-moved-unasked").upper())
 
 
-@pytest.mark.parametrize(("port", "call"), [("io", "safe"), ("axes", "stop"), ("spindle", "coast")])
+@pytest.mark.parametrize(
+    ("port", "call"), [("io", "switch_to_safe_state"), ("axes", "stop"), ("spindle", "coast")]
+)
 def test_estop_with_a_driver_that_breaks_leaves_nothing_on_that_obeys(
     story: Story, port: str, call: str
 ) -> None:

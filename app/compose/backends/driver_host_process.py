@@ -216,7 +216,7 @@ def main(arguments: list[str]) -> int:
     warnings += locked
     sock.sendall(encode_message(Message({"ready": True}, NO_NUMBERS)))
     bell = socket.socket(fileno=int(arguments[2]))
-    run_driver_host(sock, machine_driven, warnings, machine.hardware.refresh, bell)
+    run_driver_host(sock, machine_driven, warnings, machine.hardware.refresh_timeouts_s, bell)
     return 0
 
 

@@ -40,8 +40,8 @@ _OWN_MODULES = (
     DriverModule("drivers.grblhal.grblhal_table", ("grblhal",), "grblhal", "grblhal"),
     DriverModule("drivers.hal.hal_table", ("hal",), "hal", "hal"),
     DriverModule("drivers.hal.boards.board_table", ("board",)),
-    DriverModule("core.machine.serial_and_backup_tables", ("dnc",)),
-    DriverModule("core.machine.setter_table", ("setter",)),
+    DriverModule("core.machine.serial_and_backup_tables", ("dnc",), attribute="DNC_DRIVER"),
+    DriverModule("core.machine.setter_table", ("setter",), attribute="SETTER_DRIVER"),
     DriverModule("core.machine.serial_and_backup_tables", ("backup",), attribute="BACKUP_DRIVER"),
 )
 

@@ -93,7 +93,7 @@ class Checkpoint(NamedTuple):
     first_feed: float | None = None
     tool_line: int = 0  # line of a T that no move of X and Z has followed yet; -1 for a line of MDI
     title_rapid: int = 0  # line of a G00 (TITLE) that no F has followed yet
-    coarse_at: tuple[float, float] | None = None  # machine point of the G35 in force
+    coarse_start_point: tuple[float, float] | None = None  # machine point of the G35 in force
     blocks: int = 0  # number of elementary blocks before this point
     flow: FlowPosition = ()  # active loops and calls
     kept: SavedPass[Any] | None = None  # complete state of a Klartext or SINUMERIK interpreter
