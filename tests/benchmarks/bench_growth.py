@@ -26,12 +26,12 @@ PROOF = """
 import gc, sys
 gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
-from app.compose.machine.machine_setup import read_machine, setup_for
+from app.compose.machine.machine_setup import create_setup, read_machine
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import load_source
 from core.proving.prove_program import prove
 machine = read_machine(None)
-prove(load_source(Path(sys.argv[1])), setup_for(machine, tools={1: ToolOffset()}, secondary={}), machine)
+prove(load_source(Path(sys.argv[1])), create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}), machine)
 """
 
 

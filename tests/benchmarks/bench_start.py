@@ -23,18 +23,18 @@ import gc, os, sys
 gc.set_threshold(200_000)  # as the command does
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
-from app.screen import run_screen as screen
-from app.compose.stored_offsets import chosen_offsets
+from app.screen import screen_startup as screen
+from app.compose.stored_offsets import make_offsets_reader
 from app.compose.screen_desk import build_desk
 program, offsets, until = sys.argv[1:]
 desks = []
 def build():
-    desks.append(build_desk(None, chosen_offsets(offsets)))
+    desks.append(build_desk(None, make_offsets_reader(offsets)))
     return desks[0]
 def look():
     window = next(iter(QApplication.topLevelWidgets()), None)
     if desks and window is not None and window.isVisible():
-        if until == "usable" or desks[0].session.now.picture is not None:
+        if until == "usable" or desks[0].program_loader.loaded.picture is not None:
             os._exit(0)
     QTimer.singleShot(2, look)
 QTimer.singleShot(0, look)
@@ -46,20 +46,20 @@ HEADLESS = """
 import gc, os, sys
 gc.set_threshold(200_000)  # as the command does
 from pathlib import Path
-from app.compose.machine.machine_setup import read_machine, setup_for
-from app.compose.stored_offsets import chosen_offsets
-from app.compose.backends.simulated_backend import simulated
+from app.compose.machine.machine_setup import create_setup, read_machine
+from app.compose.stored_offsets import make_offsets_reader
+from app.compose.backends.simulated_backend import create_simulation
 from core.executor.commands import CycleStart, EnableDrives, LoadJob
 from core.executor.executor import Executor
 from core.executor.job import Proof, make_job
 from core.language.source import load_source
 from drivers.wakeups import StepClock
 machine = read_machine(None)
-tools, secondary, *_ = chosen_offsets(sys.argv[2])()
+tools, secondary, *_ = make_offsets_reader(sys.argv[2])()
 clock = StepClock()
-ports = simulated(machine, clock).ports
+ports = create_simulation(machine, clock).ports
 executor = Executor(machine, ports, lambda event: None)
-job = make_job(load_source(Path(sys.argv[1])), setup_for(machine, tools=tools, secondary=secondary))
+job = make_job(load_source(Path(sys.argv[1])), create_setup(machine, tool_offsets=tools, secondary_offsets=secondary))
 executor.tick()
 executor.post(EnableDrives())
 executor.tick()

@@ -18,7 +18,7 @@ from app.compose.runs import error_log
 from app.compose.runs.error_log import ErrorLog
 from core.executor.raised_alarm import AlarmError, log_alarm, make_alarm_and_reaction
 
-CODE = "from app.cli.main import console; import sys; sys.argv = ['turndesk']; sys.exit(console())"
+CODE = "from app.cli.main import run_console; import sys; sys.argv = ['turndesk']; sys.exit(run_console())"
 
 
 def crash(text: str) -> None:

@@ -50,14 +50,14 @@ DESK = r"""from app.compose.backends import connection
 from app.compose.screen_desk import build_desk
 assert not connection.HAS_DRIVER_HOST
 desk = build_desk()
-assert not desk.book.locked
+assert not desk.offset_book.lock_reason
 desk.close()
 from pathlib import Path
-from app.programs.atomic_files import settle, write_out, write_whole
-for write in (write_whole, write_out):
+from app.programs.atomic_files import copy_to_medium, flush_folder, write_program_file
+for write in (write_program_file, copy_to_medium):
     for text in (b"G90\nM30\n", b"G90\nX1\nM30\n"):
         write(Path("part.nc").resolve(), text)
-settle(Path.cwd())
+flush_folder(Path.cwd())
 import app.screen.screen_startup
 print("a desk")
 """
@@ -100,10 +100,10 @@ def office(tmp_path: Path) -> Path:
 def test_the_commands_hold_the_rules_of_windows(office: Path) -> None:
     lines = [line for line in COMMANDS.splitlines() if line.split()[0] in list_commands()]
     script = (
-        "import sys; from app.cli.main import console\n"
+        "import sys; from app.cli.main import run_console\n"
         f"for line in {lines!r}:\n"
         "    sys.argv[1:] = line.split()\n"
-        "    status = console()\n"
+        "    status = run_console()\n"
         "    assert status == 0, f'{line}: {status}'\n"
     )
     file = office / "all.py"  # a worker loads it again, as on Windows

@@ -91,7 +91,7 @@ def test_an_unknown_option_before_a_command_is_the_fault(word: str, part: Path, 
 
 def _turndesk(folder: Path, *words: str, **more: object) -> subprocess.CompletedProcess[bytes]:
     env = {**os.environ, "TURNDESK_HOME": str(folder / "home"), "PYTHONIOENCODING": str(more.pop("code", ""))}
-    start = "import sys; from app.cli.main import console; sys.exit(console())"
+    start = "import sys; from app.cli.main import run_console; sys.exit(run_console())"
     ask = [sys.executable, "-c", start, *words]
     return subprocess.run(ask, capture_output=True, check=False, env=env, **more)  # type: ignore[call-overload,no-any-return]
 

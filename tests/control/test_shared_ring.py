@@ -16,9 +16,9 @@ from core.records.record_ring import RingLayout, RowBuffer, ScopeRing, calculate
 RECORDED = RingLayout({"X": False, "Z": False}, duration_s=1.0)
 _WRITER = """
 import sys, numpy as np, mmap, os
-from core.records.record_ring import Rows
+from core.records.record_ring import RowBuffer
 memory = memoryview(mmap.mmap(int(sys.argv[1]), 0))
-rows = Rows(64, 8, memory)
+rows = RowBuffer(64, 8, memory)
 n = 0
 sys.stdout.write("x"); sys.stdout.flush()
 while n < 300_000:

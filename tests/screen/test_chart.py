@@ -35,7 +35,7 @@ def test_pyqtgraph_is_not_imported_at_the_start() -> None:
     code = (
         "import sys; import app.screen.screen_startup, app.compose.screen_desk, "
         "app.screen.window.main_window;"
-        "from app.screen.page_table import PAGES; sys.exit('pyqtgraph' in sys.modules)"
+        "from app.screen.page_table import ALL_PAGES; sys.exit('pyqtgraph' in sys.modules)"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 

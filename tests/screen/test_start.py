@@ -13,10 +13,10 @@ from app.compose.optional_features import extras
 DESK = """
 import sys
 import app.screen.screen_startup
-from app.compose.desk_assembly import desk_and_executor
-from app.compose.stored_offsets import stored_offsets
+from app.compose.desk_assembly import create_desk_and_executor
+from app.compose.stored_offsets import read_stored_offsets
 from drivers.wakeups import StepClock
-desk, _ = desk_and_executor(None, stored_offsets, StepClock())
+desk, _ = create_desk_and_executor(None, read_stored_offsets, StepClock())
 read = [name for name in sys.modules["linecache"].cache if "/app/" in name or "/core/" in name]
 print(*sys.modules)
 print(*read)

@@ -196,8 +196,8 @@ from core.store.production import job_queue
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))
-job = store.write(lambda c: job_queue.add(c, "pin.nc", 50)).result()
-store.write(lambda c: job_queue.begin(c, job)).result()
+job = store.write(lambda c: job_queue.add_job(c, "pin.nc", 50)).result()
+store.write(lambda c: job_queue.activate_job(c, job)).result()
 for _ in range(7):
     store.runs.add_parts("pin.nc").result()
 os.kill(os.getpid(), signal.SIGKILL)

@@ -19,16 +19,16 @@ import sys
 from pathlib import Path
 from core.store import program_records
 from core.store.offsets import offset_tables
-from core.store.store_rows import Kind
+from core.store.store_rows import OffsetKind
 from core.store.store import Store
 
 store = Store.open(Path(sys.argv[1]))
 number = len(store.programs.list_versions("part"))
 
 def both(connection):
-    program_records.save(connection, "part", b"%d " % number * 2000, "kill")
+    program_records.save_program_version(connection, "part", b"%d " % number * 2000, "kill")
     wanted = {"x": float(number % 1000)}
-    offset_tables.change(connection, Kind.TOOL, 1, offset_tables.Reason("kill", "test"), wanted)
+    offset_tables.change_row(connection, OffsetKind.TOOL, 1, offset_tables.ChangeReason("kill", "test"), wanted)
 
 while True:
     number += 1

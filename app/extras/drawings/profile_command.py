@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from app.cli.change_author import add_as_option
 from app.cli.program_options import parse_output_path
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
-from app.extras.shapes.shapes_command import authorize_writing, write_program_file
+from app.extras.shapes.shapes_command import authorize_writing, save_generated_program
 from core.extras.drawings.unit_check import UNIT_SIZES_MM
 from core.extras.shapes.cutting_data import CUTTING_DATA
 from core.json_keys import JsonOutput, declare_keys
@@ -348,7 +348,7 @@ def _make(
     stock = TrialStock(bar, float(typed.get("STOCK", 0.0)) * mm, (args.hole or 0.0) * mm)
     trial = run_profile_trial(text, chosen, stock, made.nose_offset, machine, shapes, dialect=args.dialect)
     if args.out is not None:
-        write_program_file(args, text, args.who)
+        save_generated_program(args, text, args.who)
     elif not args.json:
         sys.stdout.write(text)
     _tell(made, trial, chosen, text, args)

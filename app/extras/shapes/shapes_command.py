@@ -88,7 +88,7 @@ def run(args: argparse.Namespace) -> int:
     text = "\n".join(made.lines) + "\n"
     errors, cycle = _proved(args, machine, ProgramSource(_name(args, dialect), text, dialect))
     if args.out is not None:
-        write_program_file(args, text, who)
+        save_generated_program(args, text, who)
     _tell(args, made, text, errors, cycle)
     return EXIT_ERRORS if errors else EXIT_OK
 
@@ -221,7 +221,7 @@ def authorize_writing(args: argparse.Namespace) -> str:
     return get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)
 
 
-def write_program_file(args: argparse.Namespace, text: str, author: str) -> None:
+def save_generated_program(args: argparse.Namespace, text: str, author: str) -> None:
     """Write ``--out``, which must not exist. Raises CommandError."""
     from app.programs.atomic_files import FileOperationError, write_new_file
 

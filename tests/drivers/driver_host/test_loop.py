@@ -273,9 +273,9 @@ class Asleep:
     """Stands for a driver host whose control sleeps, or not."""
 
     def __init__(self, asleep: bool) -> None:
-        self.asleep, self.orphaned = asleep, False
+        self.is_asleep, self.is_orphaned = asleep, False
 
-    def handle(self, _message: Message) -> Message:
+    def handle_message(self, _message: Message) -> Message:
         """As a look is answered."""
         return Message({}, NO_NUMBERS)
 

@@ -24,11 +24,11 @@ SAYS = """\
 import json, socket, sys
 from pathlib import Path
 sys.path.insert(0, {root!r})
-from drivers.hal.bridge.packets import pack
+from drivers.hal.bridge.packets import pack_packet
 if sys.argv[1] == "-f":
     bridge = socket.socket(fileno=json.loads(Path(sys.argv[2]).with_name("bridge.json").read_text())["fd"])
     for words in {words!r}:
-        bridge.send(pack(words))
+        bridge.send(pack_packet(words))
 """
 
 

@@ -174,7 +174,7 @@ def test_what_a_library_prints_reaches_nobody(tmp_path: Path, capfd: pytest.Capt
 )
 def test_the_command_has_one_line_without_a_librarys_words(name: str, text: str, tmp_path: Path) -> None:
     (tmp_path / name).write_text(text)
-    start = "import sys; from app.cli.main import console; sys.exit(console())"
+    start = "import sys; from app.cli.main import run_console; sys.exit(run_console())"
     told = subprocess.run(
         [sys.executable, "-c", start, "profile", str(tmp_path / name), "--list"],
         capture_output=True, check=False, text=True,
