@@ -334,7 +334,7 @@ def test_a_late_one_is_refused() -> None:
     rig.executor.run_tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
-    assert text("executor.came-too-late", command="DriveTest") in rig.said("refused")[0]
+    assert text("executor.came-too-late", command="RunDriveTest") in rig.said("refused")[0]
 
 
 def test_the_handwheel_does_not_move_under_it() -> None:

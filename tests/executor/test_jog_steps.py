@@ -203,7 +203,7 @@ def test_a_late_step_is_refused() -> None:
     rig.executor.run_tick()
     rig.run(0.2)
     assert rig.shot.demand[0] == 0.0
-    assert text("executor.came-too-late", command="JogStep") in rig.said("refused")[0]
+    assert text("executor.came-too-late", command="JogByStep") in rig.said("refused")[0]
 
 
 @pytest.mark.parametrize("command", [Jog("X", 10.0, 0.2), JogByStep("X", 0.1, SPEED)])

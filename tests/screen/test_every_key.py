@@ -168,7 +168,7 @@ def _of_jog(day: Day, name: str) -> set[str]:
     if manual_functions.MANUAL_KEYS.get(name) == manual_functions.STOP:
         return {"SpindleStop"}
     directions = {each.key for each in getattr(day.frame.current_page, "model").directions}  # noqa: B009
-    return {"Jog", "JogStep"} if name in directions and day.shot.state in MANUAL_STATES else set()
+    return {"Jog", "JogByStep"} if name in directions and day.shot.state in MANUAL_STATES else set()
 
 
 # --- what is wrong ----------------------------------------------------------------------------------------
@@ -195,7 +195,7 @@ def _faults_of_stroke(typist: Typist, name: str, stroke: Stroke) -> Iterator[str
     done = typist.press(stroke)
     left = name != frame.current_page.NAME
     if left:
-        done -= {"JogStop"}
+        done -= {"StopJog"}
     if done - may:
         yield f"changes {done - may} {sorted(typist.changed)}"
     if left and has_field and len(stroke.name) == 1 and stroke.modifiers is NONE:

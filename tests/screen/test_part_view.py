@@ -91,7 +91,7 @@ def test_fingers_play_and_step_and_go_along_the_line(view: PathView) -> None:
     player = view.part_player
     assert player is not None
     words = {press.__name__: rect for rect, press, *_ in view._places if hasattr(press, "__name__")}
-    QTest.mouseClick(view, LEFT, pos=words["play_or_pause"].center().toPoint())
+    QTest.mouseClick(view, LEFT, pos=words["toggle_playback"].center().toPoint())
     assert player.is_playing
     assert player.time_s == 0.0
     assert view._bar is not None

@@ -113,7 +113,7 @@ def test_records_stored_by_name_go_to_the_text_that_was_proved(
         return f"2026-01-01T00:{next(ticks):02d}:00.000Z"
 
     for module in (program_records, run_records):
-        monkeypatch.setattr(module, "utc_now", later)
+        monkeypatch.setattr(module, "get_utc_now_text", later)
     with Store.open(tmp_path) as store:
         store.programs.save_version("pin.nc", GOOD.encode(), "loaded to run").result(60)
         store.runs.add_parts("pin.nc")

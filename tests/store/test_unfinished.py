@@ -42,11 +42,11 @@ def names(folder: Path) -> list[str]:
 
 
 def test_a_killed_save_of_a_program_leaves_nothing_for_the_next_one(tmp_path: Path) -> None:
-    killed("unfinished_folder", tmp_path / "pin.nc")
-    killed("unfinished_folder", tmp_path / "bushing.nc")
+    killed("create_unfinished_folder", tmp_path / "pin.nc")
+    killed("create_unfinished_folder", tmp_path / "bushing.nc")
     write_program_file(tmp_path / "other.nc", b"M30\n")
     assert names(tmp_path) == ["other.nc"]
-    killed("unfinished_folder", tmp_path / "other.nc")
+    killed("create_unfinished_folder", tmp_path / "other.nc")
     write_new_file(tmp_path / "new.nc", b"M30\n")
     assert names(tmp_path) == ["new.nc", "other.nc"]
 
@@ -56,7 +56,7 @@ def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path:
         pass
     stick = tmp_path / "stick"
     stick.mkdir()
-    killed("unfinished_file", stick / "monday.db")
+    killed("create_unfinished_file", stick / "monday.db")
     backup.back_up_store(folder, stick / "tuesday.db")
     assert names(stick) == ["tuesday.db"]
 
@@ -64,8 +64,8 @@ def test_a_killed_backup_leaves_nothing_for_the_next_one(folder: Path, tmp_path:
 def test_a_killed_restore_leaves_nothing_when_the_desk_opens(folder: Path, tmp_path: Path) -> None:
     with Store.open(folder):
         pass
-    killed("unfinished_file", folder / "turndesk.db")
-    killed("unfinished_file", folder / "turndesk-replaced-x.db")
+    killed("create_unfinished_file", folder / "turndesk.db")
+    killed("create_unfinished_file", folder / "turndesk-replaced-x.db")
     with Store.open(folder):
         assert names(folder)[0] == "turndesk.db"
         assert not [name for name in names(folder) if "unfinished" in name]
@@ -74,7 +74,7 @@ def test_a_killed_restore_leaves_nothing_when_the_desk_opens(folder: Path, tmp_p
 def test_a_killed_export_leaves_nothing_for_the_next_one(store: Store, tmp_path: Path) -> None:
     there = tmp_path / "exports"
     there.mkdir()
-    killed("unfinished_folder", there / "june")
+    killed("create_unfinished_folder", there / "june")
     export_store(store, there / "july")
     assert names(there) == ["july"]
 

@@ -96,7 +96,7 @@ def test_a_drawn_keyboard_writes_and_keeps_no_stop_key(story: Story) -> None:
     operator.drives_on()
     operator.keys("F1", "F4")
     operator.opens("MDI")
-    operator.clicks("LINE", on="LinePanel")
+    operator.clicks("LINE", on="MdiLinePanel")
     for letter in ("H", "E", "S", "+"):
         operator.clicks(letter, on="LetterPad")
     operator.sees("HES+")

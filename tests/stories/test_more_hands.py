@@ -70,7 +70,7 @@ def test_the_right_button_jogs_nothing_and_stops_all_the_same(story: Story) -> N
     operator.server.button("right", down=True)
     operator.keeps(lambda: operator.is_at((0.0, 0.0)), 0.7, "rest")
     operator.server.button("right", down=False)
-    operator.clicks("AUTO", on="FunctionKeys") if operator.page == "MAIN MENU" else operator.key("F1")
+    operator.clicks("AUTO", on="FunctionKeyBar") if operator.page == "MAIN MENU" else operator.key("F1")
     operator.key("F2")
     operator.opens("AUTOMATIC")
     operator.starts()

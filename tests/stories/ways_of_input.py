@@ -32,11 +32,11 @@ class Hand:
         if self.by_keys:
             self.operator.key(key)
         else:
-            self.press(label, "FunctionKeys")
+            self.press(label, "FunctionKeyBar")
 
     def _labelled(self, label: str) -> bool:
         texts = self.operator.screen.get("texts", ())
-        return any(text == label and kind == "FunctionKeys" for text, _x, _y, kind in texts)
+        return any(text == label and kind == "FunctionKeyBar" for text, _x, _y, kind in texts)
 
     def types(self, text: str, on: str) -> None:
         """Where the keyboard is, or on drawn keys of this kind."""
@@ -51,9 +51,9 @@ class Hand:
         if self.by_keys:
             self.operator.enters(figure)
             return
-        self.press(label, "RowsPanel")
-        self.types(figure, "KeyPad")
-        self.press("ENTER", "KeyPad")
+        self.press(label, "ShapeRowsPanel")
+        self.types(figure, "NumberPad")
+        self.press("ENTER", "NumberPad")
 
     def row(self, text: str, marked: str, letter: str) -> None:
         """A row of the list is opened: by its letter, or by a touch that marks it and one more.
@@ -64,7 +64,7 @@ class Hand:
             self.operator.key(letter)
         else:
             if not self.operator.shows(marked):
-                self.press(text, "RowsPanel")
+                self.press(text, "ShapeRowsPanel")
                 self.operator.sees(marked)
-            self.press(text, "RowsPanel")
+            self.press(text, "ShapeRowsPanel")
         self.operator.until(lambda: not self.operator.shows(text), f"{text} opened")

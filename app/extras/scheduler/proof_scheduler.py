@@ -21,7 +21,7 @@ _AHEAD = 256  # units that the scheduler has at once; workers can join during th
 class ProofScheduler:
     """Workers of a scheduler. Raises CommandError if the scheduler cannot be reached."""
 
-    ahead = _AHEAD
+    max_units_in_progress = _AHEAD
 
     def __init__(self, address: str) -> None:
         if not (found := _ADDRESS.fullmatch(address)) or int(found[2]) > 65535:
@@ -40,7 +40,7 @@ class ProofScheduler:
                 "no-dask",
             ) from error
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # TurnDesk reports its errors.
-        self.killed: type[BaseException] = distributed.scheduler.KilledWorker
+        self.killed_exception: type[BaseException] = distributed.scheduler.KilledWorker
         try:
             self._client = distributed.Client(address, timeout=_ANSWER)
         except OSError as error:
@@ -54,13 +54,13 @@ class ProofScheduler:
         if not self._client.ncores():
             sys.stderr.write(f"turndesk: {address} has no workers yet; waiting for one\n")
 
-    def open(self, _jobs: int | None = None) -> Executor:
+    def start_workers(self, _jobs: int | None = None) -> Executor:
         """Return an executor for all present and future workers of the scheduler."""
         executor: Executor = self._client.get_executor(pure=False)
         return executor
 
-    def stop(self, executor: Executor | None, *, done: bool) -> None:
+    def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
         """Cancel units that are not proved yet, and disconnect from the scheduler."""
         if executor is not None:
-            executor.shutdown(wait=done)
+            executor.shutdown(wait=is_done)
         self._client.close()

@@ -34,7 +34,7 @@ def test_a_program_is_made_of_a_drawing(story: Story, way: str) -> None:
         operator.writes("axle")
         operator.until(lambda: not operator.shows("bushing.nc"), "axle.svg alone")
     else:
-        hand.press("axle.svg", "SheetPanel")
+        hand.press("axle.svg", "TablePanel")
     hand.function("F3", "EDIT")
     hand.function("F1", "CREATE")
     operator.sees(fragment("shapes.left-and-right"))

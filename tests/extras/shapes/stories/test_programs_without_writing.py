@@ -44,7 +44,7 @@ def test_a_program_is_made_of_shapes(story: Story, way: str) -> None:
     hand.function("F2", "FILE")
     operator.opens("PROGRAMS")
     if way != "keys":
-        hand.press("NAME TO FIND OR CREATE", "SheetPanel")
+        hand.press("NAME TO FIND OR CREATE", "TablePanel")
     hand.types("zq", "LetterPad")
     operator.sees(fragment("programs.none-of-that-name"))
     hand.function("F3", "EDIT")
