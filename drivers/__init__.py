@@ -1,1 +1,4 @@
-"""Drivers, with one folder per kind of machine, all of which implement ``core.ports``."""
+"""Machine drivers, with one folder for each kind of machine.
+
+Every driver implements the ports of ``core.ports``.
+"""

@@ -1,6 +1,7 @@
-"""Operator stations: a simulated or on-screen one, and one whose buttons are inputs of the machine file.
+"""Operator stations of simulated and real machines.
 
-The simulated station has palm buttons with a two-hand relay, feed hold, E-stop, a switch and pots.
+A simulated or on-screen station has palm buttons with a two-hand relay, feed hold, E-stop, a spindle switch
+and pots. The buttons and pots of a wired station are inputs of the machine file.
 """
 
 from __future__ import annotations
@@ -17,10 +18,10 @@ from core.ports import Clock, Station, StationState
 
 
 class TwoHandRelay:
-    """Two-hand relay: both palm buttons must be pressed within ``window_s`` seconds.
+    """Two-hand relay that turns on only if both palm buttons are pressed within ``window_s`` seconds.
 
-    Both must be released before the next start (anti-tie-down). On a real machine, this is a safety relay,
-    and the control reads only its output.
+    Both buttons must be released before the next start (anti-tie-down). On a real machine, this is a safety
+    relay, and the control reads only its output.
     """
 
     def __init__(self, window_s: float, pulse_s: float) -> None:
@@ -32,7 +33,7 @@ class TwoHandRelay:
         self._on_until = -1.0
 
     def press_palm(self, palm: str, now: float) -> None:
-        """Press a palm button at time ``now``."""
+        """Press the palm button ``palm``, "left" or "right", at time ``now`` in seconds."""
         if self._down[palm] is not None:
             return
         self._down[palm] = now
@@ -44,7 +45,10 @@ class TwoHandRelay:
         self._armed = False
 
     def release_palm(self, palm: str, now: float) -> None:
-        """Release a palm button; the output turns off, but not before the minimum pulse has passed."""
+        """Release a palm button and turn the output off.
+
+        The output remains on until the minimum pulse ``pulse_s`` has passed.
+        """
         self._down[palm] = None
         if self._on_until > now:
             self._on_until = max(now, self._on_from + self._pulse)
@@ -52,11 +56,11 @@ class TwoHandRelay:
             self._armed = True
 
     def is_on(self, now: float) -> bool:
-        """Return whether the output is on."""
+        """Return whether the relay output is on at time ``now``."""
         return self._on_from <= now < self._on_until
 
     def will_turn_off(self, now: float) -> bool:
-        """Return whether the output will turn off automatically."""
+        """Return whether the output is on and will turn off without another operator action."""
         return now < self._on_until < float("inf")
 
 
@@ -79,23 +83,29 @@ class PanelState:
         self._random = random.Random(seed)
 
     def set_feed_hold(self, pressed: bool, now: float) -> None:
-        """Press or release the feed hold button, which is reported for at least one pulse."""
+        """Press or release the feed hold button.
+
+        The station reports the button as pressed for at least one minimum pulse.
+        """
         self._hold_down = pressed
         if pressed:
             self._hold_until = now + self._pulse
 
     def is_settled(self, now: float) -> bool:
-        """Return whether the reported state stays the same until the operator acts."""
+        """Return whether the reported state remains the same until the operator acts."""
         pulse = now < self._hold_until or self.relay.will_turn_off(now)
         return self._silent is None and not self.noise_amplitude and not pulse
 
     def set_disconnected(self, disconnected: bool, now: float) -> None:
-        """Disconnect or connect the cable of the station."""
+        """Disconnect or reconnect the cable of the station."""
         self._silent = self.state(now) if disconnected else None
         self._silent_since = now
 
     def state(self, now: float) -> StationState:
-        """Return the state that the control reads; a disconnected station has its last state with its age."""
+        """Return the station state that the control reads.
+
+        A disconnected station returns its last state and the age of that state.
+        """
         if self._silent is not None:
             estop = self._silent.estop or self.estop  # The E-stop has a separate wire.
             age = now - self._silent_since
@@ -120,7 +130,10 @@ _WINDOW, _PULSE = 0.5, 0.1  # Seconds; two-hand relay that the screen replaces.
 
 
 class StationControls:
-    """Operator actions at a panel, callable from any thread with ``lock``, the lock of the panel's reader."""
+    """Operator actions at a panel.
+
+    Any thread may call the methods, because they lock ``lock``, which the reader of the panel also uses.
+    """
 
     def __init__(self, panel: PanelState, lock: AbstractContextManager[object], clock: Clock) -> None:
         self._panel, self._lock, self._clock = panel, lock, clock
@@ -142,7 +155,7 @@ class StationControls:
         self._palm("right", down=False)
 
     def press_start(self) -> None:
-        """Press both palm buttons together and release them."""
+        """Press both palm buttons at the same time and release both."""
         self.press_left()
         self.press_right()
         self.release_left()
@@ -159,22 +172,22 @@ class StationControls:
             self._panel.set_feed_hold(False, self._clock.now())
 
     def set_spindle_auto(self, is_auto: bool) -> None:
-        """Set the spindle switch to AUTO or OFF."""
+        """Set the spindle switch to AUTO if ``is_auto`` is true, otherwise to OFF."""
         with self._lock:
             self._panel.spindle_auto = is_auto
 
     def set_spindle_pot(self, fraction: float) -> None:
-        """Set the spindle override, limited to 0…1."""
+        """Set the spindle override pot, limited to the range 0…1."""
         with self._lock:
             self._panel.spindle_pot = min(max(fraction, 0.0), 1.0)
 
     def set_feed_pot(self, fraction: float) -> None:
-        """Set the feed override, limited to 0…1.5."""
+        """Set the feed override pot, limited to the range 0…1.5."""
         with self._lock:
             self._panel.feed_pot = min(max(fraction, 0.0), 1.5)
 
     def turn_handwheel(self, counts: int) -> None:
-        """Turn the on-screen handwheel by a number of counts, signed."""
+        """Turn the on-screen handwheel by ``counts``, which may be negative."""
         with self._lock:
             self._panel.handwheel += counts
 
@@ -188,10 +201,11 @@ class StationControls:
 
 
 class OnScreenStation(StationControls):
-    """``core.ports.Station`` of an on-screen panel, combined with wired inputs, callable from any thread.
+    """``core.ports.Station`` that combines an on-screen panel with wired inputs.
 
-    ``inputs`` returns the inputs of the machine, whose E-stop, start and hold also apply. ``wired`` is a
-    station that provides only a handwheel or the spindle load.
+    Any thread may call the methods. ``inputs`` returns the inputs of the machine; an E-stop, start or hold
+    input has the same effect as the on-screen button. ``wired`` is a station that provides only a handwheel
+    or the spindle load.
     """
 
     def __init__(
@@ -218,9 +232,9 @@ class OnScreenStation(StationControls):
         )
 
     def press_estop(self) -> None:
-        """Press the on-screen E-stop, which is not a safety device.
+        """Press the on-screen E-stop, so that the control stops everything that it can stop.
 
-        The control stops everything that it can stop.
+        The on-screen E-stop is not a safety device.
         """
         with self._lock:
             self._panel.estop = True
@@ -235,7 +249,7 @@ class OnScreenStation(StationControls):
 
 
 class PotSettings(Protocol):
-    """Pot in the machine file: its values at both ends, and the input that enables it."""
+    """Settings of a pot in the machine file: its values at both ends and the input that enables the pot."""
 
     @property
     def low_value(self) -> float: ...
@@ -253,10 +267,11 @@ def build_station_state(
     handwheel: int,
     age_s: float,
 ) -> StationState:
-    """Build the state of the station; a button that the machine file does not have is never pressed.
+    """Build the state of the station from inputs and pots.
 
-    ``read_pot`` returns the position of a pot as a fraction, by its name. Without an input ``spindle_auto``,
-    the switch of the spindle pot selects AUTO.
+    A button that is not in the machine file counts as released. ``read_pot`` takes the name of a pot and
+    returns its position as a fraction. If there is no input ``spindle_auto``, the switch input of the
+    spindle pot selects AUTO. Without this input, AUTO is always selected.
     """
     pot, load = pots.get("spindle_pot"), pots.get("spindle_load")
     auto = inputs.get(pot.switch_input, True) if pot is not None and pot.switch_input else True
@@ -286,7 +301,7 @@ def _scaled(pot: PotSettings, fraction: float) -> float:
 
 
 def _posted_action(name: str) -> Callable[..., None]:
-    """Return a method that posts its name and arguments without waiting."""
+    """Return a method that posts its own name and arguments without waiting for a result."""
 
     def use(self: PostedControls, *values: object) -> None:
         self.post_action(name, *values)
@@ -295,7 +310,7 @@ def _posted_action(name: str) -> Callable[..., None]:
 
 
 class PostedControls(ABC):
-    """Operator actions at a simulated station of another process.
+    """Operator actions at a simulated station that runs in another process.
 
     ``app.desk.station_controls.StationPanel`` explains the actions. A subclass implements ``post_action``,
     which sends an action to that process.

@@ -1,4 +1,4 @@
-"""Parts of ports that several drivers use: checks of commands, probe touches and scope samples."""
+"""Helpers that several drivers use to implement ports: command checks, probe latches and scope samples."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ T = TypeVar("T")
 
 
 def require_no_fault(fault: str) -> None:
-    """Raise DriverError if a fault prevents switching the drives on."""
+    """Raise DriverError if a ``fault`` prevents the drives from switching on.
+
+    An empty text means that there is not a fault.
+    """
     if fault:
         raise DriverError(
             "the drives stay off because of a fault ({fault}); clear the fault first", "no-power", fault=fault
@@ -25,7 +28,7 @@ def require_no_fault(fault: str) -> None:
 
 
 def require_power(fault: str, powered: bool) -> None:
-    """Raise DriverError if a motion is not permitted because of a fault or because the drives are off."""
+    """Raise DriverError if a fault is active or the drives are off, because no axis may then move."""
     if fault:
         raise DriverError("{fault}; clear the fault first", get_fault_code(fault, "axis"), fault=fault)
     if not powered:
@@ -33,19 +36,22 @@ def require_power(fault: str, powered: bool) -> None:
 
 
 def require_no_homing(axis: str) -> None:
-    """Raise DriverError while ``axis`` is homing; an empty name means no axis."""
+    """Raise DriverError if ``axis`` is the name of an axis that is homing.
+
+    An empty name means that no axis is homing.
+    """
     if axis:
         raise DriverError("{name} is homing; wait until homing is complete", reason="homing", name=axis)
 
 
 def require_axis(axis: str, axes: Container[str]) -> None:
-    """Raise DriverError if ``axis`` is not among ``axes``."""
+    """Raise DriverError if ``axis`` is not one of ``axes``."""
     if axis not in axes:
         raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
 
 
 def require_standstill(axis: str, moving: bool) -> None:
-    """Raise DriverError if ``axis`` cannot home because an axis is moving."""
+    """Raise DriverError if any axis is moving, because ``axis`` can home only when all axes are at rest."""
     if moving:
         raise DriverError(
             "{axis} cannot home while an axis is moving; wait until all axes are at rest",
@@ -56,13 +62,13 @@ def require_standstill(axis: str, moving: bool) -> None:
 
 
 def require_spindle_ready(problem: str) -> None:
-    """Raise DriverError if a ``problem`` prevents turning the spindle."""
+    """Raise DriverError if a ``problem`` prevents the spindle from turning."""
     if problem:
         raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=problem)
 
 
 def require_estop_released(pressed: bool) -> None:
-    """Raise DriverError if the spindle cannot turn because the E-stop is pressed."""
+    """Raise DriverError if the E-stop is pressed, because the spindle cannot turn then."""
     if pressed:
         raise DriverError(
             "the spindle stays off while the E-stop is pressed; release the E-stop first", "spindle-off"
@@ -70,7 +76,7 @@ def require_estop_released(pressed: bool) -> None:
 
 
 def require_free_drive(enabled: bool, turning: bool) -> None:
-    """Raise DriverError if the spindle drive cannot become C, because it is off or turns."""
+    """Raise DriverError if the spindle drive is off or turning and therefore cannot become the C axis."""
     if not enabled:
         raise DriverError(
             "C uses the spindle drive, and the drives are off; switch them on first",
@@ -86,7 +92,10 @@ def require_free_drive(enabled: bool, turning: bool) -> None:
 
 
 def find_output(name: str, outputs: Mapping[str, T]) -> T:
-    """Return the output of this name. Raises DriverError if the machine does not have it."""
+    """Return the output with this name.
+
+    Raises DriverError if the machine file does not define the output.
+    """
     if name not in outputs:
         raise DriverError(
             "output {name} is not in the machine file; add it under [io.out]", "output", name=f"{name!r}"
@@ -95,7 +104,7 @@ def find_output(name: str, outputs: Mapping[str, T]) -> T:
 
 
 def require_output_allowed(name: str, state: bool, problem: str) -> None:
-    """Raise DriverError if a ``problem`` prevents switching an output on."""
+    """Raise DriverError if the output is to be switched on and a ``problem`` prevents this."""
     if state and problem:
         raise DriverError("output {name} stays off: {problem}", "output", name=name, problem=problem)
 
@@ -111,15 +120,15 @@ class FirstTouchInput:
         self._kept: TouchLatch | None = None
 
     def arm_latch(self) -> None:
-        """Clear the latched touch."""
+        """Clear the latched touch, so that the next touch is latched."""
         self._kept = None
 
     def read_latch(self) -> TouchLatch | None:
-        """Return the first touch since ``arm_latch``, or None."""
+        """Return the first touch since the last call of ``arm_latch``, or None without a touch."""
         return self._kept
 
     def _is_first_touch(self, is_on: bool) -> bool:
-        """Return whether the present input state ``on`` is the first touch."""
+        """Return whether the input has just turned on and no touch is latched yet."""
         before, self._on = self._on, is_on
         return is_on and not before and self._kept is None
 
@@ -131,7 +140,7 @@ LOG_ROWS = 8192  # Rows, which cover eight seconds at 1 ms for a delayed control
 
 
 class SampleLog:
-    """Ring buffer of rows as in ``core.ports.SampleSource``."""
+    """Ring buffer of sample rows in the format of ``core.ports.SampleSource``."""
 
     def __init__(self, axes: int, capacity: int = LOG_ROWS) -> None:
         self.row_width = 5 + 3 * axes
@@ -144,13 +153,19 @@ class SampleLog:
         self.newest_time_s = -np.inf  # Time of the newest row.
 
     def append_row(self, t: float, *figures: float) -> None:
-        """Append one row; the oldest row is discarded if the buffer is full."""
+        """Append one row at time ``t``.
+
+        If the buffer is full, the oldest row is discarded.
+        """
         self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *figures)
         self._added += 1
         self.newest_time_s = t
 
     def append_rows(self, rows: FloatArray) -> None:
-        """Append the newest of these rows, as many as the buffer can store."""
+        """Append rows.
+
+        If there are more rows than the buffer can store, only the newest of them are stored.
+        """
         rows = rows[-self._kept :]
         at = self._added % self._kept
         head = rows[: self._kept - at]

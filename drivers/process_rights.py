@@ -1,4 +1,4 @@
-"""System rights of a real-time process: a scheduling policy and locked memory."""
+"""System rights of a real-time process: its scheduling policy and locked memory."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ _CURRENT, _FUTURE, _ON_FAULT = 1, 2, 4  # MCL_CURRENT, MCL_FUTURE and MCL_ONFAUL
 
 
 def request_scheduling(policy: str, priority: int) -> str:
-    """Request a policy of sched(7), such as ``SCHED_FIFO``.
+    """Request a scheduling policy of sched(7), such as ``SCHED_FIFO``, for this process.
 
-    Return the reason for a refusal, or an empty text.
+    Return the reason for a refusal, or an empty text if the system grants the policy.
     """
     try:
         os.sched_setscheduler(0, getattr(os, policy), os.sched_param(priority))
@@ -23,9 +23,9 @@ def request_scheduling(policy: str, priority: int) -> str:
 
 
 def lower_thread(priority: int) -> None:
-    """Give the calling thread this lower priority, if its process has a real-time policy.
+    """Set the calling thread to a lower real-time priority, if its process has a real-time policy.
 
-    A refusal has no effect, because the thread then has the priority of its process.
+    A refusal is ignored; the thread then runs at the priority of its process.
     """
     with suppress(OSError, AttributeError):
         policy = os.sched_getscheduler(0)
@@ -34,11 +34,12 @@ def lower_thread(priority: int) -> None:
 
 
 def lock_process_memory(*, only_used: bool = False) -> tuple[str, int]:
-    """Lock the present and future memory, and reduce garbage collection.
+    """Lock the present and future memory of the process, and reduce garbage collection.
 
-    With ``only_used``, reserved memory is locked at its first use. Return the reason for a refusal and the
-    limit in bytes, 0 without a limit. With a limit, only present memory is locked, because ``MCL_FUTURE``
-    would make the first allocation beyond the limit fail during a cut.
+    With ``only_used``, reserved memory is locked only when the process first uses it. Return the reason for
+    a refusal, or an empty text, and the limit of locked memory in bytes, or 0 without a limit. If there is
+    a limit, only present memory is locked, because with ``MCL_FUTURE`` the first allocation beyond the
+    limit would fail during a cut.
     """
     gc.collect()
     gc.freeze()

@@ -1,4 +1,4 @@
-"""Serial line as drivers use it: settings, transfer, parity, and reasons for failures."""
+"""Serial line as the drivers use it: settings, transfer, parity and explanations of errors."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from core.ports import DriverError
 
 
 class SerialLineError(DriverError):
-    """Failure of the line itself, such as a missing port or a disconnected adapter."""
+    """Failure of the serial line itself, such as a missing port or a disconnected adapter."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineSettings:
-    """Settings of a serial line; ``flow`` is xonxoff, rtscts or none."""
+    """Settings of a serial line; ``flow`` is "xonxoff", "rtscts" or "none"."""
 
     port: str
     baud: int = 9600
@@ -27,24 +27,27 @@ class LineSettings:
 
     @property
     def character_s(self) -> float:
-        """The duration of one character in seconds, with start, parity and stop bits."""
+        """Return the duration of one character in seconds, including its start, parity and stop bits."""
         return (1 + self.bits + (self.parity != "N") + self.stop) / self.baud
 
     @property
     def description(self) -> str:
-        """The settings as text, such as ``9600 7E1``."""
+        """Return the settings as text, such as ``9600 7E1``."""
         return f"{self.baud} {self.bits}{self.parity}{self.stop}"
 
 
 class SerialTransport(Protocol):
-    """Serial line for requests and responses. Every method raises WireError if the line has failed."""
+    """Serial line for requests and responses.
+
+    Every method raises SerialLineError if the line has failed.
+    """
 
     def send(self, data: bytes) -> None:
-        """Send bytes; wait only briefly."""
+        """Send bytes; the call blocks only briefly."""
         ...
 
     def receive(self, timeout_s: float) -> bytes:
-        """Return received bytes; wait at most ``timeout_s`` seconds for the first one."""
+        """Return received bytes, after waiting at most ``timeout_s`` seconds for the first byte."""
         ...
 
     def discard_input(self) -> None:
@@ -59,26 +62,28 @@ class FlowControlTransport(SerialTransport, Protocol):
 
     @property
     def damaged_count(self) -> int:
-        """The number of characters with a parity or framing error since the line was opened."""
+        """Return the number of characters received with a parity or framing error since the line was
+        opened.
+        """
         ...
 
     def send_available(self, data: bytes) -> int:
-        """Send the bytes that the line accepts now and return their number, which may be 0."""
+        """Send as many bytes as the line accepts now, and return their number, which may be 0."""
         ...
 
     def enable_xon_xoff(self) -> None:
-        """Let DC3 and DC1 (XOFF, XON) of the other side stop and resume the output.
+        """Let the other side stop and resume the output with XOFF (DC3) and XON (DC1).
 
-        A line that cannot do so leaves these characters in its input.
+        A line that does not support this returns these characters as received data.
         """
         ...
 
     def count_unsent(self) -> int:
-        """Return the number of accepted bytes that have not been transmitted."""
+        """Return the number of accepted bytes that have not been transmitted yet."""
         ...
 
     def discard_output(self) -> None:
-        """Discard accepted bytes that have not been transmitted."""
+        """Discard all accepted bytes that have not been transmitted yet."""
         ...
 
 
@@ -90,7 +95,7 @@ _PARITY_BIT = 0x80
 
 
 def calculate_parity(character: int) -> int:
-    """Return the number of ones in a character, modulo 2."""
+    """Return the parity of a character: 1 if the number of its one bits is odd, otherwise 0."""
     return character.bit_count() & 1
 
 
@@ -119,7 +124,10 @@ _REMEDIES = {
 
 
 def why(error: Exception) -> str:
-    """Return a remedy for an error of a serial port, or the text of the operating system."""
+    """Return the remedy for an error of a serial port.
+
+    If no remedy is known, return the error text of the operating system.
+    """
     number = _error_number(error)
     if number is None and error.__context__ is not None:  # The library hides the cause in its own text.
         number = _error_number(error.__context__)
@@ -129,6 +137,9 @@ def why(error: Exception) -> str:
 
 
 def _error_number(error: BaseException) -> int | None:
-    """Return the error number of the operating system; for termios errors, it is the first argument."""
+    """Return the error number of the operating system, or None if it has no number.
+
+    For termios errors, the number is the first argument.
+    """
     number = error.errno if isinstance(error, OSError) else error.args[0] if error.args else None
     return number if isinstance(number, int) else None

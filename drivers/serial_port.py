@@ -1,4 +1,4 @@
-"""Serial ports of this computer, by pyserial, with errors as single sentences."""
+"""Serial ports of this computer, based on pyserial; each error text is a single sentence."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ from drivers.serial_line import PARITY_VALUES, LineSettings, SerialLineError, cr
 
 
 class ParityMarkDecoder:
-    """Decoder of PARMRK marks that counts damaged characters: FF 00 c is a damaged c, FF FF a valid FF."""
+    """Decoder of the PARMRK marks of termios, which also counts damaged characters.
+
+    The bytes FF 00 c mean a damaged character c, and FF FF means a valid FF.
+    """
 
     def __init__(self) -> None:
         self.damaged_count = 0
         self._rest = b""
 
     def decode(self, received: bytes) -> bytes:
-        """Return the characters without marks; damaged characters are unchanged."""
+        """Return the received characters without marks; damaged characters are returned unchanged."""
         data, out = self._rest + received, bytearray()
         at = 0
         while at < len(data):
@@ -58,7 +61,7 @@ _OPEN_ERRORS: tuple[type[Exception], ...] = (*_FAILURES, ValueError)
 
 
 class PortInfo(NamedTuple):
-    """Serial port of this computer: its device and description."""
+    """Device name and description of a serial port of this computer."""
 
     device: str
     description: str
@@ -73,15 +76,17 @@ def list_ports() -> list[PortInfo]:
 
 
 class SerialPort:
-    """Serial port of this computer, opened exclusively; with ``count_damaged``, damaged characters are
-    counted.
+    """Serial port of this computer, opened exclusively.
 
-    If the port does not support seven bits with parity, this class adds the parity; XOFF and XON are then not
-    interpreted.
+    With ``count_damaged``, damaged characters are counted. If the port does not support seven bits with
+    parity, this class adds the parity bit; XOFF and XON from the other side are ignored in this case.
     """
 
     def __init__(self, settings: LineSettings, *, count_damaged: bool = False) -> None:
-        """Open and configure the port. Raises WireError."""
+        """Open and configure the port.
+
+        Raises SerialLineError if the port cannot be opened or configured.
+        """
         self.settings = settings
         self._marks = ParityMarkDecoder() if count_damaged and _IS_POSIX else None
         self._parities: bytes | None = None
@@ -116,11 +121,15 @@ class SerialPort:
 
     @property
     def damaged_count(self) -> int:
-        """The number of parity and framing errors, or 0 if they are not counted."""
+        """Return the number of parity and framing errors, or 0 if damaged characters are not counted."""
         return self._marks.damaged_count if self._marks is not None else 0
 
     def send(self, data: bytes) -> None:
-        """Send bytes. Raises WireError, also if the other side stops the output for more than a second."""
+        """Send bytes.
+
+        Raises SerialLineError if the line has failed, or if the other side stops the output for more than
+        one second.
+        """
         try:
             self._port.write(self._coded(data))
         except _FAILURES as error:
@@ -143,7 +152,8 @@ class SerialPort:
     def enable_xon_xoff(self) -> None:
         """Enable XON/XOFF in the kernel.
 
-        Nothing is enabled if these characters have a parity bit that the kernel does not know.
+        If this class adds the parity bit, the call has no effect, because the kernel does not recognize XON
+        and XOFF with a parity bit.
         """
         try:
             if sys.platform == "win32":
@@ -154,7 +164,7 @@ class SerialPort:
             raise self._cut(error) from error
 
     def receive(self, timeout_s: float) -> bytes:
-        """Return received bytes; wait at most ``limit`` seconds for the first one."""
+        """Return received bytes, after waiting at most ``timeout_s`` seconds for the first byte."""
         try:
             come = self._read_available(max(timeout_s, 0.0))
         except _FAILURES as error:
@@ -162,7 +172,11 @@ class SerialPort:
         return self._marks.decode(come) if self._marks is not None else come
 
     def _read_available(self, limit: float) -> bytes:
-        """Wait by ``select``, because pyserial would configure the port again for each other timeout."""
+        """Wait at most ``limit`` seconds for the first byte, and return all received bytes.
+
+        The method waits with ``select``, because pyserial would reconfigure the port whenever the timeout
+        changes.
+        """
         if sys.platform == "win32":
             self._port.timeout = limit
             first = self._port.read(1)
@@ -171,7 +185,7 @@ class SerialPort:
         return self._port.read(max(self._port.in_waiting, 1)) if ready else b""
 
     def discard_input(self) -> None:
-        """Discard the received bytes."""
+        """Discard received bytes that have not been read."""
         try:
             self._port.reset_input_buffer()
         except _FAILURES as error:
@@ -192,10 +206,11 @@ class SerialPort:
             raise self._cut(error) from error
 
     def close(self) -> None:
-        """Close the port; output that the other side has stopped is discarded, because closing would block.
+        """Close the port.
 
-        Other output is not discarded, because this would also clear the transmitter of some UARTs and of a
-        pseudo terminal, and lose the last bytes.
+        If the other side has stopped the output, the remaining output is discarded, because closing would
+        block. Otherwise the output is not discarded, because that would also clear the transmitter of some
+        UARTs and of a pseudo terminal, and the last bytes would be lost.
         """
         with suppress(*_FAILURES):  # A disconnected cable does not block.
             if not self._is_sending():
@@ -204,7 +219,7 @@ class SerialPort:
             self._port.close()
 
     def _is_sending(self) -> bool:
-        """Return whether the kernel transmits its output within the expected time."""
+        """Return whether the kernel transmits the remaining output within the expected time."""
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
@@ -221,9 +236,9 @@ class SerialPort:
 
 
 def _open_port(settings: LineSettings) -> serial.Serial:
-    """Open the port.
+    """Open the port with pyserial.
 
-    On POSIX, bits, parity and XON/XOFF are set later, because pyserial does not verify them.
+    On POSIX, the data bits, parity and XON/XOFF are set later, because pyserial does not verify them.
     """
     return serial.Serial(
         settings.port,
@@ -250,7 +265,10 @@ if sys.platform != "win32":
     _FRAME = termios.CSIZE | termios.PARENB | termios.PARODD
 
     def frame(handle: int, bits: int, parity: str) -> bool:
-        """Set bits and parity, and return whether the port accepts them. Raises termios.error."""
+        """Set data bits and parity, and return whether the port accepts them.
+
+        Raises termios.error if the port has failed.
+        """
         wanted = _SIZES[bits] | _PARITIES[parity]
         attributes = termios.tcgetattr(handle)
         attributes[2] = attributes[2] & ~_FRAME | wanted
@@ -263,13 +281,19 @@ if sys.platform != "win32":
         return bool(termios.tcgetattr(handle)[2] & _FRAME == wanted)
 
     def obey_codes(handle: int) -> None:
-        """Let XOFF and XON stop and resume the output in the kernel. Raises termios.error."""
+        """Let XOFF and XON from the other side stop and resume the output in the kernel.
+
+        Raises termios.error.
+        """
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.IXON | termios.IXOFF
         termios.tcsetattr(handle, termios.TCSANOW, attributes)
 
     def mark_damage(handle: int, *, parity: bool) -> None:
-        """Mark damaged characters as FF 00 c, and FF as FF FF. Raises termios.error."""
+        """Make the kernel mark a damaged character c as FF 00 c, and a valid FF as FF FF.
+
+        With ``parity``, parity errors are also marked. Raises termios.error.
+        """
         attributes = termios.tcgetattr(handle)
         attributes[0] |= termios.PARMRK | (termios.INPCK if parity else 0)
         attributes[0] &= ~(termios.IGNPAR | termios.ISTRIP)

@@ -1,6 +1,6 @@
-"""Setpoint queue of pieces with constant acceleration that ends at rest.
+"""Setpoint queue of motion pieces with constant acceleration, which always ends at rest.
 
-The module needs only the standard library, because its user may run under another Python.
+The module uses only the standard library, because it may be loaded under another Python installation.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ INFINITY = float("inf")
 
 
 class MotionPiece(NamedTuple):
-    """Motion from ``t`` for ``duration_s`` seconds: position, velocity and acceleration of each axis at the
-    start.
+    """Motion of all axes at constant acceleration, from ``start_time_s`` for ``duration_s`` seconds.
+
+    Positions, velocities and accelerations are the values of each axis at the start time.
     """
 
     start_time_s: float
@@ -25,7 +26,10 @@ class MotionPiece(NamedTuple):
 
 
 def get_motion_on_piece(piece: MotionPiece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return position and velocity of a piece at ``t``, limited to its start and end."""
+    """Return the positions and velocities of a piece at time ``t``.
+
+    Before its start and after its end, return the values at the start or end.
+    """
     begins, lasts, at_p, at_v, at_a = piece
     dt = t - begins
     if not 0.0 <= dt <= lasts:  # Faster than min and max; drives call this a thousand times per second.
@@ -39,7 +43,10 @@ _TRIM_COUNT = 64  # Pieces; discarding single pieces would cost more than storin
 
 
 class PieceQueue:
-    """Queue of pieces with its final rest position; not thread-safe, so the driver must lock it."""
+    """Queue of motion pieces and the final rest position.
+
+    The queue is not thread-safe, so the driver must lock it.
+    """
 
     def __init__(self, rest_positions: Sequence[float]) -> None:
         self._zero = (0.0,) * len(rest_positions)
@@ -49,7 +56,7 @@ class PieceQueue:
         self._rest = tuple(rest_positions)
 
     def reset_to(self, position: Sequence[float]) -> None:
-        """Discard all setpoints and rest at this position, for example after power-up or homing."""
+        """Discard all setpoints and stay at rest at ``position``, for example after power-up or homing."""
         self._pieces, self._starts, self._end = [], [], -INFINITY
         self._rest = tuple(position)
 
@@ -58,7 +65,10 @@ class PieceQueue:
         return max(self._end, now)
 
     def commanded_state_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return position and velocity at ``t``; at the joint of two pieces, those of the later one."""
+        """Return the positions and velocities at time ``t``.
+
+        Where two pieces meet, return the values of the later piece.
+        """
         if t >= self._end:
             return self._rest, self._zero
         index = bisect_right(self._starts, t) - 1
@@ -67,7 +77,10 @@ class PieceQueue:
         return get_motion_on_piece(self._pieces[index], t)
 
     def find_piece_at(self, t: float) -> tuple[MotionPiece, float]:
-        """Return the piece that is valid at ``t`` and its end time; without motion, a resting piece."""
+        """Return the piece that is valid at time ``t`` and the end time of that piece.
+
+        If no motion is queued for ``t``, return a piece at rest.
+        """
         if t >= self._end:
             return MotionPiece(t, INFINITY, self._rest, self._zero, self._zero), INFINITY
         index = bisect_right(self._starts, t) - 1
@@ -81,21 +94,22 @@ class PieceQueue:
         return piece, min(ends, following)
 
     def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Return position, velocity and acceleration at ``t``."""
+        """Return the positions, velocities and accelerations at time ``t``."""
         p, v = self.commanded_state_at(t)
         index = bisect_right(self._starts, t) - 1
         return p, v, self._pieces[index].accelerations if index >= 0 and t < self._end else self._zero
 
     @property
     def pieces(self) -> Sequence[MotionPiece]:
-        """The queued pieces, including those of the past that have not been trimmed."""
+        """Return the queued pieces, including past pieces that have not been discarded yet."""
         return self._pieces
 
     def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
-        """Replace the queue by a straight deceleration of all axes together, and return its end time.
+        """Replace the queue with a straight deceleration of all axes at the same time, and return its end
+        time.
 
-        It is for stops without the host (E-stop, fault). The axes leave the path only by its curvature within
-        the braking distance.
+        This method is for stops without the host, such as an E-stop or a fault. The axes leave their path
+        only by the curvature of the path within the braking distance.
         """
         return self._brake(now, self.commanded_state_at(now), deceleration)
 
@@ -112,13 +126,16 @@ class PieceQueue:
         return now + dt
 
     def discard_before(self, time: float) -> None:
-        """Discard pieces that ended before this time."""
+        """Discard the pieces that ended before ``time``, as soon as at least 64 pieces can be discarded."""
         gone = bisect_right(self._starts, time) - 1
         if gone >= _TRIM_COUNT:
             del self._pieces[:gone], self._starts[:gone]
 
     def replace_from(self, start: float, pieces: list[MotionPiece]) -> None:
-        """Cut the queue at ``start`` and append ``pieces`` without checks; a gap before ``start`` is rest."""
+        """Cut the queue at time ``start`` and append ``pieces`` without checks.
+
+        If the queue ends before ``start``, the axes are at rest in between.
+        """
         rest = get_motion_on_piece(pieces[-1], INFINITY)[0]
         keep = bisect_right(self._starts, start - 1e-12)
         del self._pieces[keep:], self._starts[keep:]

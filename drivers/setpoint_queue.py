@@ -1,7 +1,8 @@
 """Setpoint queue of a driver, which always contains a complete trajectory that ends at rest.
 
 If the host stalls, is killed or is disconnected, the axes therefore stop on their path at the planned
-deceleration without a fault. Hold, override, abort and jog all use one operation: splice another tail.
+deceleration without a fault. Hold, override, abort and jog all use one operation, which replaces the end of
+the queue (splice).
 """
 
 from __future__ import annotations
@@ -25,10 +26,10 @@ def _do_nothing() -> None:
 def convert_segments(
     segments: Segments, axes: int, yield_cpu: Callable[[], None] = _do_nothing
 ) -> list[MotionPiece]:
-    """Convert segments into pieces. Raises DriverError for a wrong shape or values that are not finite.
+    """Convert segments into motion pieces.
 
     ``yield_cpu`` is called repeatedly, because the conversion of thousands of pieces may take too long for
-    some drives.
+    some drives. Raises DriverError if an array has the wrong shape or a value is not finite.
     """
     count = len(segments.t)
     shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
@@ -56,7 +57,7 @@ def convert_segments(
 
 @dataclass(frozen=True, slots=True)
 class AxisProperties:
-    """Limits and properties of one axis for a driver, in mm or degrees, and seconds."""
+    """Limits and properties of one axis that its driver needs, in mm or degrees, and seconds."""
 
     name: str
     vmax: float
@@ -76,9 +77,9 @@ def check_limits(
     homed_axes: Sequence[bool],
     actual_positions: Sequence[float] | None = None,
 ) -> None:
-    """Raise DriverError for setpoints that are too fast, or outside the travel of a homed axis.
+    """Raise DriverError if a setpoint is too fast or outside the travel of a homed axis.
 
-    With ``actual_positions``, an axis outside its travel may move back from its present position.
+    With ``actual_positions``, an axis that is outside its travel may move back from its present position.
     """
     for n, axis in enumerate(axes):
         if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
@@ -112,9 +113,9 @@ _REST_SPEED = 0.01  # mm/s or degrees/s; velocity that may remain by rounding.
 
 @dataclass(frozen=True, slots=True)
 class JunctionTolerance:
-    """Permitted difference of position (mm or degrees) and velocity where two pieces meet, by axis.
+    """Permitted steps of position (mm or degrees) and velocity of each axis where two pieces meet.
 
-    The position tolerance covers rounding. The velocity may jump as at a corner, by ``amax * interval``.
+    The position tolerance covers rounding. The velocity tolerance is that of a corner, ``amax * interval``.
     """
 
     position: tuple[float, ...]
@@ -122,12 +123,15 @@ class JunctionTolerance:
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties]) -> JunctionTolerance:
-        """Return a tolerance of 0.001 mm and the corner velocities of these axes."""
+        """Create the tolerance for these axes: 0.001 mm or degrees, and their corner velocities."""
         return cls((0.001,) * len(axes), tuple(1.01 * axis.corner + 1e-3 for axis in axes))
 
 
 class SetpointQueue(PieceQueue):
-    """Setpoint queue of all axes that checks its input; not thread-safe, so the driver must lock it."""
+    """Setpoint queue of all axes that checks new setpoints.
+
+    The queue is not thread-safe, so the driver must lock it.
+    """
 
     def __init__(
         self,
@@ -145,11 +149,11 @@ class SetpointQueue(PieceQueue):
         self.get_transferred_until: Callable[[], float] = lambda: -math.inf
 
     def splice(self, segments: Segments, now: float) -> None:
-        """Replace everything from ``segments.t[0]`` on.
+        """Replace all setpoints from ``segments.t[0]`` on.
 
-        The segments must start at or after ``now`` + commit, continue the remaining queue in position and
-        velocity, be continuous, and end at rest. Otherwise DriverError is raised and the queue does not
-        change.
+        The segments must start no earlier than the commit time after ``now``. They must continue the
+        remaining queue in position and velocity, be continuous, and end at rest. Otherwise DriverError is
+        raised, and the queue does not change.
         """
         pieces = convert_segments(segments, len(self.axes), self.yield_cpu)
         start = pieces[0].start_time_s
@@ -167,7 +171,7 @@ class SetpointQueue(PieceQueue):
         self.replace_from(start, pieces)
 
     def _check_run(self, segments: Segments) -> None:
-        """Check that each piece begins at the end of the piece before it, and that the last ends at rest.
+        """Check that each piece begins where the previous piece ends, and that the last piece ends at rest.
 
         Raises DriverError.
         """
@@ -214,7 +218,10 @@ class SetpointQueue(PieceQueue):
         old: tuple[tuple[float, ...], tuple[float, ...]],
         new: tuple[tuple[float, ...], tuple[float, ...]],
     ) -> None:
-        """Check that position and velocity agree at the splice within the tolerance. Raises DriverError."""
+        """Check that old and new position and velocity at the splice point agree within the tolerance.
+
+        Raises DriverError.
+        """
         templates = (
             "{axis}: at the splice point between queued and new setpoints, the position jumps from "
             "{before} to {after}",
@@ -244,7 +251,7 @@ def plan_straight_move(
 ) -> Segments:
     """Plan a move of one axis from rest to rest: ramp up, run at ``speed``, ramp down.
 
-    The axis with number ``axis_index`` moves to ``target``; the others rest.
+    The axis with index ``axis_index`` moves to ``target``; the other axes remain at rest.
     """
     way = target - rest_positions[axis_index]
     sign = math.copysign(1.0, way)

@@ -1,4 +1,4 @@
-"""Gear that makes the axes follow the measured spindle angle within their limits."""
+"""Electronic gear that makes the axes follow the measured spindle angle within their limits."""
 
 from __future__ import annotations
 
@@ -20,21 +20,24 @@ _DECAY_RATE = 250.0
 
 
 class SpindlePhaseFilter:
-    """Filter for the angle and speed of a spindle, without lag at constant speed or acceleration.
+    """Filter for the angle and speed of a spindle that has no lag at constant speed or acceleration.
 
-    It is a fading-memory filter of third order (Morrison 1969). With 4096 steps per revolution read every
-    millisecond, the angle error is below 0.02° at 3000 rpm with a speed oscillation of 2 % at 4 Hz.
+    It is a fading-memory filter of third order (Morrison 1969). With 4096 steps per revolution, read every
+    millisecond, the angle error is below 0.02° at 3000 rpm while the speed oscillates by 2 % at 4 Hz.
     """
 
     def __init__(self, t: float, turns: float, speed: float) -> None:
-        """Start with a reading at ``t`` seconds and the known speed in rev/s, signed."""
+        """Start the filter with a reading at time ``t`` in seconds and the known speed in rev/s, signed."""
         self.time_s = t
         self.revolutions = turns
         self.speed_rev_per_s = speed
         self.acceleration = 0.0  # Acceleration in rev/s².
 
     def add_reading(self, t: float, turns: float) -> None:
-        """Add a reading; a reading that is not newer than the last one is ignored."""
+        """Add an encoder reading in revolutions.
+
+        A reading that is not newer than the last reading is ignored.
+        """
         dt = t - self.time_s
         if dt <= 0.0:
             return
@@ -51,7 +54,7 @@ class SpindlePhaseFilter:
         self.acceleration += lose**3 / (dt * dt) * off
 
     def predict(self, t: float) -> float:
-        """Return the predicted revolutions at ``t``, which must be shortly after the last reading."""
+        """Return the predicted revolutions at time ``t``, which must be shortly after the last reading."""
         dt = t - self.time_s
         return self.revolutions + (self.speed_rev_per_s + 0.5 * self.acceleration * dt) * dt
 
@@ -66,7 +69,7 @@ _MIN_SPEED_FRACTION = 0.2  # Minimum fraction for speed changes of the spindle.
 
 
 class GearAxes(NamedTuple):
-    """Axes of one machine with one limit per axis, in mm/s and mm/s² (degrees for C)."""
+    """Axes of one machine with their limits, in mm/s and mm/s² (degrees/s and degrees/s² for C)."""
 
     names: tuple[str, ...]
     vmax: tuple[float, ...]
@@ -76,7 +79,7 @@ class GearAxes(NamedTuple):
 
     @classmethod
     def from_axes(cls, axes: Sequence[AxisProperties], commit_time_s: float) -> GearAxes:
-        """Create the table from the axes, with ``commit`` in seconds."""
+        """Create the table from the properties of the axes; ``commit_time_s`` is in seconds."""
         vmax, amax = tuple(axis.vmax for axis in axes), tuple(axis.amax for axis in axes)
         return cls(
             tuple(axis.name for axis in axes), vmax, amax, commit_time_s, JunctionTolerance.from_axes(axes)
@@ -84,7 +87,10 @@ class GearAxes(NamedTuple):
 
 
 class SpeedLimit(NamedTuple):
-    """Speed limit between ``begin_rev`` and ``ends`` (revolutions); ``square`` is its square in rev²/s²."""
+    """Limit of the spindle speed between two cam positions in revolutions.
+
+    ``speed_squared`` is the square of the permitted speed in rev²/s².
+    """
 
     begin_rev: float
     end_rev: float
@@ -92,7 +98,7 @@ class SpeedLimit(NamedTuple):
 
 
 class SpeedLimits:
-    """Speed limits of a cam in their order.
+    """Speed limits of a cam, sorted by position.
 
     ``min_deceleration`` is the deceleration in rev/s² that is possible everywhere on the cam.
     """
@@ -109,9 +115,10 @@ class SpeedLimits:
         self._onwards = [*reversed([*onwards]), math.inf]
 
     def get_max_speed_squared(self, position_rev: float, braking_rev: float) -> float:
-        """Return the square of the permitted speed at ``turns`` in rev²/s².
+        """Return the square of the permitted speed at ``position_rev``, in rev²/s².
 
-        Each limit ahead must still be reachable by braking, ``reach`` revolutions before it begins.
+        The speed must permit braking to each limit ahead, ``braking_rev`` revolutions before that limit
+        begins.
         """
         near = position_rev + braking_rev
         ahead = bisect_right(self._begins, near)
@@ -123,10 +130,11 @@ class SpeedLimits:
 
 
 class CamGearing:
-    """Cam with the present position of the axes on it; not thread-safe, so the driver must lock it.
+    """Cam and the present position of the axes on this cam.
 
-    ``rest_position`` is the rest position of the axes. Raises DriverError if the spindle does not turn in the
-    direction of the cam, and in the cases of ``core.ports.SpindleGear.engage_cam``.
+    The object is not thread-safe, so the driver must lock it. ``rest_position`` is the rest position of the
+    axes. Raises DriverError if the spindle does not turn in the direction of the cam, and in the cases that
+    ``core.ports.SpindleGear`` lists.
     """
 
     def __init__(
@@ -149,7 +157,10 @@ class CamGearing:
         self.load_cam(cam)
 
     def load_cam(self, cam: Cam) -> None:
-        """Replace the cam from the start of its new path on. Raises DriverError for another index."""
+        """Replace the present cam from the start of the new path on.
+
+        Raises DriverError if the new cam counts from another index pulse.
+        """
         if not self.is_same_cam(cam):
             raise DriverError(
                 "the axes cannot change to another spindle index pulse while they are "
@@ -170,57 +181,64 @@ class CamGearing:
         return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
     def is_same_cam(self, cam: Cam) -> bool:
-        """Return whether a cam counts from the same index in the same direction."""
+        """Return whether a cam counts from the same index pulse and in the same direction as the present
+        cam.
+        """
         return (cam.start_revolutions, cam.sign) == (self._cam.start_revolutions, self._cam.sign)
 
     @property
     def loaded_cam(self) -> Cam:
-        """The cam that was loaded last."""
+        """Return the cam that was loaded last."""
         return self._cam
 
     @property
     def spindle_rev_per_s(self) -> float:
-        """The speed of the spindle in rev/s, positive in the direction of the cam."""
+        """Return the speed of the spindle in rev/s, positive in the direction of the cam."""
         return self._cam.sign * self._phase.speed_rev_per_s
 
     @property
     def lag_rev(self) -> float:
-        """The revolutions by which the setpoints lag the spindle."""
+        """Return how far the setpoints lag the spindle, in revolutions."""
         return self._goal(self._t) - self.cam_position_rev
 
     @property
     def has_moved(self) -> bool:
-        """Whether an axis has moved."""
+        """Return whether an axis has moved since the gear was engaged."""
         return self._queue.commanded_state_at(self.cam_position_rev)[0] != self._standing
 
     @property
     def is_finished(self) -> bool:
-        """Whether the end of the cam is reached."""
+        """Return whether the axes have reached the end of the cam."""
         return self.cam_position_rev >= self._queue.queue_end(-math.inf)
 
     @property
     def end_position(self) -> tuple[float, ...]:
-        """The axis positions at the end of the cam."""
+        """Return the axis positions at the end of the cam."""
         return self._queue.commanded_state_at(math.inf)[0]
 
     def is_still_at(self, t: float) -> bool:
-        """Return whether no axis will have moved at ``t`` at the present speed."""
+        """Return whether all axes will still be at their rest position at time ``t`` at the present spindle
+        speed.
+        """
         return self.predict_motion(t)[0] == self._standing
 
     def predict_end_time(self) -> float:
-        """Return the time when the cam ends at the present speed, or inf if the spindle is at rest."""
+        """Return the time when the axes reach the end of the cam at the present spindle speed.
+
+        Return inf if the spindle is at rest.
+        """
         left = self._queue.queue_end(-math.inf) - self.cam_position_rev
         return self._t + left / self._speed if self._speed > _STANDSTILL_REV_PER_S else math.inf
 
     def predict_motion(self, t: float) -> MotionState:
-        """Return the predicted position and velocity at ``t``, based on the last reading."""
+        """Return the positions and velocities that the last reading predicts for time ``t``."""
         p, v = self._queue.commanded_state_at(self.cam_position_rev + self._speed * (t - self._t))
         return p, tuple([each * self._speed for each in v])
 
     def play_setpoint(self, t: float, reading_time: float, reading_rev: float) -> AxisMotion:
-        """Add an encoder reading and return the setpoint for ``t``: position, velocity and acceleration.
+        """Add an encoder reading and return the positions, velocities and accelerations for time ``t``.
 
-        The acceleration is that caused by the spindle.
+        The accelerations are only those that a change of the spindle speed causes.
         """
         self._phase.add_reading(reading_time, reading_rev)
         if t > self._t:
@@ -233,7 +251,7 @@ class CamGearing:
         return self._cam.sign * (self._phase.predict(t) - self._cam.start_revolutions)
 
     def _follow_spindle(self, t: float) -> None:
-        """Advance toward the spindle's position at ``t``, as far as the limits of the axes permit."""
+        """Advance to the spindle position at time ``t``, as far as the limits of the axes permit."""
         dt, self._t = t - self._t, t
         goal, speed = self._goal(t), self._cam.sign * self._phase.speed_rev_per_s
         top, bend = self._speed_and_accel_limit(2.0 * self._speed * dt)
@@ -250,10 +268,10 @@ class CamGearing:
         self.cam_position_rev += self._speed * dt
 
     def _speed_and_accel_limit(self, reach: float) -> tuple[float, float]:
-        """Return the limits of speed (rev/s) and its change (rev/s²) at the present position; inf at rest.
+        """Return the limits of the speed (rev/s) and of its change (rev/s²) at the present position.
 
-        The speed also permits braking for the limits ahead, ``reach`` revolutions early, because a setpoint
-        is valid for its whole interval.
+        The limits are inf if the axes are at rest there. The speed also permits braking for the limits
+        ahead, ``reach`` revolutions early, because a setpoint is valid for its whole interval.
         """
         _, per_turn, accel = self._queue.motion_at(self.cam_position_rev)
         bend = math.inf
@@ -264,7 +282,7 @@ class CamGearing:
         return math.sqrt(self._walls.get_max_speed_squared(self.cam_position_rev, reach)), bend
 
     def _list_speed_limits(self, pieces: Sequence[MotionPiece]) -> tuple[list[SpeedLimit], float]:
-        """Return the speed limit of each piece, and the change of speed that is possible in all pieces."""
+        """Return the speed limit of each piece, and the deceleration that is possible in all pieces."""
         walls, softest = [], math.inf
         for piece in pieces:
             most = math.inf
@@ -287,7 +305,10 @@ class CamGearing:
 
 
 class GearedQueue(SetpointQueue):
-    """Setpoint queue that is played by time or by the spindle; its driver must lock it."""
+    """Setpoint queue whose setpoints advance with the time or with the spindle.
+
+    The queue is not thread-safe, so the driver must lock it.
+    """
 
     def __init__(self, slides: GearAxes, rest_positions: Sequence[float]) -> None:
         super().__init__(slides.names, rest_positions, slides.commit_time_s, slides.tolerance)
@@ -296,13 +317,14 @@ class GearedQueue(SetpointQueue):
 
     @property
     def is_engaged(self) -> bool:
-        """Whether the axes follow the spindle, so that ``play_setpoint`` must be called at the driver's
-        rate.
+        """Return whether the axes follow the spindle.
+
+        The driver must then call ``play_setpoint`` for every setpoint.
         """
         return self._gearing is not None
 
     def read_gear_state(self) -> GearState | None:
-        """Return the position of the axes on the cam, or None if they do not follow the spindle."""
+        """Return the state of the gear, or None if the axes do not follow the spindle."""
         gearing = self._gearing
         return (
             None
@@ -311,9 +333,10 @@ class GearedQueue(SetpointQueue):
         )
 
     def engage_cam(self, cam: Cam, phase: SpindlePhaseFilter, now: float) -> None:
-        """Make the axes follow the spindle with its ``phase`` at ``now``.
+        """Make the axes follow the spindle from time ``now`` on.
 
-        Raises DriverError if the axes move, and in the cases of ``core.ports.SpindleGear``.
+        ``phase`` measures the spindle. Raises DriverError if the axes move, and in the cases that
+        ``core.ports.SpindleGear`` lists.
         """
         gearing = self._gearing
         if gearing is not None and (gearing.has_moved or gearing.is_same_cam(cam)):
@@ -328,7 +351,7 @@ class GearedQueue(SetpointQueue):
         self._gearing = CamGearing(cam, phase, self._slides, self._rest)
 
     def play_setpoint(self, t: float, reading_time: float, reading_rev: float) -> AxisMotion:
-        """Return the setpoint for ``t`` while the axes follow the spindle, from an encoder reading."""
+        """Return the setpoint for time ``t`` from an encoder reading, while the axes follow the spindle."""
         assert self._gearing is not None
         motion = self._gearing.play_setpoint(t, reading_time, reading_rev)
         if self._gearing.is_finished:
@@ -336,12 +359,15 @@ class GearedQueue(SetpointQueue):
         return motion
 
     def reset_to(self, position: Sequence[float]) -> None:
-        """Rest at this position and stop following the spindle."""
+        """Stop following the spindle and stay at rest at this position."""
         self._gearing = None
         super().reset_to(position)
 
     def queue_end(self, now: float) -> float:
-        """Return the end time of the queue in seconds, for a cam predicted at the present spindle speed."""
+        """Return the end time of the queue in seconds.
+
+        If the axes follow the spindle, the end is predicted at the present spindle speed.
+        """
         if self._gearing is None:
             return super().queue_end(now)
         then = self._gearing.loaded_cam.following_segments
@@ -349,13 +375,16 @@ class GearedQueue(SetpointQueue):
         return max(ends, now + self.commit)  # The predicted end may pass before the end is reached.
 
     def commanded_state_at(self, t: float) -> MotionState:
-        """Return position and velocity at ``t``, queued or predicted at the present spindle speed."""
+        """Return the positions and velocities at time ``t``.
+
+        If the axes follow the spindle, the values are predicted at the present spindle speed.
+        """
         return super().commanded_state_at(t) if self._gearing is None else self._gearing.predict_motion(t)
 
     def splice(self, segments: Segments, now: float) -> None:
-        """Splice setpoints that are played by time.
+        """Splice setpoints that advance with the time.
 
-        Raises DriverError if the axes still follow the spindle at the start time.
+        Raises DriverError if the axes still follow the spindle at the start time of the setpoints.
         """
         gearing = self._gearing
         if gearing is not None and len(segments.t) and not gearing.is_still_at(float(segments.t[0])):
@@ -369,7 +398,8 @@ class GearedQueue(SetpointQueue):
         self._gearing = None
 
     def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
-        """Stop following the spindle, brake straight to rest and return the end time in seconds.
+        """Stop following the spindle, brake all axes on a straight line, and return the end time in
+        seconds.
 
         ``deceleration`` is in mm/s² (degrees/s² for C).
         """
@@ -379,7 +409,10 @@ class GearedQueue(SetpointQueue):
         return self._brake(now, state, deceleration)
 
     def _leave_gearing(self, t: float, gearing: CamGearing) -> None:
-        """Stop following the spindle at the end of the cam; continue by time if the cam has a tail."""
+        """Stop following the spindle at the end of the cam.
+
+        If the cam has following segments, the axes continue with these segments.
+        """
         self.reset_to(gearing.end_position)
         then = gearing.loaded_cam.following_segments
         if then is not None:

@@ -1,7 +1,7 @@
-"""Wake-ups, clocks and background openings for drivers.
+"""Wake-ups, clocks and background connection attempts for drivers.
 
-A wake-up lets a driver report a change to its control at once, so that a machine at rest is polled less
-often. Lost connections are opened in a separate thread, so that the control never waits for a missing port or
+With a wake-up, a driver reports a change to its control at once, so that a machine at rest is polled less
+often. A separate thread reopens lost connections, so that the control never waits for a missing port or
 process.
 """
 
@@ -26,9 +26,10 @@ _CHUNK = 1 << 16
 
 
 class LocalWakeup:
-    """``core.ports.LocalWakeup`` within one process.
+    """``core.ports.Wakeup`` within one process.
 
-    ``is_settled`` is supplied by the driver and returns whether nothing changes without a wake-up.
+    The driver supplies ``is_settled``, which returns whether the machine state stays the same until a
+    wake-up.
     """
 
     def __init__(self, is_settled: Callable[[], bool]) -> None:
@@ -36,18 +37,21 @@ class LocalWakeup:
         self._rung = threading.Event()
 
     def wake(self) -> None:
-        """Wake up the control after a command or change, from any thread."""
+        """Wake up the control after a command or change; any thread may call this method."""
         self._rung.set()
 
     def wait(self, seconds: float) -> bool:
-        """Wait for a wake-up for at most ``seconds`` and return whether there was one."""
+        """Wait at most ``seconds`` for a wake-up, and return whether a wake-up occurred."""
         rung = self._rung.wait(seconds)
         self._rung.clear()
         return rung
 
 
 class ProcessBell:
-    """Wake-up between two processes by a socket pair; both ends may ring from any thread."""
+    """Wake-up between two processes through a socket pair.
+
+    Both processes and all their threads may send a wake-up.
+    """
 
     def __init__(self) -> None:
         self._near, self.far_socket = socket.socketpair()
@@ -55,14 +59,14 @@ class ProcessBell:
         self.far_socket.setblocking(False)
 
     def ring(self) -> None:
-        """Wake up the waiting process; nothing happens if the socket is full or closed."""
+        """Wake up the waiting process; the call has no effect if the socket is full or closed."""
         with suppress(OSError):
             self.far_socket.send(b"!")
 
     def wait(self, seconds: float, files: Sequence[int] = ()) -> bool:
-        """Wait for a wake-up or a readable file, for at most ``seconds``; return whether there was one.
+        """Wait at most ``seconds`` for a wake-up or a readable file, and return whether either occurred.
 
-        Earlier wake-ups also count.
+        Wake-ups that were sent before the call also count.
         """
         try:
             if not select.select([self._near.fileno(), *files], [], [], seconds)[0]:
@@ -75,13 +79,13 @@ class ProcessBell:
         return True
 
     def close(self) -> None:
-        """Close both ends."""
+        """Close both sockets."""
         self._near.close()
         self.far_socket.close()
 
 
 class ActionLock:
-    """Lock for actions on a machine that wakes up the control when it is released."""
+    """Lock for actions on a machine, which wakes up the control when the lock is released."""
 
     def __init__(self, lock: AbstractContextManager[object], wake: Callable[[], None]) -> None:
         self._lock, self._ring = lock, wake
@@ -104,7 +108,7 @@ class ActionLock:
 class RealClock:
     """Monotonic clock that starts at its creation, or at ``origin_s`` of the system's monotonic clock.
 
-    The system's clock is common to all processes, so two instances with the same zero agree.
+    All processes share the system's clock, so two instances with the same origin show the same time.
     """
 
     def __init__(self, origin_s: float | None = None) -> None:
@@ -115,14 +119,14 @@ class RealClock:
         return time.monotonic() - self.origin_s
 
     def sleep_until(self, t: float) -> None:
-        """Wait until ``t``; return at once if the time has passed."""
+        """Wait until time ``t``; return at once if this time has passed."""
         left = t - self.now()
         if left > 0:
             time.sleep(left)
 
 
 class ManualClock:
-    """Clock that advances only by calls, also by sleeping; thread-safe."""
+    """Thread-safe clock whose time advances only when a method is called, including ``sleep_until``."""
 
     def __init__(self, start: float = 0.0) -> None:
         self._t = start
@@ -133,12 +137,12 @@ class ManualClock:
         return self._t
 
     def sleep_until(self, t: float) -> None:
-        """Advance to ``t`` at once, but never backward."""
+        """Advance the clock to ``t`` at once, but never backward."""
         with self._lock:
             self._t = max(self._t, t)
 
     def advance(self, dt: float) -> None:
-        """Advance by ``dt`` seconds."""
+        """Advance the clock by ``dt`` seconds."""
         with self._lock:
             self._t += dt
 
@@ -150,7 +154,10 @@ T = TypeVar("T")
 
 
 class ConnectionAttempt(Generic[T]):
-    """Attempt to open a lost connection in a thread, or with ``synchronous`` in the calling thread."""
+    """Attempt to reopen a lost connection in a separate thread.
+
+    With ``synchronous``, the connection is opened in the calling thread.
+    """
 
     def __init__(self, open_connection: Callable[[], T], *, synchronous: bool = False) -> None:
         self._open = open_connection
@@ -161,7 +168,10 @@ class ConnectionAttempt(Generic[T]):
             threading.Thread(target=self._run, name="reopening", daemon=True).start()
 
     def take(self) -> T | None:
-        """Return the opened connection, or None while opening. Raises DriverError if opening failed."""
+        """Return the opened connection, or None while it is being opened.
+
+        Raises DriverError if the connection could not be opened.
+        """
         try:
             found = self._found.get_nowait()
         except queue.Empty:

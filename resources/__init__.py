@@ -1,4 +1,4 @@
-"""What the product ships besides code: machine files, sample programs, fonts."""
+"""Data files that are shipped with the product: machine files, sample programs and fonts."""
 
 from __future__ import annotations
 
@@ -8,20 +8,23 @@ _HERE = Path(__file__).parent
 
 
 def machine_names() -> frozenset[str]:
-    """The names of the shipped machine files, without their ending."""
+    """Return the names of the shipped machine files, without their ending."""
     return frozenset(each.stem for each in (_HERE / "machines").glob("*.toml"))
 
 
 def machine_file(name: str) -> str:
-    """The text of a shipped machine file, such as ``gt75.toml``. Raises FileNotFoundError."""
+    """Return the text of a shipped machine file, such as ``gt75.toml``.
+
+    Raises FileNotFoundError if the file does not exist.
+    """
     return machine_path(name).read_text(encoding="utf-8")
 
 
 def machine_path(name: str) -> Path:
-    """Where a shipped machine file is."""
+    """Return the path of a shipped machine file."""
     return _HERE / "machines" / name
 
 
 def hal_file(name: str) -> Path:
-    """Where a shipped HAL file is, such as ``gt75-hal.hal``: LinuxCNC reads it itself."""
+    """Return the path of a shipped HAL file, such as ``gt75-hal.hal``, which LinuxCNC reads."""
     return _HERE / "machines" / name

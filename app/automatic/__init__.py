@@ -1,1 +1,1 @@
-"""The Automatic page. Its model is ``Desk``."""
+"""Automatic page, whose model is ``Desk``."""

@@ -1,4 +1,4 @@
-"""The Automatic page: program window, comment, path view, and the prompt for a file."""
+"""Automatic page with the program window, the comment, the path view, and the prompt for a file."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ _NO_LINES: tuple[str, ...] = ()
 
 
 class AutomaticPage(Page):
-    """The Automatic page. Each part redraws only after a change. ``Frame`` shows the large readouts above."""
+    """Automatic page, on which each part redraws only after a change.
+
+    ``Frame`` shows the large readouts above the page.
+    """
 
     NAME = page_table.AUTOMATIC
     LABELS = (
@@ -66,7 +69,7 @@ class AutomaticPage(Page):
         )
 
     def apply_theme(self) -> None:
-        """Redraw all parts in the present colors."""
+        """Redraw all parts in the colors of the current theme."""
         self.file_prompt.apply_theme()
         self.path_view.redraw()
 
@@ -74,25 +77,28 @@ class AutomaticPage(Page):
         self.window().setFocus()
 
     def try_leave(self) -> bool:
-        """Close the prompt for a file, and let the page close."""
+        """Close the prompt for a file and return True, so that the page can be left."""
         self.file_prompt.close_prompt()
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt for choosing a file or measuring. Empty while the machine moves."""
+        """Return the prompt for choosing a file or measuring, or an empty text while the machine moves."""
         if self.file_prompt.isVisible() and not self._moving:
             return self.file_prompt.prompt_text()
         return make_measuring_prompt() if self.path_view.measurement is not None and not self._moving else ""
 
     def handle_escape(self) -> bool:
-        """End measuring. While the machine moves, leave Esc to feed hold and return False."""
+        """End measuring and return whether it was active.
+
+        While the machine moves, return False, so that Esc triggers feed hold.
+        """
         measuring = self.path_view.measurement is not None and not self._moving
         if measuring:
             self.path_view.set_measuring(is_on=False)
         return measuring
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts in the new unit."""
+        """Lay out all parts in the new display unit after the page size changes."""
         listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.u)
         for part, rect in (
             (self.program_listing, listing),
@@ -105,7 +111,7 @@ class AutomaticPage(Page):
             part.update()
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the program, its current line, its comment and its path."""
+        """Show the program with its current line, comment and path."""
         if self.file_prompt.isVisible() and snapshot.state in {MachineState.RUN, MachineState.WAIT}:
             # A cycle was started at the station, so the keys belong to the cycle.
             self.file_prompt.close_prompt()
@@ -143,7 +149,7 @@ class AutomaticPage(Page):
 
     @property
     def _visible_view(self) -> PathView | WorkingPlaneView:
-        """The view that the zoom and pan keys control."""
+        """Return the view that the zoom and pan keys control."""
         return self.path_view if self.plane_view.scene is None else self.plane_view
 
     def is_animating(self) -> bool:
@@ -151,7 +157,7 @@ class AutomaticPage(Page):
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys for choosing a program, the editor and SEARCHTO."""
+        """Return the keys for choosing a program, the editor and SEARCHTO that are disabled now."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
         asking = self.file_prompt.isVisible()
         named = bool(self.file_prompt.wanted_name) if asking else loaded.path is not None
@@ -190,13 +196,13 @@ class AutomaticPage(Page):
         }
 
     def _part_keys(self) -> KeyActions:
-        """Return the keys of the playback, which work while the part is shown."""
+        """Return the key actions of the part animation, or none while the part is not shown."""
         if self.path_view.part_player is None or not self.path_view.is_part_shown:
             return {}
         return {**self.path_view.make_playback_key_actions(), "To line": self._show_part_at_line}
 
     def _show_part_at_line(self) -> None:
-        """Show the part as it is before the first visible line of the program window."""
+        """Show the part as machined before the first visible line of the program window."""
         if self.path_view.part_player is not None:
             self.path_view.part_player.seek_line(self.program_listing.first_row + 1)
 
@@ -209,7 +215,7 @@ class AutomaticPage(Page):
             sheet.show_stock()
 
     def _open_editor(self) -> None:
-        """Open the editor for the loaded program, or for the name in the file prompt."""
+        """Open the editor for the loaded program, or for the file name in the prompt."""
         from app.editor.editor_model import EditorModel
 
         wanted = self.file_prompt.wanted_name if self.file_prompt.isVisible() else ""
@@ -220,7 +226,9 @@ class AutomaticPage(Page):
             self.host.open_page(page_table.EDITOR)
 
     def show_file_prompt(self) -> None:
-        """Show the prompt ``FILE TO BE PROCESSED``, or open the program list if it is already shown."""
+        """Show the prompt ``FILE TO BE PROCESSED``, or open the program list if the prompt is already
+        shown.
+        """
         if self.file_prompt.isVisible():
             self.host.open_page(page_table.PROGRAMS)
         elif self.desk.program_choice.can_choose():

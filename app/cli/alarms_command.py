@@ -1,4 +1,6 @@
-"""The command ``turndesk alarms``: every alarm, hold and stop with number, likely causes and remedy."""
+"""The command ``turndesk alarms``, which lists every alarm, hold and stop with number, likely causes and
+remedy.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``alarms``."""
     parser = subparsers.add_parser("alarms")
     parser.add_argument(
         "number", nargs="*", type=int, metavar="NUMBER", help="numbers of the alarms to list (default: all)"
@@ -25,7 +27,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the alarm catalog, or the entries with the given numbers."""
+    """Print the whole alarm catalog, or only the entries with the given numbers."""
     from core.alarms import CATALOGUE
 
     chosen = sorted(CATALOGUE.items(), key=lambda each: each[1].number)

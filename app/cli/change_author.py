@@ -1,7 +1,7 @@
-"""The user who makes a change on the command line, and the check of the user's access level.
+"""Identification of the user who makes a change on the command line, and check of the user's access level.
 
-Nothing is checked if access levels are off. Otherwise the user must enter the PIN at the terminal, or as a
-line of the standard input.
+If access levels are off, nothing is checked. Otherwise the user must enter the PIN, either at the terminal
+or as a line of standard input.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ COMMAND_LINE_USER = (
 
 
 def add_as_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option ``--as NAME``, which names the user to whom the change is attributed."""
+    """Add the option ``--as NAME``, which names the user who makes the change."""
     parser.add_argument(
         "--as",
         dest="as_name",
@@ -53,7 +53,7 @@ def add_consent_options(parser: argparse.ArgumentParser) -> None:
 
 
 def get_change_author(store: Store, args: argparse.Namespace, *acts: ProtectedChange) -> str:
-    """Return the name of the user for the history.
+    """Return the user name for the change history.
 
     Raises CommandError if access levels are on and the user's level is too low or the PIN is wrong.
     """
@@ -96,7 +96,9 @@ def _needs(act: ProtectedChange) -> str:
 
 
 def _access_remedy(people: UserList, needed: AccessLevel) -> str:
-    """Return a text with the users whose level is sufficient, or how to turn access levels off."""
+    """Return a text that names the users with a sufficient level, or explains how to turn access levels
+    off.
+    """
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:
         return (
@@ -107,7 +109,7 @@ def _access_remedy(people: UserList, needed: AccessLevel) -> str:
 
 
 def _require_pin(store: Store, row: UserRow) -> None:
-    """Ask for the PIN. Raises CommandError if it is wrong or this TurnDesk cannot check PINs."""
+    """Ask for the user's PIN. Raises CommandError if it is wrong or this installation cannot check PINs."""
     from app.compose.optional_features import extras
 
     remedy = _access_remedy(store.people.read_users(), AccessLevel.SERVICE)
@@ -127,12 +129,12 @@ OpenStore = Callable[[], AbstractContextManager["Store"]]
 
 
 def get_permitted_user(open_store: OpenStore, args: argparse.Namespace, *acts: ProtectedChange) -> str:
-    """Return the user of an action outside the store; empty without access levels and without a name.
+    """Return the user who may perform an action outside the store.
 
-    Raises CommandError like ``get_change_author``. Without access levels the function also works while
-    TurnDesk is running, because only a PIN check writes to the store. If the store cannot be read, its
-    access levels are unknown. Only a restore is then permitted, after a service reset at the machine's own
-    keyboard.
+    The name is empty if access levels are off and no user was named. Raises CommandError like
+    ``get_change_author``. Without access levels the function also works while TurnDesk is running, because
+    only a PIN check writes to the store. If the store cannot be read, its access levels are unknown. Only a
+    restore is then permitted, after a service reset at the machine's own keyboard.
     """
     from app.desk.data_folder import find_data_folder
     from core.store.store import Store
@@ -155,7 +157,10 @@ RESET = "RESET"
 
 
 def _confirm_reset(error: StoreError, actions: Collection[ProtectedChange]) -> str:
-    """Return the name for the log. Raises CommandError unless a restore is confirmed at the machine."""
+    """Return the user name for the log.
+
+    Raises CommandError unless the user confirms a restore at the machine.
+    """
     if ProtectedChange.RESTORE not in actions:
         raise CommandError(
             Message("the access levels that apply to this change cannot be read: {error}", error=error),
@@ -185,7 +190,7 @@ def require_terminal(question: str) -> None:
 
 
 def log_user_change(open_store: OpenStore, user_name: str, text: str) -> None:
-    """Log a change in the present store if the user is known."""
+    """Log a change in the current store if the user is known."""
     if user_name:
         with open_store() as store:
             store.events.log_event("change", text, author=user_name).result()

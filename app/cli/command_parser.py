@@ -1,7 +1,8 @@
-"""Argument parser of ``turndesk``, in which every option is exact, unique and used.
+"""Argument parser of ``turndesk`` that accepts each option only once, only in full, and only if the command
+uses it.
 
-Options of the screen may be written before a command, as in ``turndesk --machine FILE prove …``. They then
-have the same effect as after the command, or are rejected if the command does not have the option.
+Screen options may be written before a command, as in ``turndesk --machine FILE prove …``. They then have
+the same effect as after the command, or are rejected if the command does not have the option.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _REPLACEMENTS: Mapping[str, str] = {
 
 
 class _StoreOnce(argparse.Action):
-    """Action that stores an option's value and rejects a second use of the option."""
+    """Argparse action that stores the value of an option and rejects a second use of the option."""
 
     def __call__(
         self,
@@ -52,7 +53,7 @@ class _StoreOnce(argparse.Action):
 
 
 class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
-    """Subparsers that take missing help texts from ``help_texts``, by name."""
+    """Argparse action for subcommands that takes missing help texts by name from ``help_texts``."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -66,14 +67,14 @@ class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
 
 
 class HelpFormatter(argparse.HelpFormatter):
-    """Help formatter with the width of the terminal that does not load the archive modules."""
+    """Help formatter for the width of the terminal that does not import the archive modules."""
 
     def __init__(self, prog: str, *args: Any, **kwargs: Any) -> None:
         super().__init__(prog, *args, **{"width": _terminal_width() - 2, **kwargs})
 
 
 def _terminal_width() -> int:
-    """Return the width of the terminal, determined like ``shutil.get_terminal_size``."""
+    """Return the width of the terminal in columns, determined like ``shutil.get_terminal_size``."""
     words = os.environ.get("COLUMNS", "")
     columns = int(words) if words.isdecimal() else 0
     if columns <= 0 and sys.__stdout__ is not None:
@@ -83,7 +84,7 @@ def _terminal_width() -> int:
 
 
 class CommandParser(argparse.ArgumentParser):
-    """Argument parser with one-line errors that accepts each option once and only in full."""
+    """Argument parser that reports errors in one line and accepts each option only once and only in full."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **{"allow_abbrev": False, "formatter_class": HelpFormatter, **kwargs})
@@ -91,7 +92,7 @@ class CommandParser(argparse.ArgumentParser):
         self.register("action", "store", _StoreOnce)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Report an invalid command, action or choice with the most similar valid one."""
+        """Report an invalid command, action or choice, and name the most similar valid one."""
         if action.choices is not None and value not in action.choices:
             if isinstance(action, argparse._SubParsersAction) and os.path.isfile(str(value)):
                 self.error(
@@ -113,7 +114,7 @@ class CommandParser(argparse.ArgumentParser):
         super()._check_value(action, value)
 
     def parse_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse the arguments like argparse, but report an unknown option with the most similar option."""
+        """Parse the arguments like argparse, but name the most similar option if an option is unknown."""
         self._check_first_options(sys.argv[1:] if args is None else args)
         found, rest = self.parse_known_args(args, namespace)
         if rest:
@@ -124,7 +125,7 @@ class CommandParser(argparse.ArgumentParser):
     def _check_first_options(self, args: Sequence[str]) -> None:
         """Check the options before the command.
 
-        Otherwise the word after an unknown option would be reported as an invalid command.
+        Without this check, argparse would report the word after an unknown option as an invalid command.
         """
         known, words = self._option_string_actions, iter(args)
         for word in words:
@@ -141,7 +142,10 @@ class CommandParser(argparse.ArgumentParser):
                 next(words, "")
 
     def _raise_unknown(self, words: str, name: str, elsewhere_message: str) -> NoReturn:
-        """Report unknown arguments; ``elsewhere_message`` is the message if another parser has the option."""
+        """Report unknown arguments and exit.
+
+        ``elsewhere_message`` is the message if a different parser has the option.
+        """
         options = self._all_options()
         if name in options:
             self.error(elsewhere_message)
@@ -155,7 +159,7 @@ class CommandParser(argparse.ArgumentParser):
         )
 
     def print_help(self, file: Any = None) -> None:
-        """Print the help. An OSError is raised, which argparse would suppress."""
+        """Print the help, and raise an OSError that argparse would suppress."""
         out = file or sys.stdout
         out.write(self.format_help())
         out.flush()
@@ -175,7 +179,7 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def add_screen_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the screen, which may also be written before a command."""
+    """Add the screen options, which may also be written before a command."""
     parser.add_argument("--version", action="store_true", help="print the version")
     parser.add_argument(
         "--demo",
@@ -196,7 +200,7 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
 
 
 def is_for_screen(argv: Sequence[str]) -> bool:
-    """Return whether the arguments are only valid options of the screen, without a command."""
+    """Return whether the arguments consist only of valid screen options, without a command."""
     words = iter(argv)
     for word in words:
         name, _, value = word.partition("=")
@@ -209,9 +213,10 @@ def is_for_screen(argv: Sequence[str]) -> bool:
 
 
 def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
-    """Return the arguments with ``--program`` before the first word if that word is a file, not a command.
+    """Return the arguments with ``--program`` inserted before the first word if it is a file and not a
+    command.
 
-    ``commands`` are the names of all commands. A command precedes a file of the same name.
+    ``commands`` are the names of all commands. A command takes precedence over a file of the same name.
     """
     value_of = ""
     for index, word in enumerate(argv):
@@ -225,12 +230,17 @@ def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Seque
 
 
 def with_demo_first(argv: Sequence[str]) -> Sequence[str]:
-    """Return the arguments with ``--demo`` before the command, where the parser of the screen reads it."""
+    """Return the arguments with ``--demo`` moved before the command, where the screen's parser reads the
+    option.
+    """
     return ["--demo", *(word for word in argv if word != "--demo")] if "--demo" in argv else argv
 
 
 def assign_screen_options(args: argparse.Namespace) -> argparse.Namespace:
-    """Return the arguments with the options before the command assigned to it. Raises CommandError."""
+    """Assign the options written before a command to the command, and return the arguments.
+
+    Raises CommandError if the command does not have such an option.
+    """
     command = args.command
     if args.version and (
         command

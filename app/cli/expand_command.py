@@ -1,4 +1,4 @@
-"""The command ``turndesk expand FILE``: the elementary blocks that the control would execute."""
+"""The command ``turndesk expand FILE``, which prints the elementary blocks that the control would execute."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``expand``."""
     parser = subparsers.add_parser("expand")
     parser.add_argument("file", metavar="FILE")
     add_program_options(parser)
@@ -30,7 +30,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the blocks in the order of execution; return 1 if there are errors.
+    """Print the blocks in the order of execution, and return 1 if the program has errors.
 
     Diagnostics are printed on stderr.
     """
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace) -> int:
 def _block_texts(
     timeline: Timeline, source: ProgramSource, output_module: ModuleType, *, json_output: bool
 ) -> Iterator[tuple[int, str]]:
-    """Yield the text of each block, or of a series of moves, with the number of its last block."""
+    """Yield the text of each block or series of moves, with the number of its last block."""
     from core.interpreter.shared.elementary_blocks import TimedSeries
     from core.proving.program_timeline import iter_timed_series
 
@@ -72,7 +72,7 @@ def _block_texts(
 
 
 def print_diagnostics(path: Path, timeline: Timeline) -> int:
-    """Print the findings on stderr, one per line; return the exit status."""
+    """Print the findings on stderr, one per line, and return the exit status."""
     findings = timeline.diagnostics
     sys.stderr.write("".join(f"{d.format_one_line(str(path))}\n" for d in findings))
     return EXIT_ERRORS if any(d.severity == "error" for d in findings) else EXIT_OK

@@ -1,4 +1,4 @@
-"""The command ``turndesk help``: the help of TurnDesk, of a command or of one of its actions."""
+"""The command ``turndesk help``, which prints the help of TurnDesk, of a command or of one of its actions."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``help``."""
     parser = subparsers.add_parser("help")
     parser.add_argument("words", nargs="*", metavar="COMMAND", help="a command, and an action of the command")
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the help of the command. An unknown command ends with status 2."""
+    """Print the help of the command. The exit status is 2 if the command is unknown."""
     from app.cli.main import main
 
     return main([*args.words, "--help"])

@@ -1,4 +1,4 @@
-"""The command ``turndesk machine``: check a machine file and its devices, write its HAL file, accept it."""
+"""The command ``turndesk machine``, which checks and accepts a machine file, its devices and its HAL file."""
 
 from __future__ import annotations
 
@@ -54,7 +54,10 @@ def add_hal_parser(actions: SubParsers) -> None:
 
 
 def write_hal_file(args: argparse.Namespace) -> int:
-    """Write the HAL file; return 2 if the machine file is invalid. Raises CommandError."""
+    """Write the HAL file, and return 2 if the machine file is invalid.
+
+    Raises CommandError if a file already exists or cannot be written.
+    """
     from app.compose.backends.hal_file_writer import generate_hal
     from app.compose.machine.machine_setup import read_machine
     from core.table_schema import MachineFileError
@@ -101,7 +104,10 @@ def _report_file(source: str, out: str | None, hal: GeneratedHal) -> None:
 
 
 def _save_hal(output_path: Path, text: str, extra_files: Mapping[str, str]) -> None:
-    """Write all files, which must not exist yet. Raises CommandError."""
+    """Write all files, which must not exist yet.
+
+    Raises CommandError if a file exists or cannot be written.
+    """
     files = {output_path: text, **{output_path.parent / name: more for name, more in extra_files.items()}}
     for path in files:
         if path.exists():
@@ -121,7 +127,7 @@ def _save_hal(output_path: Path, text: str, extra_files: Mapping[str, str]) -> N
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command and its actions."""
+    """Add the parser of the command ``machine`` and its actions."""
     parser = subparsers.add_parser("machine")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     check = actions.add_parser(
@@ -148,7 +154,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run an action; return 0 if successful, 1 for faults, and 2 for an invalid machine file."""
+    """Run an action of ``turndesk machine``.
+
+    The exit status is 0 if successful, 1 for faults, and 2 for an invalid machine file.
+    """
     if args.action == "check":
         return check(args.file, json_output=args.json)
     if args.action == "hal":
@@ -168,7 +177,7 @@ TableRows = Sequence[tuple[str, str, str, str]]  # name, address, state, details
 
 
 def check(file: str | None, *, json_output: bool) -> int:
-    """Check the machine file, connect to the machine and print a report; return the exit status."""
+    """Check the machine file, connect to the machine, print a report, and return the exit status."""
     from app.compose.backends.backend_entry import NOT_CHECKED
     from app.compose.backends.machine_check import check_machine
     from app.compose.machine.machine_files import load_named_machine
@@ -219,7 +228,7 @@ def check(file: str | None, *, json_output: bool) -> int:
 
 
 def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
-    """Return the differences from the accepted file; () if the store cannot be read."""
+    """Return the differences from the accepted machine file, or () if the store cannot be read."""
     try:
         return list_changes(machine)
     except CommandError as error:
@@ -228,7 +237,7 @@ def _unaccepted_changes(machine: Machine) -> Sequence[KeyChange]:
 
 
 def format_check_table(rows: TableRows) -> Iterator[str]:
-    """Yield the lines of the table, at most 80 characters long; long details continue on the next line."""
+    """Yield the lines of the table, at most 80 characters long. Long details continue on the next line."""
     widths = [max((len(row[column]) for row in rows), default=0) for column in range(3)]
     start = " " * (2 + sum(width + 2 for width in widths))
     for *cells, detail in rows:
@@ -239,7 +248,7 @@ def format_check_table(rows: TableRows) -> Iterator[str]:
 
 
 def summarize_names(names: Sequence[str]) -> str:
-    """Return the names on one line; several inputs or outputs are only counted."""
+    """Return the names as one line, in which several inputs or outputs are only counted."""
     parts = [name for name in names if not name.startswith(("input ", "output "))]
     for kind in ("input", "output"):
         terminals = [name for name in names if name.startswith(f"{kind} ")]
@@ -258,7 +267,10 @@ MAX_PRINTED_CHANGES = 5  # changes that a run prints; a check prints all
 
 
 def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
-    """Return the differences from the file that was accepted last; () if none was. Raises CommandError."""
+    """Return the differences from the machine file that was accepted last, or () if none was accepted.
+
+    Raises CommandError if the store cannot be read.
+    """
     from app.cli.store_command import open_store
     from app.compose.machine.accepted_machine import list_differences
 
@@ -269,7 +281,7 @@ def list_changes(machine: Machine) -> tuple[KeyChange, ...]:
 def require_accepted(machine: Machine) -> None:
     """Print the changes of the machine file before a run.
 
-    Raises CommandError if the file of a real machine has changed since it was accepted.
+    Raises CommandError if the file of a real machine has changed since it was last accepted.
     """
     from app.compose.backends.connection import needs_real_time
 
@@ -308,7 +320,10 @@ def require_accepted(machine: Machine) -> None:
 
 
 def accept(file: str, args: argparse.Namespace) -> int:
-    """Print the changes of the machine file and accept it. Raises CommandError."""
+    """Print the changes of the machine file and accept the file.
+
+    Raises CommandError if the file is invalid or the user may not accept it.
+    """
     from app.cli.store_command import open_store
     from app.compose.machine.accepted_machine import create_record, get_settings_key, list_differences
     from app.compose.machine.machine_setup import read_machine
@@ -348,7 +363,10 @@ def _counted(changes: int) -> str:
 
 
 def simulate_devices(file: str) -> int:
-    """Simulate the devices of the machine file until Ctrl-C or SIGTERM. Raises CommandError."""
+    """Simulate the devices of the machine file until Ctrl+C or SIGTERM.
+
+    Raises CommandError if the devices cannot be simulated.
+    """
     from app.compose.backends.backend_entry import find_backend, list_playable_backends
     from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
@@ -378,7 +396,9 @@ def simulate_devices(file: str) -> int:
 
 
 def _line_reader() -> Callable[[], Iterable[str]]:
-    """Return a function that reads lines of the standard input, if there is one."""
+    """Return a function that reads lines from standard input, or returns () if standard input is not
+    available.
+    """
     from app.compose.backends.simulated_devices import LineReader
 
     try:

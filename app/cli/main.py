@@ -1,4 +1,4 @@
-"""The ``turndesk`` command: select the subcommand and load only its modules.
+"""The ``turndesk`` command, which loads only the modules of the selected subcommand.
 
 Errors are reported in one line.
 """
@@ -64,7 +64,7 @@ SCREENLESS_COMMANDS_TEXT = "prove, expand, trace and run --headless do not need 
 
 
 def list_commands() -> Sequence[str]:
-    """Return all subcommands in the order of the help, including those of optional features."""
+    """Return all subcommands in the order of the help, including the subcommands of optional features."""
     added = [(name, each.predecessor) for name, each in _feature_commands().items()]
     return insert_after(CORE_COMMANDS, str, added)
 
@@ -89,9 +89,9 @@ def _load_module(command: str) -> ModuleType:
 def build_parser(
     commands: Sequence[str] | None = None, *, without_options: bool = False
 ) -> argparse.ArgumentParser:
-    """Return the parser with these subcommands, or with all subcommands for None.
+    """Return the parser for the named subcommands, or for all subcommands if ``commands`` is None.
 
-    ``without_options`` adds subcommands without options, so that no module is imported.
+    ``without_options`` adds the subcommands without their options, so that no module is imported.
     """
     parser = CommandParser(
         prog="turndesk",
@@ -113,7 +113,7 @@ def build_parser(
 
 
 def _commands_for(argv: Sequence[str]) -> Sequence[str]:
-    """Return only the requested command, to import one module, or all commands if it is invalid."""
+    """Return the requested command, so that only its module is imported, or all commands if it is invalid."""
     first = next((word for word in argv if word != "--demo"), "")
     if first in CORE_COMMANDS:
         return (first,)
@@ -122,7 +122,7 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 
 def _arguments(argv: Sequence[str]) -> Sequence[str]:
-    """Return the arguments with the demo and a program file in the places where the parser expects them."""
+    """Return the arguments with ``--demo`` and a program file in the places where the parser expects them."""
     argv = with_demo_first(argv)
     if is_for_screen(argv) or (argv and argv[0] in CORE_COMMANDS):
         return argv
@@ -130,9 +130,10 @@ def _arguments(argv: Sequence[str]) -> Sequence[str]:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return the exit status of docs/json.md.
+    """Run the command line and return the exit status.
 
-    The status is 0 if successful, 1 if the program has errors, and 2 for a usage error.
+    As docs/json.md specifies, the status is 0 if successful, 1 if the program has errors, and 2 for a usage
+    error.
     """
     argv = _arguments(sys.argv[1:] if argv is None else argv)
     gc.set_threshold(200_000)  # imports alone would cause a hundred useless collections
@@ -174,33 +175,36 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _rejection_types() -> tuple[type[CodedError], ...]:
-    """Return the errors of commands that are reported in one line."""
+    """Return the exception types that a command reports in one line."""
     from app.desk.data_folder import DataFolderError
 
     return CommandError, DataFolderError
 
 
 def _is_library_missing(error: ImportError) -> bool:
-    """Return whether a system library is missing, such as one that Qt needs; its name contains ``.so``."""
+    """Return whether the error is due to a missing system library, such as a library that Qt needs.
+
+    The name of such a library contains ``.so``.
+    """
     return ".so" in str(error) and "cannot open shared object file" in str(error)
 
 
 def _flush_output(status: int) -> int:
-    """Return the status after flushing stdout, because a full disk could not be reported later."""
+    """Flush stdout and return ``status``. A full disk could not be reported later."""
     sys.stdout.flush()
     return status
 
 
 def _discard_output() -> None:
-    """Discard the output that Python would write when it ends."""
+    """Discard the output that Python would write at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _clear_interrupt() -> None:
-    """Clear the interpreter's mark of an interrupt, so that the exit status is used.
+    """Clear the interpreter's interrupt flag, so that the exit status is used.
 
     Ctrl+C during the creation of a dataclass (``exec`` of a text) marks the interpreter as ended by the
-    signal, although the exception is caught. Executing another text clears the mark.
+    signal, even if the exception is caught. Executing another text clears the flag.
     """
     exec("")
 
@@ -218,7 +222,7 @@ def _dispatch(args: argparse.Namespace) -> int:
 
 
 def _open_demo(args: argparse.Namespace) -> None:
-    """Use the data folder of the demo, and its program on the screen if none is specified."""
+    """Use the data folder of the demo, and load its program on the screen if no program is specified."""
     from app.compose.demo_store import find_demo_program, open_demo
 
     machine = getattr(args, "machine", None)
@@ -260,9 +264,9 @@ def _screen(args: argparse.Namespace) -> int:
 
 
 def _make_streams_tolerant() -> None:
-    """Make the output streams replace characters that they cannot encode by question marks.
+    """Make the output streams replace characters that they cannot encode with question marks.
 
-    Streams that the parent process has closed are replaced by the null device.
+    A stream that the parent process has closed is replaced with the null device.
     """
     if sys.stdout is None:
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  for as long as the process lives
@@ -274,7 +278,7 @@ def _make_streams_tolerant() -> None:
 
 
 def run_console() -> int:
-    """Run the installed ``turndesk`` command, with crash reports instead of tracebacks."""
+    """Run the installed ``turndesk`` command, and report crashes instead of printing tracebacks."""
     _make_streams_tolerant()
     sys.excepthook = report_crash
     threading.excepthook = report_thread

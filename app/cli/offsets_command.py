@@ -1,4 +1,4 @@
-"""The command ``turndesk offsets``: offsets and tool shapes of the store, in inches."""
+"""The command ``turndesk offsets`` for stored offsets and tool shapes, in inches."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command and its actions."""
+    """Add the parser of the command ``offsets`` and its actions."""
     parser = subparsers.add_parser("offsets")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     show = actions.add_parser("show", help="show all offsets that are set")
@@ -68,7 +68,7 @@ def _add_table(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action. Raises CommandError."""
+    """Run an action of ``turndesk offsets``. Raises CommandError if the action fails."""
     from app.cli.actions.offset_actions import OFFSET_ACTIONS
 
     return OFFSET_ACTIONS[args.action](args)

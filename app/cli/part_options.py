@@ -1,4 +1,4 @@
-"""Options for the part of a proof: its stock and the tool shapes."""
+"""Command-line options for the stock and the tool shapes of a proof."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
 
 
 def read_part_setting(args: argparse.Namespace, circumstances: CommandContext) -> PartSettings:
-    """Return the part data from the options. Raises CommandError if an option is invalid."""
+    """Return the part settings from the options. Raises CommandError if an option is invalid."""
     from app.compose.part_data import read_known_part
 
     stick_out = _read_stickout(args, circumstances.machine)
@@ -69,9 +69,10 @@ def read_part_setting(args: argparse.Namespace, circumstances: CommandContext) -
 
 
 def apply_stored_stock(setting: PartSettings, program: str, args: argparse.Namespace) -> PartSettings:
-    """Return the part data with the stored stock, unless --stock specifies one.
+    """Return the part settings with the stored stock, unless --stock specifies a stock.
 
-    With --keep-stock, the stock is also saved. Raises CommandError.
+    With --keep-stock, the specified stock is also saved. Raises CommandError if the stock is invalid or
+    cannot be saved.
     """
     from app.compose.part_data import read_stored_part, save_stock
 
@@ -95,7 +96,10 @@ def apply_stored_stock(setting: PartSettings, program: str, args: argparse.Names
 def apply_stored_part(
     setting: PartSettings, program: str, stored: StoredPart, args: argparse.Namespace
 ) -> PartSettings:
-    """Return the part data with the stored values that no option specifies. Raises CommandError."""
+    """Return the part settings, completed with stored values that no option specifies.
+
+    Raises CommandError if a stored value is invalid.
+    """
     from app.compose.part_data import apply_stored_clamping
 
     around = read_context(args)
@@ -136,7 +140,7 @@ def _said(
 
 
 def _read_shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
-    """Return the shapes of --tools, or those of the store and of the offsets file."""
+    """Return the tool shapes of --tools, or the stored shapes completed with those of the offsets file."""
     from app.compose.stored_offsets import read_stored_shapes
     from app.offsets.offsets_file import read_tool_shapes
 
@@ -147,7 +151,7 @@ def _read_shapes(args: argparse.Namespace) -> Mapping[int, ToolShape]:
 
 
 def _read_stickout(args: argparse.Namespace, machine: Machine) -> float | None:
-    """Return the stick-out of the job in mm, or None. Raises CommandError if it is invalid."""
+    """Return the stick-out in mm, or None if it is not specified. Raises CommandError if it is invalid."""
     if args.stick_out is None:
         return None
     stick_out = float(args.stick_out) * MM_PER_INCH

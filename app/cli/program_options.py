@@ -1,4 +1,4 @@
-"""Options shared by all commands that use a program, and their evaluation."""
+"""Options shared by all commands that use a program, and functions that evaluate them."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STDIN_NAME = "stdin"  # name of a program that is read from stdin
 
 
 def add_program_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options for machine, language, offsets, inputs and switches."""
+    """Add the options for the machine, program language, offsets, inputs and switches."""
     parser.add_argument(
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
     )
@@ -45,7 +45,7 @@ def add_program_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_ideal_option(parser: argparse.ArgumentParser) -> None:
-    """Add the option --ideal, for times from feeds and speed limits only."""
+    """Add the option --ideal, which calculates times only from feeds and speed limits."""
     parser.add_argument(
         "--ideal", action="store_true", help="calculate times without allowing for acceleration or waiting"
     )
@@ -53,14 +53,14 @@ def add_ideal_option(parser: argparse.ArgumentParser) -> None:
 
 @dataclass(frozen=True, slots=True)
 class CommandContext:
-    """Machine and program context of one command."""
+    """Machine and setup with which one command evaluates programs."""
 
     machine: Machine
     setup: Setup
 
 
 def read_context(args: argparse.Namespace) -> CommandContext:
-    """Return the machine and context that the options specify. Raises CommandError."""
+    """Return the machine and setup that the options specify. Raises CommandError if an option is invalid."""
     from app.compose.machine.machine_setup import read_machine
     from app.compose.stored_offsets import create_setup_with, make_offsets_reader
 
@@ -77,9 +77,9 @@ def read_context(args: argparse.Namespace) -> CommandContext:
 
 
 def read_input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
-    """Return the input states of the file ``path``, or {} for None; ``known`` limits the names.
+    """Return the input states from the file ``path``, or {} if ``path`` is None.
 
-    Raises CommandError.
+    If ``known`` is not empty, only these input names are valid. Raises CommandError if the file is invalid.
     """
     if path is None:
         return {}
@@ -87,7 +87,10 @@ def read_input_states(path: str | None, known: Collection[str] = ()) -> dict[str
 
 
 def read_source(path: Path, args: argparse.Namespace) -> ProgramSource:
-    """Return the program text; ``-`` reads it from stdin. Raises CommandError if it cannot be read."""
+    """Return the program text from ``path``, or from stdin for ``-``.
+
+    Raises CommandError if it cannot be read.
+    """
     from core.language.source import SourceError, decode_source, load_source
 
     dialect = Dialect(args.dialect) if args.dialect else guess_dialect(path.name)
@@ -123,16 +126,17 @@ def read_source(path: Path, args: argparse.Namespace) -> ProgramSource:
 
 
 def parse_output_path(text: str) -> str | None:
-    """Return the output file; None means stdout, also for ``-``."""
+    """Return the path of the output file, or None for ``-``, which means stdout."""
     return None if text == STDIN_ARGUMENT else text
 
 
 def read_inputs_file(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
-    """Return input states by name. With ``known``, other names are errors.
+    """Return input states by name. If ``known`` is not empty, other names are errors.
 
-    The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a terminal.
-    M95 reads the input that the control calls 7, which is terminal TB2-9. ``7`` is also used for TB2-9 if the
-    file does not contain TB2-9. Raises CommandError with every error.
+    The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a
+    terminal. M95 reads the input that the control calls 7, which is terminal TB2-9. The state of ``7`` is
+    therefore also used for TB2-9 if the file does not contain TB2-9. Raises CommandError that lists every
+    error.
     """
     from app.desk.toml_file import make_unknown_key_error, raise_mistakes, read_toml
 

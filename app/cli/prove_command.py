@@ -1,4 +1,4 @@
-"""The command ``turndesk prove FILE…``: prove programs without moving the machine."""
+"""The command ``turndesk prove FILE…``, which proves programs without moving the machine."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``prove``."""
     parser = subparsers.add_parser("prove")
     parser.add_argument(
         "files", nargs="+", metavar="FILE", help="programs, or folders with programs (including subfolders)"
@@ -76,7 +76,7 @@ def add_folder_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _parse_count(word: str) -> int:
-    """Return the number of workers. Raises ArgumentTypeError if it is invalid."""
+    """Return the number of workers from an option. Raises ArgumentTypeError if the number is invalid."""
     if not word.isdecimal() or not 1 <= int(word) <= MAX_JOBS:
         raise argparse.ArgumentTypeError(
             Message(
@@ -89,7 +89,7 @@ def _parse_count(word: str) -> int:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove each file; return 1 if a program has errors, or 2 if one cannot be read."""
+    """Prove each file. Return 1 if a program has errors, or 2 if a program cannot be read."""
     many = _uses_workers(args)
     from app.cli.proofs.proof_job import FittingJobs
 
@@ -106,7 +106,11 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _uses_workers(args: argparse.Namespace) -> bool:
-    """Return whether workers prove the programs and a table is printed: for folders and some options."""
+    """Return whether workers prove the programs and a table is printed.
+
+    This applies to folders and to the options that specify workers. Raises CommandError for invalid
+    combinations.
+    """
     given = args.jobs is not None or args.scheduler is not None
     many = given or any(Path(name).is_dir() for name in args.files)
     if "-" in args.files and (many or len(args.files) > 1):
@@ -134,7 +138,7 @@ def _uses_workers(args: argparse.Namespace) -> bool:
 
 
 def _create_job(args: argparse.Namespace) -> ProofJob:
-    """Return the common job from the options. Raises CommandError."""
+    """Return the common job from the options. Raises CommandError if an option is invalid."""
     from app.cli.part_options import read_part_setting
     from app.cli.proofs.proof_job import ProofJob
 
@@ -149,7 +153,10 @@ def _create_job(args: argparse.Namespace) -> ProofJob:
 
 
 def _other_offsets(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
-    """Return the offsets of --compare, or None. Raises CommandError with every error."""
+    """Return the offsets of --compare, or None without the option.
+
+    Raises CommandError that lists every error.
+    """
     if args.compare is None:
         return None
     from app.cli.proofs.proof_job import OtherOffsets
@@ -162,7 +169,10 @@ def _other_offsets(args: argparse.Namespace, setup: Setup) -> OtherOffsets | Non
 def _prove_and_print(
     path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None
 ) -> int:
-    """Prove one file and return its exit status. A file that cannot be read does not stop the others."""
+    """Prove one file and return its exit status.
+
+    A file that cannot be read does not stop the other proofs.
+    """
     from app.cli.part_options import apply_stored_stock
     from app.cli.proofs.proof_job import describe_machine_choice
     from app.cli.proofs.proof_work import Proof
@@ -214,7 +224,7 @@ def _silenced_text(report: ProofReport) -> str:
 
 
 def _limits_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
-    """Return the limits as text: X and Z of the program on a lathe, all axes on a mill."""
+    """Return the travel limits of the program as text, X and Z on a lathe and all axes on a mill."""
     if report.mill_results is not None:
         from app.cli.figures.klartext_output import format_machine_limits
 
@@ -224,14 +234,17 @@ def _limits_text(report: ProofReport, length: Callable[[float], float], unit: st
 
 
 def _eased_text(report: ProofReport, length: Callable[[float], float], unit: str) -> str:
-    """Return the corner tolerance as text, if the machine file specifies one."""
+    """Return the corner tolerance as text, or an empty text if the machine file does not specify one."""
     if not report.corner_tolerance_mm:
         return ""
     return f"  joints of short chords within {length(report.corner_tolerance_mm):.5f} {unit} of their words\n"
 
 
 def _paths_text(report: ProofReport) -> str:
-    """Return the number and times of the paths that depend on inputs and block delete, as text."""
+    """Return the number and cycle times of the program paths as text.
+
+    The paths depend on inputs and block delete.
+    """
     ways = report.branch_summary
     if ways.proved_count + ways.unproved_count <= 1:
         return ""
@@ -244,7 +257,7 @@ def _paths_text(report: ProofReport) -> str:
 
 
 def _proof_text(path: Path, report: ProofReport, part: PartReport | None) -> str:
-    """Return the proof as text."""
+    """Return the proof as text for the terminal."""
     from app.cli.figures.proof_output import format_stock
     from app.cli.figures.units import MM_PER_INCH, round_millimeters, to_inches, to_inches_per_minute
     from core.language.source import Dialect

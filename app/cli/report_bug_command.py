@@ -1,4 +1,4 @@
-"""The command ``turndesk report-bug``: a text for a fault report, without names, paths and addresses."""
+"""The command ``turndesk report-bug``, which writes a bug report without names, paths and addresses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OUT = "turndesk-report.txt"
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``report-bug``."""
     parser = subparsers.add_parser("report-bug")
     parser.add_argument(
         "file", nargs="?", metavar="FILE", help="program to include (default: the one that was started last)"
@@ -29,7 +29,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the report, ask, and write it to a new file. Raises CommandError."""
+    """Print the report, ask for confirmation, and write the report to a new file.
+
+    Raises CommandError if the file exists or cannot be written.
+    """
     from app.cli.bug_report.bug_report import bug_report
 
     target = Path(args.out)
@@ -53,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _is_confirmed(target: Path) -> bool:
-    """Return whether the user agrees to write the text that was shown."""
+    """Return whether the user agrees to write the displayed text to a file."""
     sys.stdout.write(f"\nRead the text above. Write it to {target}? [y/N] ")
     sys.stdout.flush()
     return sys.stdin.readline().strip().lower() in {"y", "yes"}

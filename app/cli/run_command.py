@@ -1,4 +1,4 @@
-"""The command ``turndesk run FILE --headless``: run a program without a screen.
+"""The command ``turndesk run FILE --headless``, which runs a program without a screen.
 
 The run uses the real executor and drivers.
 """
@@ -37,7 +37,7 @@ _ALARM_COLUMNS = ("number", "code", "text", "cause", "remedy", "line")
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``run``."""
     parser = subparsers.add_parser("run")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
@@ -56,7 +56,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Prove the program and run one cycle; return 1 if the program or the run has errors."""
+    """Prove the program and run one cycle. Return 1 if the program or the run has errors."""
     from core.executor.job import make_job
 
     path = Path(args.file)
@@ -187,9 +187,9 @@ def _shown_place(final: dict[str, float], *, mill: bool) -> str:
 
 
 def _final_position(report: ProofReport, outcome: RunOutcome | None) -> dict[str, float]:
-    """Return the position of the tip in the frame of the last move.
+    """Return the position of the tool tip in the frame of the last move.
 
-    X is a radius. Lengths are inches or mm, depending on the language.
+    X is a radius. Lengths are in inches for OmniTurn programs, and otherwise in mm.
     """
     from app.cli.figures.units import get_length_converter, round_degrees
     from core.language.source import Dialect

@@ -1,4 +1,6 @@
-"""The command ``turndesk scope FILE``: contents of a scope record, and its samples as CSV."""
+"""The command ``turndesk scope FILE``, which prints the contents of a scope record and writes its samples
+as CSV.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,7 @@ _STDOUT = "-"
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``scope``."""
     parser = subparsers.add_parser("scope")
     parser.add_argument(
         "file",
@@ -35,7 +37,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the contents of the record; write its samples if ``--csv`` is used."""
+    """Print the contents of the record, and write its samples if ``--csv`` is used."""
     from core.records.record import RecordError
     from core.records.record_file import open_record, save_csv, write_csv_lines
 
@@ -80,7 +82,7 @@ def _channel(record: ScopeRecord, channel: Channel) -> dict[str, object]:
 
 
 def _channel_range(record: ScopeRecord, channel: Channel) -> tuple[float, float] | tuple[None, None]:
-    """Return the smallest and largest known value; None for both if no value is known."""
+    """Return the smallest and largest known value of a channel, or None for both if no value is known."""
     import numpy as np
 
     column = record.values_by_channel[channel.name]

@@ -1,4 +1,4 @@
-"""The command ``turndesk serial ports|send|receive``: transfer of programs over RS-232."""
+"""The command ``turndesk serial ports|send|receive``, which transfers programs over RS-232."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ Both sides have to be set alike. Receive first, then send from the other side.
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command and its actions."""
+    """Add the parser of the command ``serial`` and its actions."""
     raw = argparse.RawDescriptionHelpFormatter
     parser = subparsers.add_parser("serial", description=_DESCRIPTION, formatter_class=raw)
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
@@ -67,7 +67,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_line_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of both directions; missing values come from [dnc] of the machine file."""
+    """Add the options for both directions. Missing values are read from [dnc] of the machine file."""
     parser.add_argument("--machine", metavar="FILE", help="machine file with the settings in [dnc]")
     parser.add_argument(
         "--port",
@@ -102,7 +102,7 @@ def _add_line_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_send_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that are only for sending."""
+    """Add the options that apply only to sending."""
     parser.add_argument("--eol", choices=tuple(_EOL), help="line ending to use for sent data")
     parser.add_argument(
         "--wait",
@@ -119,7 +119,7 @@ def _add_send_options(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action; return 1 if nothing was transferred or the received program has errors."""
+    """Run the action. Return 1 if nothing was transferred or if the received program has errors."""
     if args.action == "ports":
         return _ports()
     from app.compose.machine.machine_setup import read_machine
@@ -182,7 +182,7 @@ def _send(args: argparse.Namespace, settings: SerialLineModel) -> int:
 
 
 def _check_readable(path: Path) -> None:
-    """Raise CommandError before the line is opened if the file cannot be read."""
+    """Raise CommandError if the file cannot be read, before the serial line is opened."""
     try:
         with open_input_file(path) as file:
             file.read(1)
@@ -271,7 +271,9 @@ def _format_received(progress: TransferProgress) -> str:
 
 
 def _tell(last_reason: str, progress: TransferProgress) -> str:
-    """Report once what kind of data was received; return the kind that has been reported."""
+    """Report received data that is not a program, once for each reason, and return the last reported
+    reason.
+    """
     if not progress.received_text or last_reason == progress.wait_reason:
         return last_reason
     sys.stderr.write(f"turndesk: {_format_received(progress)}\n")
@@ -279,7 +281,7 @@ def _tell(last_reason: str, progress: TransferProgress) -> str:
 
 
 def run_transfer(transfer: SerialLineTransfer[T], description: str) -> T | None:
-    """Run a transfer and return its result; None if it failed, after printing the error."""
+    """Run a transfer and return its result, or print the error and return None if the transfer fails."""
     from concurrent.futures import ThreadPoolExecutor, wait
 
     from app.cli.proofs.progress_bar import ProgressBar

@@ -1,4 +1,4 @@
-"""The command ``turndesk setup``: setup files, desktop entry, autostart and shell completion."""
+"""The command ``turndesk setup`` for setup files, the desktop entry, autostart and shell completion."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SHELL_NAMES = ("bash", "zsh", "fish")
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command and its actions."""
+    """Add the parser of the command ``setup`` and its actions."""
     parser = subparsers.add_parser("setup")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     save = actions.add_parser(
@@ -48,7 +48,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action. Raises CommandError."""
+    """Run the action of ``turndesk setup``. Raises CommandError if the action fails."""
     return SETUP_ACTIONS[args.action](args)
 
 
@@ -122,7 +122,10 @@ def _completion(args: argparse.Namespace) -> int:
 
 
 def _complete_files(parser: argparse.ArgumentParser, files: object) -> None:
-    """Offer ``files`` for every argument without choices, because most of these are file names."""
+    """Make shell completion offer ``files`` for every argument without choices.
+
+    Most of these arguments are file names.
+    """
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for each in action.choices.values():

@@ -1,4 +1,6 @@
-"""The command ``turndesk store``: backup, restore, export, import, upgrade and verification of the store."""
+"""The command ``turndesk store`` for backup, restore, export, import, upgrade and verification of the
+store.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command and its actions."""
+    """Add the parser of the command ``store`` and its actions."""
     parser = subparsers.add_parser("store")
     actions = parser.add_subparsers(dest="action", metavar="ACTION", required=True)
     for name, what, text in (
@@ -61,7 +63,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action. Raises CommandError."""
+    """Run the action of ``turndesk store``. Raises CommandError if the action fails."""
     return STORE_ACTIONS[args.action](args)
 
 
@@ -70,7 +72,7 @@ def run(args: argparse.Namespace) -> int:
 
 @contextmanager
 def convert_store_errors() -> Iterator[None]:
-    """Convert StoreError inside the block into CommandError."""
+    """Convert a StoreError inside the block to a CommandError."""
     from core.store.store_errors import StoreError
 
     with convert_to_command_error(StoreError):
@@ -171,12 +173,12 @@ def _import(args: argparse.Namespace) -> int:
 
 
 def _row_values(rows: Mapping[int, OffsetRow]) -> dict[int, Mapping[str, FieldValue]]:
-    """Return the imported rows as changes of all their fields."""
+    """Return each imported row as a change of all fields of the row."""
     return {number: row._asdict() for number, row in rows.items()}
 
 
 def _upgrade(_args: argparse.Namespace) -> int:
-    """Upgrade the store by opening it for writing; a copy of the old version is saved next to it."""
+    """Upgrade the store by opening it for writing. A copy of the old version is saved in the same folder."""
     from core.store.store_file import has_store
 
     there = has_store(find_data_folder())

@@ -1,4 +1,6 @@
-"""The command ``turndesk trace FILE --out FILE.csv``: the time-stamped setpoints for the drives."""
+"""The command ``turndesk trace FILE --out FILE.csv``, which writes the time-stamped setpoints for the
+drives.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def _parse_interval(text: str) -> float:
-    """Return a setpoint interval in seconds, 0.0001 to 1."""
+    """Return a setpoint interval of 0.0001 s to 1 s. Raises ArgumentTypeError if it is invalid."""
     try:
         dt = float(text)
     except ValueError:
@@ -41,7 +43,7 @@ def _parse_interval(text: str) -> float:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``trace``."""
     parser = subparsers.add_parser("trace")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument(
@@ -58,10 +60,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the setpoints as CSV; return 1 if the program has errors.
+    """Write the setpoints as CSV, and return 1 if the program has errors.
 
-    Linear axes of OmniTurn programs are in inches (X as a radius), otherwise in mm. Rotary axes are in
-    degrees.
+    Positions of linear axes are in inches for OmniTurn programs (X as a radius), and otherwise in mm.
+    Positions of rotary axes are in degrees.
     """
     from core.proving.program_timeline import Timeline
 
@@ -100,7 +102,7 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
 
 
 class _Table:
-    """Columns of a machine's CSV file: time, axes in order, spindle angle and program line."""
+    """Columns of a machine's CSV file, which are time, axes in order, spindle angle and program line."""
 
     def __init__(self, machine: Machine, *, inch: bool) -> None:
         from app.cli.figures.units import MM_PER_INCH
@@ -112,7 +114,7 @@ class _Table:
         self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
     def format_lines(self, rows: SetpointRows) -> str:
-        """Return setpoints as text, one per line."""
+        """Return the setpoints as lines of text, one line per setpoint."""
         columns = (
             rows.times_s,
             *(rows.positions / self._scales).T,
@@ -123,7 +125,7 @@ class _Table:
 
 
 def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, source: ProgramSource) -> None:
-    """Write the file completely or not at all, also after errors of the program, a full disk or Ctrl+C."""
+    """Write the complete file or no file, even after errors of the program, a full disk or Ctrl+C."""
     out = Path(args.out)
     partial = out.with_name(out.name + ".part")
     try:
@@ -141,7 +143,10 @@ def _write_file(timeline: Timeline, table: _Table, args: argparse.Namespace, sou
 def _write(
     timeline: Timeline, table: _Table, dt: float, write: Callable[[str], object], source: ProgramSource
 ) -> None:
-    """Write the setpoints; progress is shown in lines, because the duration is not known in advance."""
+    """Write the setpoints.
+
+    Progress is shown in program lines, because the duration is not known in advance.
+    """
     from core.proving.setpoint_trace import iter_setpoints
 
     write(table.header)

@@ -1,4 +1,4 @@
-"""The command ``turndesk where``: the folders and files that TurnDesk uses."""
+"""The command ``turndesk where``, which prints the folders and files that TurnDesk uses."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(subparsers: SubParsers) -> None:
-    """Add the parser of the command."""
+    """Add the parser of the command ``where``."""
     parser = subparsers.add_parser("where")
     parser.add_argument(
         "--machine", metavar="FILE", help="machine file (default: the shipped simulated lathe)"
@@ -24,7 +24,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print one place per line. A place that does not exist yet is marked. Raises CommandError."""
+    """Print one location per line, and mark each location that does not exist yet.
+
+    Raises CommandError if the machine file is invalid.
+    """
     places = find_places(args.machine)
     if args.json:
         sys.stdout.write(json.dumps(places, indent=1) + "\n")
@@ -39,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def find_places(machine_file: str | None) -> Mapping[str, str]:
-    """Return the path of each place by its name. Raises CommandError for an invalid machine file."""
+    """Return the path of each file and folder by name. Raises CommandError if the machine file is invalid."""
     from app import __file__ as package
     from app.compose.machine.machine_files import machine_path
     from app.compose.machine.machine_setup import read_machine

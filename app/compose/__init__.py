@@ -1,1 +1,1 @@
-"""Assembly of TurnDesk from its packages and drivers. Each module is loaded only when it is needed."""
+"""Assembly of TurnDesk from its packages and drivers. Each module is loaded only when TurnDesk needs it."""

@@ -1,4 +1,7 @@
-"""The demo: a separate store with the offsets and stock of the sample programs, which the user can change."""
+"""Demo with a separate data store, which contains the offsets and stock of the sample programs.
+
+The user can change the data of the demo.
+"""
 
 from __future__ import annotations
 
@@ -32,8 +35,8 @@ _CHANGE_REASON = "offsets of the sample programs"
 def open_demo(machine_file: str | None) -> Path:
     """Switch this process to the data folder of the demo and return the folder.
 
-    The first time, the folder gets the offsets and the stock of the sample programs. Later changes remain.
-    Raises CommandError for a real machine, and if the store cannot be written.
+    On the first call, the offsets and the stock of the sample programs are written to the folder. Later
+    changes remain. Raises CommandError for a real machine, or if the store cannot be written.
     """
     machine = read_machine(machine_file)
     if not is_simulated(machine) or has_inverter(machine):
@@ -55,9 +58,9 @@ _PROGRAMS = {Dialect.OMNITURN: "bushing.nc", Dialect.SINUMERIK: "shaft.mpf", Dia
 
 
 def find_demo_program(machine_file: str | None) -> str:
-    """Return the program that the demo loads if no program is specified.
+    """Return the path of the program that the demo loads if no program is specified.
 
-    The result is the program that was loaded last, if the machine reads its language; otherwise a sample.
+    The result is the program that was loaded last if the machine uses its language, and otherwise a sample.
     """
     dialect = Dialect(read_machine(machine_file).language)
     last = _last_program()
@@ -67,7 +70,7 @@ def find_demo_program(machine_file: str | None) -> str:
 
 
 def _last_program() -> Path | None:
-    """Return the program that the demo loaded last if its file exists, or None."""
+    """Return the program that the demo loaded last, or None if its file does not exist."""
     with suppress(StoreError, OSError), Store.open(find_data_folder(), read_only=True) as store:
         stored = store.settings.read_setting(LAST_PROGRAM_SETTING)
         if isinstance(stored, str) and Path(stored).is_file():

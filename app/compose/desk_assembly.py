@@ -1,4 +1,6 @@
-"""Assembly of the operator screen's model with all its pages, for a control in this or another process."""
+"""Assembly of the operator screen's model with all its pages, for a control in this process or another
+process.
+"""
 
 from __future__ import annotations
 
@@ -47,9 +49,9 @@ def create_desk_and_executor(
     journal: Journal | None = None,
     records: Path | None = None,
 ) -> tuple[Desk, Executor]:
-    """Return the screen model and the executor, which nothing ticks yet; events go to ``journal``.
+    """Return the screen model and the executor, which is not yet ticked. Events are written to ``journal``.
 
-    Scope records go to the folder ``records``; None stores them only in memory.
+    Scope records are saved in the folder ``records``. None stores the records only in memory.
     """
     machine = read_machine(machine_file)
     if journal is not None:
@@ -92,7 +94,7 @@ def create_desk_parts(
 def create_desk(
     machine: Machine, control: DeskControl, events: EventDistributor, offsets: Callable[[], Offsets]
 ) -> Desk:
-    """Return the screen model with all its pages, and report the warnings of the start."""
+    """Return the screen model with all its pages, and report the warnings from startup."""
     journal = events.journal
     desk = _create_desk_model(machine, control, events, offsets)
     events.desk = desk
@@ -117,9 +119,9 @@ def create_desk(
 
 
 def _handle_late_store(desk: Desk, journal: Journal) -> None:
-    """Report information that was unknown at the start because the store was unavailable.
+    """Report data that was unknown at startup because the store was unavailable.
 
-    Called in another thread.
+    The function is called in a different thread.
     """
     if journal.left is not None:
         desk.post(ReportInterruptedJob(journal.left))
@@ -136,7 +138,7 @@ def _report_damage(desk: Desk, journal: Journal, log: Callable[[str], None]) -> 
 
 
 class EventDistributor:
-    """Distributor of events to the screen model and the journal, if they exist."""
+    """Distributor of events to the screen model and the journal, if these exist."""
 
     def __init__(
         self,
@@ -149,7 +151,7 @@ class EventDistributor:
         self._clock = clock
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
-        """Pass on an event, unless an earlier screen has stored it; ``receipt`` is confirmed then."""
+        """Distribute an event, unless an earlier screen has stored it. In that case, confirm ``receipt``."""
         if receipt is not None and (self.journal is None or self.journal.has_stored(receipt.origin)):
             receipt.confirm()
             if self.journal is not None:
@@ -161,7 +163,7 @@ class EventDistributor:
             self.journal.hear(event, receipt)
 
     def report_event(self, kind: str, text: str) -> None:
-        """Report an event with the present time."""
+        """Report an event with the current time."""
         self.hear(LogEvent(self._clock.now(), kind, text))
 
 
@@ -171,7 +173,7 @@ def _create_desk_model(
     events: EventDistributor,
     offsets: Callable[[], Offsets],
 ) -> Desk:
-    """Return the screen model with all its pages."""
+    """Create the screen model, register all its pages, and return the model."""
     journal = events.journal
     keep = journal or Persistence()
 
@@ -213,7 +215,7 @@ def _create_desk_model(
 
 
 def _displayed_machine(machine: Machine) -> DeskMachine:
-    """Return the machine as the screen presents it."""
+    """Return the machine data that the screen shows."""
     return DeskMachine(
         name=Message("{machine} · {machine2}", machine=machine.name, machine2=_describe_drives(machine)),
         machine=machine,
@@ -224,7 +226,7 @@ def _displayed_machine(machine: Machine) -> DeskMachine:
 
 
 def _list_stops(journal: Journal) -> Sequence[EventRow]:
-    """Return the alarms and stops of earlier days; () without a store."""
+    """Return the alarms and stops of earlier days, or () if the store cannot be read."""
     try:
         return journal.events("", LOGGED_KINDS, MAX_ENTRIES)
     except StoreError:
@@ -232,7 +234,7 @@ def _list_stops(journal: Journal) -> Sequence[EventRow]:
 
 
 def _discard(_value: InterruptedJob | None) -> None:
-    """Discard the note of an interrupted job, for a screen without a store."""
+    """Discard the interrupted job of a screen that has no store."""
 
 
 def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
@@ -241,7 +243,7 @@ def _connected(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _describe_drives(machine: Machine) -> str:
-    """Return which parts of the machine are real and which are simulated, for the operator."""
+    """Return a text for the operator that says which parts of the machine are simulated."""
     if not is_simulated(machine):
         return machine.backend.upper()
     return "SIMULATED AXES · REAL SPINDLE" if has_inverter(machine) else "SIMULATED"

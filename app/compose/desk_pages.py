@@ -1,7 +1,7 @@
 """Table of the functions that register the pages of the operator screen.
 
-Each function takes a ``PageSetup`` and registers with ``desk.pages`` one model, or a model that is created on
-its first use.
+Each function takes a ``PageSetup``. It registers with ``desk.page_registry`` either one model or a model
+that is created on first use.
 """
 
 from __future__ import annotations
@@ -60,12 +60,12 @@ _MODEST_FRACTION = 0.2  # fraction of the manual rapid, for moves inside the par
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageSetup:
-    """Objects from which the pages are made.
+    """Objects from which the pages are created.
 
     ``program_folder`` is the folder of the operator's programs. ``loading_steps`` reads and proves programs
-    with the present offsets and saves nothing; ``proving`` does the same without pictures.
+    with the current offsets and saves nothing. ``proof_steps`` does the same without pictures.
     ``draw_thumbnail`` draws the part of a program. ``live_samples`` are samples for the scope, or None for
-    those of the control. Nothing is saved if ``journal`` is None.
+    the samples of the control. Nothing is saved if ``journal`` is None.
     """
 
     desk: Desk
@@ -85,7 +85,7 @@ RegisterPage = Callable[[PageSetup], None]
 
 
 def register_pages(setup: PageSetup, pages: Iterable[RegisterPage]) -> None:
-    """Register these pages in order."""
+    """Register these pages in the given order."""
     for register in pages:
         register(setup)
 
@@ -105,7 +105,7 @@ def _register_editor(setup: PageSetup) -> None:
 
 
 def _create_editor(setup: PageSetup) -> EditorModel:
-    """Return the editor, which proves the edited text without saving a version for each key press."""
+    """Return the editor, which proves the edited text without saving a version after each key press."""
     from app.editor.editor_model import EditorModel
     from app.editor.version_history import NullArchive
 
@@ -130,7 +130,7 @@ def _create_editor(setup: PageSetup) -> EditorModel:
 
 
 def register_programs(setup: PageSetup) -> None:
-    """Register the list of programs."""
+    """Register the list of programs on the screen model."""
     setup.desk.page_registry.attach_lazily(
         "app.programs.program_list_model.ProgramListModel", partial(_programs, setup)
     )
@@ -145,7 +145,7 @@ def _programs(setup: PageSetup) -> ProgramListModel:
 
 
 def _register_part(setup: PageSetup) -> None:
-    """Register the page with findings and stock."""
+    """Register the page that shows the findings and the stock."""
     from core.proving.checks.part_checks import PART_CHECKS
 
     machine = setup.machine
@@ -161,7 +161,7 @@ def _register_part(setup: PageSetup) -> None:
 
 
 def _register_lines(setup: PageSetup) -> None:
-    """Register MDI, and the functions of the Jog page that use MDI lines."""
+    """Register MDI and the functions of the Jog page that execute MDI lines."""
     desk, machine = setup.desk, setup.machine
     prove_line = create_line_prover(machine, setup.read_offsets)
     if desk.start_watch is not None:
@@ -185,7 +185,7 @@ def _register_mill_touch(setup: PageSetup) -> None:
 
 
 def _register_searchto(setup: PageSetup) -> None:
-    """Register SEARCHTO, which moves at the manual rapid, and slower inside the part."""
+    """Register SEARCHTO, which moves at the manual rapid, and at a lower speed inside the part."""
     desk, rapid = setup.desk, setup.machine.limits.manual_rapid
     choices = OperatorChoices(outside_speed_mm_s=rapid, inside_speed_mm_s=_MODEST_FRACTION * rapid)
 
@@ -220,7 +220,7 @@ def register_sounds(setup: PageSetup) -> None:
 
 
 def register_special_functions(setup: PageSetup) -> None:
-    """Register the special functions (F10)."""
+    """Register the list of special functions (F10)."""
     make = partial(_special_functions, setup)
     setup.desk.page_registry.attach_lazily("app.special.special_functions.SpecialFunctionList", make)
 

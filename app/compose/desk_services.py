@@ -1,4 +1,6 @@
-"""Services of the operator screen: supervised threads, status file, daily backup and shop network."""
+"""Services of the operator screen, which are supervised threads, status file, daily backup and shop
+network.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +40,10 @@ SUPERVISED_THREADS = {
 
 
 def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
-    """Report that a supervised thread has ended. Called in the watchdog's thread; the machine continues."""
+    """Report that a supervised thread has ended. The machine continues.
+
+    The function is called in the watchdog's thread.
+    """
     text = tr(
         Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED_THREADS[name]))
     )
@@ -47,10 +52,10 @@ def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
 
 
 def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
-    """Start the status file, the daily backup, and the services of optional features; return close functions.
+    """Start the status file, the daily backup and the services of optional features.
 
-    Errors are reported on the prompt line and in the event log. No status file is written if another TurnDesk
-    uses the data folder.
+    Returns the functions that close the services. Errors are reported on the prompt line and in the event
+    log. No status file is written if another TurnDesk process uses the data folder.
     """
 
     def tell(why: str) -> None:
@@ -70,7 +75,7 @@ def start_services(desk: Desk, journal: Journal) -> list[Callable[[], None]]:
 def _start_status_file(
     machine: Machine, snapshot: Callable[[], Snapshot], folder: Path
 ) -> Callable[[], None]:
-    """Start updating the status file in this folder; return the function that ends it."""
+    """Start updating the status file in this folder, and return the function that ends the updates."""
     reader = MachineReader(machine, time.monotonic)
     keeper = StatusFileUpdater(
         StatusFileWriter(folder / STATUS_FILE_NAME, get_utc_now_text),
@@ -82,7 +87,10 @@ def _start_status_file(
 
 
 def _start_daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Callable[[], None]:
-    """Start checking regularly whether a backup is due; errors are shown and logged."""
+    """Start regular checks whether a backup is due, and return the function that ends the checks.
+
+    Errors are shown and logged.
+    """
 
     def tell(why: str) -> None:
         text = tr(Message("NO DAILY BACKUP: {why}", why=why))

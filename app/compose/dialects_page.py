@@ -1,6 +1,6 @@
-"""Generated part of ``docs/dialects.md``: languages, their codes and the shipped machines.
+"""Generator of the part of ``docs/dialects.md`` that lists languages, their codes and the shipped machines.
 
-``python -m app.compose.dialects_page docs/dialects.md`` writes it between its two marks.
+``python -m app.compose.dialects_page docs/dialects.md`` writes this part between its begin and end marks.
 """
 
 from __future__ import annotations
@@ -27,19 +27,19 @@ _MACHINES = Path(__file__).parents[2] / "resources" / "machines"
 
 
 def load_shipped_machines() -> dict[str, Machine]:
-    """Return every shipped machine by its name for ``--machine``."""
+    """Return every shipped machine by the name that ``--machine`` accepts."""
     names = sorted(path.stem for path in _MACHINES.glob("*.toml"))
     return {name: load_shipped_machine(name) for name in names}
 
 
 def generate_text() -> str:
-    """Return the generated text including both marks."""
+    """Return the generated text including its begin and end marks."""
     found = load_shipped_machines()
     return "\n".join([BEGIN_MARK, *_languages(found), "", *_shipped(found), END_MARK])
 
 
 def update_page(text: str) -> str:
-    """Return the page with its generated part updated. Raises ValueError if the marks are missing."""
+    """Return the page with its generated part updated. Raises ValueError if a mark is missing."""
     before, mark, rest = text.partition(BEGIN_MARK)
     _, last, after = rest.partition(END_MARK)
     if not (mark and last):

@@ -1,6 +1,6 @@
 """Generator of the machine file reference.
 
-Run ``python -m app.compose.machine_file_page docs/integrator/machine-file.md``.
+To write the page, run ``python -m app.compose.machine_file_page docs/integrator/machine-file.md``.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ _AXES = "Positions are measured from home; X is a radius."
 
 
 def generate_page() -> str:
-    """Return the complete page."""
+    """Return the complete reference page as Markdown."""
     tables = tuple(iterate_references())
     head = _HEAD + make_contents(map(_table_title, tables)).rstrip("\n")
     return "\n".join([head, *(line for each in tables for line in _table(each))]) + "\n"
@@ -194,7 +194,7 @@ def _kinematics() -> Iterator[TableReference]:
 
 
 def _table_title(table: TableReference) -> str:
-    """Return the heading with each name of a table in brackets and formatted as code."""
+    """Return the heading of a table, with each table name in brackets and formatted as code."""
     return re.sub(r"[\w\[\]]+(?:\.[\w…\]]+)+|^\w+", r"`[\g<0>]`", table.heading)
 
 
@@ -245,7 +245,7 @@ def _bounds(field: KeyField) -> str:
 
 
 def _format_in_units(unit: FileUnit, *values: float) -> str:
-    """Return values of the model as in the file, lengths in both units."""
+    """Return values of the model as text in file units, with lengths in both mm and inches."""
     if unit not in LENGTH_UNITS:
         return " to ".join(number(convert_to_file(value, unit, is_inch=False)) for value in values)
     if values == (0.0,):
@@ -269,7 +269,10 @@ def _default(field: KeyField) -> str:
 
 
 def _is_possible(field: KeyField) -> bool:
-    """Return whether the file could contain the default; a default out of range means "none"."""
+    """Return whether a file could contain the default value.
+
+    A default out of range means that there is no default.
+    """
     value = field.default
     if isinstance(value, bool | str) or value is None:
         return True
@@ -278,24 +281,27 @@ def _is_possible(field: KeyField) -> bool:
 
 
 def _format_literal(value: str | bool) -> str:
-    """Return a value in TOML syntax."""
+    """Return a value as text in TOML syntax."""
     return f"`{json.dumps(value)}`" if isinstance(value, str) else json.dumps(value)
 
 
 def number(value: float) -> str:
-    """Return a number without an exponent, with six significant digits unless it is a whole number."""
+    """Return a number as text without an exponent.
+
+    The text has six significant digits unless the number is an integer.
+    """
     text = f"{value:.0f}" if value == int(value) else format(Decimal(f"{value:.6g}"), "f")
     return text.replace("-", "−")
 
 
 def _format_inches(value: float) -> str:
-    """Return a length in inches with four significant digits and no zero before the point."""
+    """Return a length in inches with four significant digits and without a zero before the decimal point."""
     text = format(Decimal(f"{value:.4g}"), "f").replace("-", "−")
     return re.sub(r"^(−?)0\.", r"\1.", text)
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the file named in the arguments."""
+    """Write the reference page to the file named in the arguments."""
     path = Path(argv[0])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(generate_page(), encoding="utf-8")

@@ -1,9 +1,9 @@
-"""Optional features: the table in which they are registered, and the interface of a feature.
+"""Table that registers the optional features, and interface of a feature.
 
-The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and ``tests/extras/NAME``.
-``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``OptionalFeature`` that overrides the parts that
-the feature adds. No module outside a feature imports it. If its folders are deleted, TurnDesk works without
-the feature.
+The code of a feature is in ``core/extras/NAME`` (without Qt), ``app/extras/NAME`` and
+``tests/extras/NAME``. ``app.extras.NAME.extra`` contains ``EXTRA``, a subclass of ``OptionalFeature`` that
+overrides the members that the feature adds. Modules outside a feature do not import the feature. If its
+folders are deleted, TurnDesk works without the feature.
 """
 
 from __future__ import annotations
@@ -41,26 +41,30 @@ T = TypeVar("T")
 
 
 class Subcommand(NamedTuple):
-    """A subcommand of ``turndesk``: the subcommand that it follows in the help, and its help line."""
+    """Position and text of a subcommand in the help of ``turndesk``.
+
+    ``predecessor`` is the subcommand that precedes it, and ``help_line`` is its help text.
+    """
 
     predecessor: str
     help_line: str
 
 
 class OptionalFeature:
-    """Base class of an optional feature. A feature overrides only the parts that it adds.
+    """Base class of an optional feature, which overrides only the members that it adds.
 
-    ``subcommands`` are its subcommands. The module of a subcommand is ``app.extras.NAME.SUBCOMMAND_command``.
-    ``supervised_threads`` maps each supervised thread to the function that is lost when the thread ends.
-    ``own_special_functions`` names the special functions that a page of the feature shows, so that F10 does
-    not show them. ``required_features`` names the features that this feature requires. ``proof_workers`` is
-    the dotted name of a class of workers on other computers, which prove programs. ``drawing_suffixes`` are
-    the suffixes of drawings from which this feature makes programs; the list of programs shows them.
-    ``editor_panel_class`` is the dotted name of a subclass of ``EditorPanel`` that replaces the editor's
-    text area and writes lines. ``machine_actions`` lists the actions of ``turndesk machine``, each with a
-    module ``app.extras.NAME.ACTION_command``. ``list_machine_tables`` maps each module whose ``DRIVER``
-    declares tables of the machine file to the paths of these tables. ``preceding_table`` is the table of
-    the machine file after which the tables of this feature are listed; empty lists them last.
+    ``subcommands`` are its subcommands. The module of a subcommand is
+    ``app.extras.NAME.SUBCOMMAND_command``. ``supervised_threads`` maps each supervised thread to the
+    function that is lost when the thread ends. ``own_special_functions`` names the special functions that a
+    page of the feature shows, so that F10 does not show them. ``required_features`` names the features that
+    this feature requires. ``worker_class_name`` is the dotted name of a class of workers on other computers
+    that prove programs. ``drawing_suffixes`` are the suffixes of drawings from which this feature makes
+    programs, and which the list of programs shows. ``editor_panel_class`` is the dotted name of a subclass
+    of ``EditorPanel`` that replaces the editor's text area and writes lines. ``machine_actions`` lists the
+    actions of ``turndesk machine``, each with a module ``app.extras.NAME.ACTION_command``.
+    ``list_machine_tables`` maps each module whose ``DRIVER`` declares tables of the machine file to the
+    paths of these tables. ``preceding_table`` is the table of the machine file that precedes the tables of
+    this feature in lists. If it is empty, the tables are listed last.
     """
 
     required_features: Sequence[str] = ()
@@ -76,23 +80,28 @@ class OptionalFeature:
 
     @property
     def pages(self) -> Sequence[PageDescription]:
-        """The pages of the main window that this feature adds."""
+        """Return the descriptions of the pages that this feature adds to the main window."""
         return ()
 
     def remove_own_inputs(self, machine: Machine) -> Machine:
-        """Return the machine without the inputs that this feature provides, as its backend is wired."""
+        """Return a copy of the machine without the inputs that this feature provides.
+
+        The backend of the machine is not wired to these inputs.
+        """
         return machine
 
     def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
-        """Add what this feature provides to the ports of a connected machine."""
+        """Return the connected machine with the ports that this feature provides."""
         return connected
 
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
-        """Attach the models of this feature to the operator screen; without a ``journal`` nothing is saved.
+        """Attach the models of this feature to the operator screen.
 
-        ``loading_steps`` reads and proves programs with the present offsets, and saves nothing.
+        Without a ``journal``, nothing is saved.
+
+        ``loading_steps`` reads and proves programs with the current offsets and saves nothing.
         """
 
     def list_special_functions(
@@ -100,61 +109,61 @@ class OptionalFeature:
     ) -> Sequence[tuple[SpecialFunction, str]]:
         """Return the special functions (F10) of this feature.
 
-        Each function has the name of its predecessor in the list.
+        Each function is paired with the name of the function that precedes it in the list.
         """
         return ()
 
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
-        """Extend ``model``, a model of a required feature, when that model is created."""
+        """Extend ``model``, which belongs to a required feature, when it is created."""
 
     def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
-        """Start the threads of this feature; return the function that ends them, or None.
+        """Start the threads of this feature, and return the function that ends them, or None without
+        threads.
 
-        The callback reports on the prompt line and in the event log why the feature cannot run.
+        ``report`` shows the reason why the feature cannot run on the prompt line and in the event log.
         """
 
     def start_headless(
         self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
     ) -> CloseFunction | None:
-        """Start the services of this feature for a run without a screen; return the function that ends them.
+        """Start the services of this feature for a run without a screen.
 
-        ``real_time`` means that the run takes as long as on the machine. The callback prints the reason if
-        the feature cannot run.
+        Returns the function that ends the services, or None. ``real_time`` means that the run takes as long
+        as on the machine. ``report`` prints the reason if the feature cannot run.
         """
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
-        """Return the declared outputs of --json of this feature.
+        """Return the outputs that this feature adds to --json.
 
-        The keys are the outputs that they follow in the reference.
+        Each key is the name of the output that precedes them in the reference.
         """
         return {}
 
     def words(self) -> Sequence[str]:
-        """Return screen texts that look like names in the source, for the list of all texts."""
+        """Return screen texts that look like identifiers in the source, for the list of all texts."""
         return ()
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
-        """Return the declared data that this feature sends to the shop network.
+        """Return declarations of the data that this feature sends to the shop network.
 
-        ``command`` is the title of the section in the reference.
+        ``command`` of a declaration is the title of its section in the reference.
         """
         return ()
 
     def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
-        """Ask for the PIN of this user on the command line.
+        """Ask for the PIN of this user on the command line, and return whether this feature supports PINs.
 
-        The result is False if this feature does not support PINs. ``remedy`` is the instruction for a user
-        without a PIN. Raises CommandError if the PIN is wrong.
+        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
         """
         return False
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
-        """Add the rows of this feature to ``turndesk machine add_check_rows``."""
+        """Add the rows of this feature to the results of ``turndesk machine check``."""
 
 
 @cache
 def extras() -> Mapping[str, OptionalFeature]:
-    """Return the optional features that are installed, by name."""
+    """Return the installed optional features by name."""
     found: dict[str, OptionalFeature] = {}
     for name in FEATURE_NAMES:
         if _is_installed(name):
@@ -165,17 +174,20 @@ def extras() -> Mapping[str, OptionalFeature]:
 
 
 def _is_installed(name: str) -> bool:
-    """Return whether the feature has its module; a folder with only cache files has none."""
+    """Return whether the module of the feature exists.
+
+    A folder that contains only cache files does not count as an installed feature.
+    """
     return find_spec(f"app.extras.{name}") is not None and find_spec(f"app.extras.{name}.extra") is not None
 
 
 def map_command_modules() -> Mapping[str, str]:
-    """Return the module of each subcommand that an optional feature adds."""
+    """Return the module name of each subcommand that an optional feature adds."""
     return _modules(lambda extra: extra.subcommands)
 
 
 def map_action_modules() -> Mapping[str, str]:
-    """Return the module of each action of ``turndesk machine`` that an optional feature adds."""
+    """Return the module name of each action of ``turndesk machine`` that an optional feature adds."""
     return _modules(lambda extra: extra.machine_actions)
 
 
@@ -188,7 +200,9 @@ def _modules(words_of: Callable[[OptionalFeature], Iterable[str]]) -> Mapping[st
 
 
 def find_worker_class() -> str:
-    """Return the dotted name of the class of workers on other computers; empty without such a feature."""
+    """Return the dotted name of the class of workers on other computers, or an empty text without such a
+    class.
+    """
     return next((extra.worker_class_name for extra in extras().values() if extra.worker_class_name), "")
 
 
@@ -200,10 +214,10 @@ def list_drawing_suffixes() -> tuple[str, ...]:
 def insert_after(
     items: Iterable[T], get_name: Callable[[T], str], additions: Iterable[tuple[T, str]]
 ) -> list[T]:
-    """Return ``items`` with each item of ``additions`` inserted after the item that its pair names.
+    """Return ``items`` with each addition inserted after the item that the addition names.
 
-    That item may also be an addition. Additions that follow the same item retain their order. If no item has
-    that name, the addition is appended.
+    The named item may also be an addition. Additions that follow the same item retain their order. An
+    addition is appended if the item that it names does not exist.
     """
     found, waiting = list(items), list(additions)
     newest: dict[str, str] = {}

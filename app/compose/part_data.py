@@ -1,6 +1,6 @@
-"""Data of a part that is known before its proof: tools, clamping of the stock, and neighboring tools.
+"""Data of a part that is known before its proof, such as tools and clamping of the stock.
 
-The store has the stock for each program by name; the stock is never written into the program text.
+The store has the stock of each program, by program name. The stock is never written to the program text.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ def read_known_part(
     shapes: Mapping[int, ToolShape],
     stick_out: float | None = None,
 ) -> PartSettings:
-    """Return the part data without a stock.
+    """Return the part settings without a stock.
 
-    ``stick_out`` in mm is that of the job, or None for that of the machine file.
+    ``stick_out`` is the stick-out of the job in mm, or None for the stick-out in the machine file.
     """
     return PartSettings(
         shapes=shapes,
@@ -52,9 +52,9 @@ def read_known_part(
 def apply_stored_clamping(
     setting: PartSettings, machine: Machine, stored: StoredPart, *, is_explicit: bool = False
 ) -> PartSettings:
-    """Return the part data with the stored stick-out and silenced checks.
+    """Return the part settings with the stored stick-out and the stored silenced checks.
 
-    ``is_explicit`` retains the present stick-out, because it was specified explicitly.
+    ``is_explicit`` retains the current stick-out, because it was specified explicitly.
     """
     if stored.stick_out is not None and not is_explicit and machine.clamping.diameter:
         setting = replace(setting, clamping=_stock_clamping(machine, stored.stick_out))
@@ -62,15 +62,15 @@ def apply_stored_clamping(
 
 
 def _axis_travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return the travel of X and Z; None if one of them is unlimited."""
+    """Return the travel of X and Z in mm, or None if an axis has unlimited travel."""
     x, z = machine.axes[0].travel, machine.axes[1].travel
     return (x, z) if x is not None and z is not None else None
 
 
 def _stock_clamping(machine: Machine, stick_out: float | None) -> Clamping | None:
-    """Return the clamping by chuck or collet, and the tailstock, or None.
+    """Return the clamping by chuck or collet and by the tailstock, or None if it is unknown.
 
-    Without a stick-out, only the speed limit of the chuck and the tailstock apply.
+    Without a stick-out, only the chuck's speed limit and the tailstock apply.
     """
     held = machine.clamping
     out = held.stick_out if stick_out is None else stick_out
@@ -89,12 +89,15 @@ def _stock_clamping(machine: Machine, stick_out: float | None) -> Clamping | Non
 
 
 def read_stored_part(program: str) -> StoredPart:
-    """Return the stored data of a program's part; empty without a store. Raises CommandError."""
+    """Return the stored data of a program's part, which is empty without a store.
+
+    Raises CommandError if the store cannot be read.
+    """
     return read_stored_parts([program]).get(program, EMPTY_STORED_PART)
 
 
 def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
-    """Return the stored part data of all programs that have some, by name.
+    """Return the stored part data by program name, for the programs that have such data.
 
     Raises CommandError if the store cannot be read.
     """
@@ -109,9 +112,10 @@ def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
 
 
 def save_stock(program: str, text: str, stick_out: float | None) -> None:
-    """Save the stock text of a program, and the stick-out in mm; None retains the stored stick-out.
+    """Save the stock text and the stick-out of a program.
 
-    Raises CommandError if the store cannot be written.
+    ``stick_out`` is in mm. None retains the stored stick-out. Raises CommandError if the store cannot be
+    written.
     """
     from core.store.store import Store, StoreError
 

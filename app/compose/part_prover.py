@@ -1,6 +1,7 @@
-"""Proof of the part of the loaded program: known data, and the weight of each finding.
+"""Proof of the loaded program's part, with the known part data and the severity of each finding.
 
-It runs after the proof of the program. Decision 0011 states which functions wait for it.
+The part is proved after the program. Decision 0011 specifies which functions wait for the proof of the
+part.
 """
 
 from __future__ import annotations
@@ -40,14 +41,15 @@ NOT_MADE, NO_STOCK = "part-not-made", "stock-unusable"
 
 
 def get_empty_part(_program: str) -> StoredPart:
-    """Return the empty data of a part, for callers without a store."""
+    """Return empty part data, for callers without a store."""
     return EMPTY_STORED_PART
 
 
 @dataclass(frozen=True, slots=True)
 class PartProver:
-    """Proof of parts on this machine. ``read_source`` reads the program whose finished part is used as
-    stock.
+    """Prover of parts on this machine.
+
+    ``read_source`` reads a program whose finished part is the stock of another program.
     """
 
     machine: Machine
@@ -58,7 +60,9 @@ class PartProver:
     def read_setting(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
-        """Return the specified stock, tools and clamping, and a finding if the stock cannot be used."""
+        """Return the specified stock, tools and clamping, and a finding if the specified stock cannot be
+        used.
+        """
         from app.compose.part_data import apply_stored_clamping, read_known_part
         from app.compose.specified_stock import StockContext, read_stock
 
@@ -81,9 +85,9 @@ class PartProver:
     def compare_parts(
         self, old_job: Job, new_job: Job, report_progress: ProgressCallback
     ) -> ComparedPart | None:
-        """Return the part of a job with other offsets, compared with its present part.
+        """Return the part that a job makes with new offsets, compared with its current part.
 
-        The result is None if the job has no part.
+        The result is None if the job does not make a part.
         """
         from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM, ProvedPart, prove_other_offsets
         from core.proving.part_proof import prove_with_part
@@ -101,7 +105,7 @@ class PartProver:
     def prove_part(
         self, moves: ProgramSteps, stock_finding: Diagnostic | None, report_progress: ProgressCallback
     ) -> PartProof:
-        """Return the proof of the part. An exception of the proof becomes a warning."""
+        """Return the proof of the part. An exception while proving becomes a warning."""
         from core.proving.part_proof import PartProof
 
         try:
@@ -134,21 +138,29 @@ def _unusable(why: str) -> Diagnostic:
 
 
 def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
-    """Return the findings with those that are announced before a start."""
+    """Return the proof with all findings, including the texts of findings that are announced before a
+    start.
+    """
     findings = tuple(findings)
     warned = [each for each in findings if _is_announced(each)]
     return PartProof(findings, tuple(_shorten(each) for each in warned), report)
 
 
 def _is_announced(finding: Diagnostic) -> bool:
-    """Return whether a start announces the finding: a serious warning, or a part that was not proved."""
+    """Return whether the finding is announced before a start.
+
+    This applies to a serious warning, and to a part that was not proved.
+    """
     if finding.code in {NOT_MADE, NO_STOCK}:
         return True
     return is_serious(finding) and finding.severity is not Severity.ERROR
 
 
 def _shorten(finding: Diagnostic) -> str:
-    """Return the short text of an announced finding; the list of findings has the full text and remedy."""
+    """Return the short text of an announced finding.
+
+    The list of findings has the full text and the remedy.
+    """
     if not finding.line:
         return "PART NOT PROVED WITH THE SPECIFIED STOCK AND TOOLS"
     return Message("LINE {line}: {check}", line=finding.line, check=finding.check_name.upper())

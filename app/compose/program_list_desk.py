@@ -1,4 +1,4 @@
-"""Assembly of the list of programs with its preview, import and export."""
+"""Assembly of the program list with its preview, import and export."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def create_program_list(
     folder: Path,
     thumbnail: DrawThumbnail | None,
 ) -> ProgramListModel:
-    """Return the list of programs in the folder ``folder``.
+    """Return the list of programs in ``folder``.
 
-    Imported programs are proved with the offsets at that time.
+    Imported programs are proved with the offsets at the time of the import.
     """
 
     def check(path: Path) -> str:

@@ -1,4 +1,6 @@
-"""Proving on this machine: programs, MDI lines, restarts, and the effect of other offsets on a path."""
+"""Proving of programs, MDI lines and restarts on this machine, and of the effect of other offsets on a
+path.
+"""
 
 from __future__ import annotations
 
@@ -52,9 +54,9 @@ def create_loading_steps(
 ) -> LoadingSteps:
     """Return the functions that load a program.
 
-    Offsets, tool shapes, and the unit and rapid rate that the previous job has ``last_modal_state`` are read
-    at the time of loading, and so are the stored data of a program's part. ``pictures`` means that programs
-    are drawn and their parts proved.
+    Offsets, tool shapes and the stored part data of a program are read at the time of loading. The unit and
+    the rapid rate of the previous job are then read from ``last_modal_state``. ``draw_pictures`` means that
+    programs are drawn and their parts proved.
     """
 
     def new_job(source: ProgramSource, block_delete: bool) -> Job:
@@ -77,7 +79,7 @@ def create_loading_steps(
 
 
 class _ProofAndPicture:
-    """Proof and picture of a program in one pass; the picture is stored until it is requested."""
+    """Proof and picture of a program from a single pass. The picture is saved until it is requested."""
 
     def __init__(self, machine: Machine, parts: PartProver, *, pictures: bool) -> None:
         self._machine, self._parts = machine, parts
@@ -119,7 +121,7 @@ class _ProofAndPicture:
         return ProvedJob(create_proof(job, report), report.diagnostics, waits)
 
     def prove_part(self, picture: ProgramPicture, report_progress: ProgressCallback) -> PartProof | None:
-        """Return the proof of the part of the job that was drawn last, or None without a part."""
+        """Return the proof of the part in the picture, or None if the job does not make a part."""
         if picture.part is None:
             return PartProof(error_text=picture.no_part) if picture.no_part else None
         return self._parts.prove_part(picture.part, self._trouble, report_progress)
@@ -145,7 +147,7 @@ def _read(path: Path) -> ProgramSource:
 
 
 def _read_complete(source: ProgramSource, *folders: Path) -> ProgramSource:
-    """Return the program with the subprograms that it calls, from its folder or the program folders."""
+    """Return the program with its subprograms, which are read from its folder or the program folders."""
     from core.language.called_files import load_called_files
 
     return load_called_files(source, [*folders, find_data_folder() / "programs", get_samples_folder()])
@@ -155,7 +157,7 @@ def _read_complete(source: ProgramSource, *folders: Path) -> ProgramSource:
 
 
 def create_proof(job: Job, report: ProofReport) -> Proof:
-    """Return the proof of this job; the report must be of this job's text and context."""
+    """Return the executor's proof of this job. The report must belong to the text and setup of this job."""
     return Proof(
         digest=job.digest,
         errors=tuple(d.format_one_line(job.source.name) for d in report.errors),
@@ -173,7 +175,7 @@ def create_proof(job: Job, report: ProofReport) -> Proof:
 def create_part_comparer(
     machine: Machine, read_shapes: ReadShapes = dict, read_stored_part: ReadStoredPart = get_empty_part
 ) -> ComparePart:
-    """Return a function that compares the parts of a job with two sets of offsets."""
+    """Return a function that compares the parts that a job makes with two sets of offsets."""
     return PartProver(machine, read_shapes, read_stored_part, _read).compare_parts
 
 
@@ -183,7 +185,7 @@ def create_thumbnail_drawer(
     read_stored_part: ReadStoredPart,
     size: tuple[int, int] = (WIDE, HIGH),
 ) -> DrawThumbnail:
-    """Return a function that draws the finished part of a job and stores it in the data folder.
+    """Return a function that draws the finished part of a job and saves the drawing in the data folder.
 
     ``size`` is in pixels.
     """
@@ -192,7 +194,7 @@ def create_thumbnail_drawer(
 
 
 def create_drawer(machine: Machine) -> DrawPaths:
-    """Return a function that draws a job, each tool with the offset that is given for it."""
+    """Return a function that draws the path of a job with a specified offset for each tool."""
 
     def draw(job: Job, frame: Mapping[int, ToolOffset], watch: ProgressCallback) -> ProgramPicture:
         from app.path.path_picture import build_picture
@@ -205,7 +207,7 @@ def create_drawer(machine: Machine) -> DrawPaths:
 
 
 def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffset]) -> Iterator[TimedBlocks]:
-    """Yield the blocks with part zero where the offsets of ``frame`` put it."""
+    """Yield the blocks with part zero shifted to the position that the offsets of ``frame`` specify."""
     for block, start, end in blocks:
         modal = block.modal
         offset = frame.get(modal.tool, ToolOffset())
@@ -219,14 +221,16 @@ def _shift_part_zero(blocks: Iterator[TimedBlocks], frame: Mapping[int, ToolOffs
 
 
 def read_checkpoint(snapshot: Snapshot) -> Checkpoint:
-    """Return the modal state that the next line inherits from the machine now."""
+    """Return the modal state of the machine that the next line inherits."""
     return Checkpoint(
         snapshot.modal, tool_line=-1 if snapshot.is_tool_move_pending else 0, kept=snapshot.kept
     )
 
 
 def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
-    """Return a function that proves an MDI line like a program, from the present position of the axes."""
+    """Return a function that proves an MDI line like a program, starting at the current position of the
+    axes.
+    """
 
     def prove_line(text: str, snapshot: Snapshot, watch: ProgressCallback) -> tuple[Job, ProvedJob]:
         from core.proving.prove_program import prove
@@ -247,7 +251,7 @@ def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> Prov
 
 
 def rebuild_search(job: Job, report_progress: ProgressCallback) -> Search:
-    """Return the search through the program of a job; the interpreter is loaded when it is first used."""
+    """Return the search through the program of a job. The interpreter is loaded on first use."""
     if job.source.dialect is not Dialect.OMNITURN:
         from core.interpreter.restart.program_search import BlockSearch
 

@@ -1,4 +1,4 @@
-"""Program transfer over a serial line: sending files, and receiving programs that are checked."""
+"""Transfer of programs over a serial line, which sends files and checks received programs."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]  # error
 class SerialLines:
     """Implementation of ``app.transfer.line_transfer.Lines``.
 
-    ``check`` proves received programs, and ``suffix`` is the suffix of their files.
+    ``check`` proves received programs, and ``suffix`` is the suffix of the files that it creates.
     """
 
     def __init__(self, check: CheckProgram, suffix: str = ".nc", clock: Clock | None = None) -> None:
         self._check, self._ending, self._clock = check, suffix, clock or RealClock()
 
     def list_ports(self) -> Sequence[tuple[str, str]]:
-        """Return the serial ports of this computer."""
+        """Return the device and the description of each serial port of this computer."""
         return list_serial_ports()
 
     def make_send_transfer(self, settings: SerialLineModel, path: Path) -> FileSendTransfer:
-        """Return the transfer that sends the program in a file."""
+        """Return a transfer that sends the program in a file."""
         return FileSendTransfer(make_transfer_settings(settings), path, self._clock)
 
     def make_receive_transfer(self, settings: SerialLineModel) -> ProgramReceiveTransfer:
-        """Return the transfer that receives a program."""
+        """Return a transfer that receives a program."""
         return ProgramReceiveTransfer(
             make_transfer_settings(settings), self._clock, self._check, self._ending
         )
 
 
 class _LineTransfer:
-    """A transfer whose serial line the worker opens; it can be canceled before that."""
+    """A transfer that can be canceled before its serial line is open. The worker opens the line."""
 
     def __init__(self) -> None:
         self._inner: SendTransfer | ReceiveTransfer | None = None
@@ -58,11 +58,11 @@ class _LineTransfer:
 
     @property
     def progress(self) -> TransferState:
-        """Progress of the transfer."""
+        """Return the progress of the transfer."""
         return self._inner.progress if self._inner is not None else TransferState()
 
     def cancel(self) -> None:
-        """Cancel the transfer."""
+        """Cancel the transfer, or prevent its start."""
         self._cancelled = True
         if self._inner is not None:
             self._inner.cancel()
@@ -74,14 +74,17 @@ class _LineTransfer:
 
 
 class FileSendTransfer(_LineTransfer):
-    """Transfer that sends a file; its result is the number returned by ``run``."""
+    """Transfer that sends a program file.
+
+    Its result is the number that ``run_transfer`` returns.
+    """
 
     def __init__(self, settings: TransferSettings, path: Path, clock: Clock) -> None:
         super().__init__()
         self._settings, self._path, self._clock = settings, path, clock
 
     def run_transfer(self) -> int:
-        """Read the file, open the line and send. Raises FileError or DriverError."""
+        """Read the file, open the line, and send the data. Raises FileOperationError or DriverError."""
         try:
             text = read_input_bytes(self._path, MAX_FILE_SIZE)
         except OSError as error:
@@ -96,14 +99,17 @@ class FileSendTransfer(_LineTransfer):
 
 
 class ProgramReceiveTransfer(_LineTransfer):
-    """Transfer that receives a program."""
+    """Transfer that receives and proves a program."""
 
     def __init__(self, settings: TransferSettings, clock: Clock, check: CheckProgram, suffix: str) -> None:
         super().__init__()
         self._settings, self._clock, self._check, self._ending = settings, clock, check, suffix
 
     def run_transfer(self) -> ReceivedProgram:
-        """Receive a program and prove it. Raises FileError or DriverError; nothing is then saved."""
+        """Receive a program and prove it.
+
+        Raises FileOperationError or DriverError and saves nothing after an error.
+        """
         inner = ReceiveTransfer(
             open_serial_port(self._settings.receiving_settings, count_damaged=True),
             self._clock,
@@ -130,13 +136,13 @@ class ProgramReceiveTransfer(_LineTransfer):
 
 
 def make_transfer_settings(model: SerialLineModel) -> TransferSettings:
-    """Return the settings of the serial line and the data frame."""
+    """Return the settings of the serial line and of the data format."""
     line = LineSettings(model.port, model.baud, model.bits, model.parity, model.stop, model.flow)
     return TransferSettings(line, model.wrap, model.eol, model.dc_codes, model.wait, model.leader)
 
 
 def create_proof_check(loading_steps: LoadingSteps) -> CheckProgram:
-    """Return a check that proves a program on this machine with the present offsets."""
+    """Return a function that proves a program on this machine with the current offsets."""
 
     def check(source: ProgramSource) -> tuple[tuple[str, ...], float]:
         proved = loading_steps.prove_job(loading_steps.make_job(source, False), lambda _count: None)
@@ -146,7 +152,10 @@ def create_proof_check(loading_steps: LoadingSteps) -> CheckProgram:
 
 
 def _create_source(text: bytes, name: str) -> ProgramSource:
-    """Return the received text as a program file is read. Raises DriverError if the text is not a program."""
+    """Return the received text as a program, decoded like a program file.
+
+    Raises DriverError if the text is not a program.
+    """
     with tempfile.TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / name
         path.write_bytes(text)

@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RecordedSamples:
-    """Adapter that lets the page read the recorder's ring."""
+    """Adapter through which the SCOPE page reads the recorder's ring buffer."""
 
     recorder: ScopeRecordings
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """Recorded channels."""
+        """Return the recorded channels."""
         return self.recorder.ring.layout.channels
 
     @property
     def newest_time_s(self) -> float:
-        """Time of the newest sample, in seconds."""
+        """Return the time of the newest sample, in seconds."""
         return self.recorder.ring.samples.last_time_s
 
     @property
     def buffer_length_s(self) -> float:
-        """Duration of the ring in seconds."""
+        """Return the duration of the ring buffer, in seconds."""
         return self.recorder.ring.layout.duration_s
 
     def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
@@ -44,9 +44,10 @@ class RecordedSamples:
 
 
 def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
-    """Register the scope with ``live`` samples, or with those of the control.
+    """Register the scope with ``live_samples``, or with the samples of the control.
 
-    Without either, the scope shows only files. The scope is created when the operator first opens its page.
+    Without any samples, the scope shows only files. The scope is created when the operator first opens its
+    page.
     """
     desk.page_registry.attach_lazily("app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples))
     desk.page_registry.set_recording_opener(lambda name: _scope_of(desk).open_alarm_recording(name))

@@ -1,4 +1,4 @@
-"""Assembly of the operator screen, with its control in a thread or in a separate process."""
+"""Assembly of the operator screen, whose control runs in a thread or in a separate process."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ def build_desk(
     offsets: Callable[[], Offsets] = read_stored_offsets,
     begun_control: Begun | None = None,
 ) -> Desk:
-    """Return the operator screen's model for a machine file, with its control running.
+    """Return the operator screen's model for a machine file, and start its control.
 
-    Close it with ``Desk.close``. ``begun_control`` is the result of ``find_or_start_control`` for this file;
-    None starts the control now. Raises CommandError for an invalid machine file, and if the machine does not
-    respond.
+    Close the model with ``Desk.close``. ``begun_control`` is the result of ``find_or_start_control`` for
+    this file. If it is None, the control is started now. Raises CommandError if the machine file is invalid
+    or the machine does not respond.
     """
     sys.setswitchinterval(SWITCH_INTERVAL_S)
     machine, control = begun_control or find_or_start_control(machine_file)
@@ -87,7 +87,7 @@ def build_desk(
 
 
 def _create_threaded_desk(machine: Machine, offsets: Callable[[], Offsets], journal: Journal) -> Desk:
-    """Return the screen model with its control in a thread of this process."""
+    """Return the screen model, with its control running in a thread of this process."""
     clock = RealClock()
     desk, executor, recorder = create_desk_parts(
         machine, offsets, clock, journal, find_data_folder() / RECORDS_FOLDER
@@ -117,7 +117,7 @@ def _create_process_desk(
     journal: Journal,
     control: ControlClient | StartedControl,
 ) -> Desk:
-    """Return the screen model with its control in a separate process."""
+    """Return the screen model, with its control running in a separate process."""
     left = None
     if isinstance(control, ControlClient):
         client = control
@@ -169,7 +169,7 @@ def _create_process_desk(
 
 
 def _close_store(journal: Journal) -> None:
-    """Write waiting entries to the store, and report lost entries."""
+    """Write the waiting entries to the store, close the store, and report lost entries."""
     lost = journal.close()
     if lost:
         sys.stderr.write(f"turndesk: not kept, and lost by closing: {lost}; {journal.trouble}\n")

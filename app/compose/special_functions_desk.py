@@ -1,4 +1,4 @@
-"""Assembly of the special functions (F10), one line for each."""
+"""Assembly of the list of special functions (F10)."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _setup_sheet(
 def _create_transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
-    """Return the RS-232 function, with the settings of [dnc] at first. Received programs are proved."""
+    """Return the RS-232 function. Its initial settings come from [dnc], and it proves received programs."""
     lines = SerialLines(create_proof_check(workshop), default_extension(Dialect(machine.language)))
     return SerialTransferFunction(
         desk,
@@ -90,10 +90,10 @@ def create_special_functions(
     program_folder: Path,
     sounds: EventSounds,
 ) -> SpecialFunctionList:
-    """Return all special functions.
+    """Return the list of all special functions.
 
-    ``workshop`` proves programs received over RS-232, and ``program_folder`` is the folder of the operator's
-    programs.
+    ``loading_steps`` proves programs received over RS-232, and ``program_folder`` is the folder of the
+    operator's programs.
     """
     worker = LatestRequestWorker("editing-special")
     functions = [make(desk, machine, persistence, worker) for make in FUNCTION_ITEMS]

@@ -1,4 +1,6 @@
-"""The specified stock: a bar or tube, a profile from a file, or the part that another program makes."""
+"""Reading of the specified stock, which is a bar, a tube, a profile from a file, or the part of another
+program.
+"""
 
 from __future__ import annotations
 
@@ -26,11 +28,12 @@ _MAX_PROFILE_BYTES = 16 * BYTES_PER_MB  # largest profile file
 
 
 class StockContext(NamedTuple):
-    """Context in which the preceding program is proved, whose part is the stock.
+    """Context for proving the preceding program, whose part is the stock.
 
-    ``read_source`` reads the program and may raise any exception that the caller handles.
-    ``report_progress`` receives the progress of the proof. The context also has a function that returns the
-    stored stock and stick-out of a program by name, and the names of the programs that depend on this one.
+    ``read_source`` reads that program and may raise any exception that the caller handles.
+    ``report_progress`` receives the progress of the proof. ``read_stored_part`` returns the stored stock
+    and stick-out of a program by name. ``preceding_programs`` are the names of the programs that depend on
+    this program.
     """
 
     read_source: Callable[[Path], ProgramSource]
@@ -43,7 +46,7 @@ class StockContext(NamedTuple):
 
 
 def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
-    """Return the stock that the text specifies. Raises StockError with the error in the text."""
+    """Return the stock that the text specifies. Raises StockError if the text is invalid."""
     spec = parse_specification(text)
     if spec.after:
         return _stock_from_program(Path(spec.after), context, spec)
@@ -73,7 +76,7 @@ def read_stock(text: str, context: StockContext) -> Stock | StockSpec:
 
 
 def _stock_from_program(path: Path, context: StockContext, spec: StockSpec) -> Stock:
-    """Return the last part of the preceding program as stock."""
+    """Return the last part that the preceding program makes, as stock."""
     from core.part.stock import Stock
     from core.proving.part_proof import prove_with_part
 
@@ -97,7 +100,7 @@ def _stock_from_program(path: Path, context: StockContext, spec: StockSpec) -> S
 
 
 def _initial_setting(name: str, spec: StockSpec, context: StockContext) -> PartSettings:
-    """Return the context of the preceding program with its stored stock and stick-out."""
+    """Return the part settings of the preceding program with its stored stock and stick-out."""
     kept = context.read_stored_part(name)
     setting = apply_stored_clamping(context.part_setting, context.machine, kept)
     if not kept.stock:

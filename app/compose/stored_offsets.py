@@ -1,4 +1,4 @@
-"""Tool, secondary and zero offsets from the store or an offsets file, for interpreter and screen."""
+"""Tool, secondary and zero offsets from the store or an offsets file, for the interpreter and the screen."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ OFFSETS_FILE_TEXT = (
 
 
 class Offsets(NamedTuple):
-    """All offsets by number, in the interpreter's units: mm, X as a radius."""
+    """All offsets by number, in the interpreter's units (mm, with X as a radius)."""
 
     tool_offsets: Mapping[int, ToolOffset]
     secondary_offsets: Mapping[int, SecondaryOffset]
@@ -60,7 +60,7 @@ def create_setup_with(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Return the context of a program after power-up with these offsets."""
+    """Return the setup of a program after power-up with these offsets."""
     return add_mill_offsets(
         create_setup(
             machine,
@@ -77,9 +77,9 @@ def create_setup_with(
 
 
 def read_stored_offsets() -> Offsets:
-    """Return the offsets of the store; empty without a store.
+    """Return the offsets in the store, or empty offsets without a store.
 
-    Raises CommandError if the store or one of its offsets is damaged.
+    Raises CommandError if the store or an offset is damaged.
     """
     folder = find_data_folder()
     if not has_store(folder):
@@ -95,7 +95,7 @@ def read_stored_offsets() -> Offsets:
 
 
 def read_stored_shapes() -> dict[int, ToolShape]:
-    """Return the tool shapes of the store; empty without a store.
+    """Return the tool shapes in the store, or {} without a store.
 
     Raises CommandError if the store is damaged or a shape is invalid.
     """
@@ -119,9 +119,9 @@ def read_stored_shapes() -> dict[int, ToolShape]:
 
 
 def try_read_shapes() -> dict[int, ToolShape]:
-    """Return the tool shapes for a picture; empty if the store cannot be read.
+    """Return the tool shapes for a picture, or {} if the store cannot be read.
 
-    The error is reported elsewhere.
+    Other functions report the error.
     """
     try:
         return read_stored_shapes()
@@ -144,7 +144,7 @@ def read_store_offsets(store: Store) -> Offsets:
 
 
 def read_offsets(path: Path) -> Offsets:
-    """Return the offsets of an offsets file. Raises CommandError with every error."""
+    """Return the offsets in an offsets file. Raises CommandError that lists every error."""
     from app.offsets.offsets_file import read_offset_rows
 
     tools, secondary, zero = read_offset_rows(path)
@@ -152,15 +152,16 @@ def read_offsets(path: Path) -> Offsets:
 
 
 def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
-    """Return a function that reads the offsets of a file, or for None those of the store.
+    """Return a function that reads the offsets of a file, or the stored offsets if ``path`` is None.
 
-    The store is read again at each call.
+    The function reads the store again at each call.
     """
     return read_stored_offsets if path is None else partial(read_offsets, Path(path))
 
 
 def create_offset_book(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
-    """Return the offsets for the screen: those of the journal's store, or the read-only offsets of a file.
+    """Return the offsets for the screen, either those of the journal's store or the read-only offsets of a
+    file.
 
     Raises CommandError if the file has errors.
     """

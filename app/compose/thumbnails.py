@@ -1,7 +1,7 @@
-"""Thumbnails of finished parts, drawn in a worker thread and cached by their contents.
+"""Thumbnails of finished parts, drawn in a worker thread and cached in files.
 
-The file name is a hash of everything on which the part depends, including TurnDesk's own code. A damaged file
-cannot be decompressed and is drawn again.
+The file name is a hash of all data on which the part depends, including TurnDesk's own code. A damaged file
+cannot be decompressed, and its thumbnail is drawn again.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class ThumbnailCache:
     def get_thumbnail(self, job: Job, report_progress: ProgressCallback) -> Thumbnail | None:
         """Return a picture of the job's part, ``width_px`` by ``height_px`` pixels, or None without a part.
 
-        ``watch`` may raise an exception to cancel.
+        ``report_progress`` may raise an exception to cancel the drawing.
         """
         if self.machine.kind != "lathe":
             return None
@@ -84,7 +84,7 @@ class ThumbnailCache:
         return SolidPicture().draw(part.solid, view, self.width_px, self.height_px)
 
     def _cache_key(self, job: Job, setting: PartSettings) -> str:
-        """Return the file name of the thumbnail: a hash of everything that affects the picture."""
+        """Return the file name of the thumbnail, which is a hash of all data that affects the picture."""
         shapes, radii, gang = setting.shapes, setting.nose_radii, setting.gang
         tools = (sorted(shapes.items()), sorted(radii.items()), sorted(gang.items()))
         said = (
@@ -101,7 +101,9 @@ class ThumbnailCache:
 
 @lru_cache(maxsize=1)
 def _core_version() -> str:
-    """Return a hash of the code that makes parts, because another version may make different parts."""
+    """Return a hash of the code that simulates parts, because a different version may produce different
+    parts.
+    """
     total = sha256()
     for path in sorted(_CORE_FOLDER.rglob("*.py")):
         total.update(path.read_bytes())
@@ -118,7 +120,7 @@ def _found(path: Path, pixels_wanted: int) -> bytes | None:
 
 
 def _save_cached(path: Path, pixels: bytes) -> None:
-    """Write the file completely or not at all. After a disk error the picture is simply drawn again."""
+    """Write the complete file or no file. After a disk error, the picture is drawn again when needed."""
     aside = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -27,13 +27,16 @@ class SignInSession(Protocol):
     """Interface of the optional sign-in feature. Its methods never wait."""
 
     def note_activity(self) -> None:
-        """Note that the signed-in user pressed a key or touched the screen."""
+        """Record that the signed-in user pressed a key or touched the screen."""
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process sign-in attempts and sign out an inactive user; called once a frame."""
+        """Process sign-in attempts and sign out an inactive user.
+
+        The screen calls this method once per frame.
+        """
 
     def reload(self) -> None:
-        """Read the stored sign-in data again. Raises StoreError."""
+        """Reload the stored sign-in data. Raises StoreError if the store cannot be read."""
 
     def close(self) -> None:
         """Close the session when TurnDesk closes."""
@@ -41,10 +44,10 @@ class SignInSession(Protocol):
 
 @dataclass(slots=True)
 class UserAccess:
-    """The signed-in user, the access level in force and the permissions that follow from them.
+    """The signed-in user, the current access level, and the resulting permissions.
 
-    ``user_name`` is the name of the signed-in user, empty if no user is signed in. Call ``note_activity``
-    for every key press and touch.
+    ``user_name`` is the name of the signed-in user, or empty if no user is signed in. Call
+    ``note_activity`` for every key press and touch.
     """
 
     persistence: Persistence = field(default_factory=Persistence)
@@ -64,19 +67,19 @@ class UserAccess:
 
     @property
     def has_read_failed(self) -> bool:
-        """Whether the stored users could not be read."""
+        """Return whether the stored users could not be read."""
         return self._unread is not None
 
     # --- who and what --------------------------------------------------------------------------------
 
     @property
     def recorded_user(self) -> str:
-        """The user name that the history records for a change."""
+        """Return the user name that the history records for a change."""
         return self.user_name or DEFAULT_USER
 
     @property
     def header_text(self) -> str:
-        """The user and level in force, for the header. Empty if access levels are off."""
+        """Return the user and the current level for the header, or an empty text if access levels are off."""
         if not self.users.is_access_restricted:
             return ""
         if self.pending_notice:
@@ -85,7 +88,7 @@ class UserAccess:
         return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
     def find_refusal(self, act: ProtectedChange) -> str:
-        """Return why the level in force does not permit this act. Empty if the act is permitted."""
+        """Return why the current level does not permit this act, or an empty text if the act is permitted."""
         needed = get_required_level(act)
         if not self.users.is_access_restricted or self.access_level >= needed:
             return ""
@@ -103,12 +106,15 @@ class UserAccess:
     # --- time ----------------------------------------------------------------------------------------
 
     def note_activity(self) -> None:
-        """Note that the signed-in user pressed a key or touched the screen."""
+        """Record that the signed-in user pressed a key or touched the screen."""
         if self.sign_in_session is not None:
             self.sign_in_session.note_activity()
 
     def update(self, snapshot: Snapshot) -> None:
-        """Retry reading the users after an error, and update the session; called once a frame."""
+        """Retry reading the users after an error, and update the session.
+
+        The screen calls this method once per frame.
+        """
         if self._unread is not None and self.read_time_s() - self._unread >= _RETRY_INTERVAL_S:
             self.reload()  # A store that could not be opened at the start may become available later.
         if self.sign_in_session is not None:
@@ -117,7 +123,7 @@ class UserAccess:
     # --- people --------------------------------------------------------------------------------------
 
     def reload(self) -> None:
-        """Read the stored users again, after a change or a restore.
+        """Reload the stored users after a change or a restore.
 
         A user who was removed or whose level was lowered is signed out.
         """
@@ -139,7 +145,7 @@ class UserAccess:
     def remove_levels(self) -> None:
         """Remove the access levels after a service reset.
 
-        Levels that cannot be read are ignored until TurnDesk closes.
+        If the stored levels cannot be read, they are ignored until TurnDesk closes.
         """
         self._lifted, self.users = True, UserList()
         self.reload()

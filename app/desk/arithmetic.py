@@ -13,13 +13,13 @@ _TOKEN = re.compile(r"\s*(?:([0-9]+\.?[0-9]*|\.[0-9]+)|([-+*/()−]))")
 
 
 class EntryError(ValueError):
-    """The expression is not a number. The message gives the reason."""
+    """Error for an expression without a numeric value. The message gives the reason."""
 
 
 def evaluate_expression(entry: str) -> float:
     """Return the value of an arithmetic expression.
 
-    Raises EntryError with the invalid character, its position and the reason.
+    Raises EntryError that gives the invalid character, its position and the reason.
     """
     if not entry.strip():
         raise EntryError("no value entered; type a number")
@@ -41,9 +41,9 @@ def evaluate_expression(entry: str) -> float:
 
 
 def evaluate_line_number(entry: str) -> int | None:
-    """Return the line number that an expression such as ``20+5`` evaluates to.
+    """Return the line number that is the value of an expression such as ``20+5``.
 
-    None if the expression is invalid, or if its value is not an integer of at least 1.
+    The result is None if the expression is invalid, or if its value is not an integer of at least 1.
     """
     try:
         value = evaluate_expression(entry)

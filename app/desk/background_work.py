@@ -1,8 +1,8 @@
 """Slow and repeated work of TurnDesk on worker threads.
 
-For proving, drawing and searching, the newest request replaces older ones, because an outdated result is
+The newest request for proving, drawing or searching replaces older requests, because an outdated result is
 useless. Queued work, such as writing, always runs to its end. Results are delivered on the caller's thread
-when the caller polls, once a frame.
+when the caller polls, once per frame.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ FailureCallback = Callable[[str], None]
 
 
 class DaemonWorker:
-    """One daemon thread that executes tasks in order. The thread starts with the first task.
+    """Daemon thread that executes tasks in order. The thread starts with the first task.
 
-    A ThreadPoolExecutor would join its threads when the interpreter exits, even if they hang. A task must not
-    raise an exception.
+    A ThreadPoolExecutor would join its threads when the interpreter exits, even if they hang. A task must
+    not raise an exception.
     """
 
     def __init__(self, name: str) -> None:
@@ -40,7 +40,7 @@ class DaemonWorker:
         self._closed = False
 
     def submit(self, task: Callable[[], None]) -> None:
-        """Queue a task. A closed worker drops the task."""
+        """Add a task to the queue, or drop the task if the worker is closed."""
         with self._lock:
             if self._closed:
                 return
@@ -50,7 +50,7 @@ class DaemonWorker:
                 self._thread.start()
 
     def close(self, timeout_s: float) -> None:
-        """Finish the queued tasks, but wait for them for ``timeout_s`` seconds at most."""
+        """Finish the queued tasks, but wait at most ``timeout_s`` seconds for them."""
         with self._lock:
             self._closed = True
             self._tasks.put(None)
@@ -63,11 +63,11 @@ class DaemonWorker:
 
 
 class AbandonedError(Exception):
-    """The work in progress is canceled because a newer request replaced it."""
+    """Exception that cancels the work in progress because a newer request replaced it."""
 
 
 def describe_error(error: BaseException) -> str:
-    """Return the text of a worker's error for the screen."""
+    """Return the text of a worker's error for display on the screen."""
     if isinstance(error, OSError) and error.strerror:
         return error.strerror
     return str(error) or type(error).__name__
@@ -75,7 +75,7 @@ def describe_error(error: BaseException) -> str:
 
 @dataclass(slots=True, eq=False)
 class WorkRequest:
-    """One request to a worker. The work calls the request as its ``ProgressCallback`` to report progress."""
+    """One request to a worker, which the work calls as its ``ProgressCallback`` to report progress."""
 
     worker: LatestRequestWorker
     # Does the work and returns the function that delivers the result.
@@ -92,9 +92,10 @@ class WorkRequest:
         self.worker.progress = int(reached)
 
     def publish(self, deliver: Callable[[], None]) -> None:
-        """Call ``deliver`` on the worker with an intermediate result, while no newer request can arrive.
+        """Call ``deliver`` on the worker with an intermediate result, and block newer requests during the
+        call.
 
-        Raises AbandonedError if the result is no longer wanted.
+        Raises AbandonedError if the result is no longer needed.
         """
         with self.worker.lock:
             if not self.is_wanted:
@@ -104,12 +105,12 @@ class WorkRequest:
 
 @dataclass(slots=True)
 class LatestRequestWorker:
-    """A worker on which a new request replaces the previous one.
+    """Worker on which a new request replaces the previous request.
 
-    ``request`` replaces the previous request. ``enqueue`` adds work that is never canceled. For requests that
-    follow typing, work begins after ``quiet_time_s`` seconds without another request, but at the latest after
-    ``max_delay_s`` seconds. A replaced request may continue for ``grace_time_s`` seconds. ``thread_owner``
-    is another worker whose thread this worker shares.
+    ``enqueue`` adds work that is never canceled. For requests that follow typing, work begins after
+    ``quiet_time_s`` seconds without another request, and at the latest after ``max_delay_s`` seconds. A
+    replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
+    thread this worker shares.
     """
 
     name: str  # Name of the thread.
@@ -135,7 +136,7 @@ class LatestRequestWorker:
 
     @property
     def is_busy(self) -> bool:
-        """Whether work is in progress or a result is waiting for ``poll``."""
+        """Return whether work is in progress or a result is waiting for ``poll``."""
         with self.lock:
             at_work = self._current is not None and self._current.is_wanted
             return at_work or bool(self._waiting or self._answers)
@@ -148,8 +149,8 @@ class LatestRequestWorker:
     ) -> None:
         """Request ``work`` in place of the previous request.
 
-        ``poll`` later calls ``done`` with the result, or ``failed`` with an error text. ``work`` gets the
-        request as its watch.
+        ``poll`` later calls ``on_done`` with the result, or ``on_failed`` with an error text. ``work`` is
+        called with the request as its progress callback.
         """
         with self.lock:
             if not self.grace_time_s:
@@ -179,7 +180,10 @@ class LatestRequestWorker:
             self.progress = 0
 
     def poll(self) -> None:
-        """Deliver the finished results in the order of the work; called once a frame."""
+        """Deliver the finished results in the order of the work.
+
+        The screen calls this method once per frame.
+        """
         while True:
             with self.lock:
                 if not self._answers:
@@ -188,7 +192,10 @@ class LatestRequestWorker:
             answer()
 
     def wait_for_results(self, timeout_s: float) -> None:
-        """Wait for the results and deliver them. For scripts and tests only, because this method blocks."""
+        """Wait for the results and deliver them.
+
+        Only scripts and tests use this method, because it blocks.
+        """
         end = time.monotonic() + timeout_s
         while self.is_busy and time.monotonic() < end:
             with self.lock:
@@ -196,9 +203,10 @@ class LatestRequestWorker:
             self.poll()
 
     def close(self) -> None:
-        """End the thread. Requests are canceled. Queued work is finished, but its result is not delivered.
+        """End the thread after canceling requests and finishing queued work, whose results are not
+        delivered.
 
-        Work that takes longer than ``CLOSE_TIMEOUT_S`` seconds remains on the daemon thread.
+        Work that takes longer than ``CLOSE_TIMEOUT_S`` seconds continues on the daemon thread.
         """
         with self.lock:
             self._closing = True
@@ -234,7 +242,7 @@ class LatestRequestWorker:
     # --- worker thread -------------------------------------------------------------------------------
 
     def check_continue(self, request: WorkRequest) -> None:
-        """Check that the work on this request may continue. Raises AbandonedError if not."""
+        """Raise AbandonedError if the work on this request must stop."""
         late = request.is_superseded and self.clock() - request.started_at > self.grace_time_s
         if late or not request.is_wanted:
             raise AbandonedError
@@ -249,10 +257,10 @@ class LatestRequestWorker:
                 self.lock.notify_all()
 
     def _wait_for_request(self) -> WorkRequest | None:
-        """Return the next request, or None if no request waits.
+        """Return the next request, or None if no request is waiting.
 
-        Wait until typing has paused for ``quiet_time_s`` seconds, or until ``max_delay_s`` seconds have
-        passed.
+        Before returning, wait until typing has paused for ``quiet_time_s`` seconds, or until
+        ``max_delay_s`` seconds have passed.
         """
         with self.lock:
             end = self.clock() + self.max_delay_s
@@ -271,7 +279,7 @@ class LatestRequestWorker:
 
 
 def _run_request(request: WorkRequest) -> Callable[[], None] | None:
-    """Do the work and return the function that delivers its result; None if the work was canceled."""
+    """Do the work, and return the function that delivers its result, or None if the work was canceled."""
     try:
         return request.work(request)
     except AbandonedError:
@@ -289,7 +297,7 @@ def _is_defect(error: BaseException) -> bool:
 
 
 class RepeatingThread:
-    """A thread that calls ``action`` after ``first_delay_s`` seconds and then every ``interval_s`` seconds.
+    """Thread that calls ``action`` after ``first_delay_s`` seconds and then every ``interval_s`` seconds.
 
     The watchdog identifies the thread by its name.
     """
@@ -303,17 +311,17 @@ class RepeatingThread:
 
     @property
     def is_closing(self) -> bool:
-        """Whether ``close`` was called. If the thread ends without ``close``, its end is an error."""
+        """Return whether ``close`` was called. A thread that ends without ``close`` has failed."""
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Start the thread. Call this once."""
+        """Start the thread. Call this method only once."""
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread. Wait for a call in progress for ``CLOSE_TIMEOUT_S`` seconds at most.
+        """End the thread, and wait at most ``CLOSE_TIMEOUT_S`` seconds for a call in progress.
 
-        A call that hangs remains on the daemon thread.
+        A call that hangs continues on the daemon thread.
         """
         self._closing.set()
         if self._thread.is_alive():

@@ -1,4 +1,4 @@
-"""Exit statuses of commands, and the exception that ends a command with an error message."""
+"""Exit statuses of commands, and exception that ends a command with an error message."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ EXIT_INTERRUPTED = 130  # Status that a shell reports for Ctrl+C.
 
 
 class CommandError(CodedError):
-    """The command cannot continue because of its usage, an unreadable file or a bad machine file.
+    """Error that ends a command, for example because of wrong usage, an unreadable file or an invalid
+    machine file.
 
     The command then exits with status 2.
     """
@@ -29,13 +30,13 @@ def convert_to_command_error(*kinds: type[Exception]) -> Iterator[None]:
 
 
 def make_write_error(file: object, error: OSError) -> CommandError:
-    """Return the error for a file that the operating system does not let TurnDesk write."""
+    """Return the error for a file that cannot be written because of an error of the operating system."""
     return CommandError(
         Message("{file} cannot be written: {cause}", file=file, cause=error.strerror), "cannot-write"
     )
 
 
 def report_command_error(error: CodedError) -> int:
-    """Print why the command cannot continue, and return its exit status."""
+    """Print the reason why the command cannot continue, and return its exit status."""
     sys.stderr.write(f"turndesk: {error}\n")
     return EXIT_USAGE

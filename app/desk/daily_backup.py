@@ -1,7 +1,8 @@
-"""Daily backup of the store, verified and rotated, in the folder that the machine file specifies. No Qt.
+"""Daily backup of the store, verified and rotated, in the folder that the machine file specifies.
 
-The backup waits for a standstill of the machine, but for 12 h at most. The computer's clock may be wrong. A
-backup with a date in the future was made before the clock was set back, and counts as the oldest.
+The module does not use Qt. The backup waits at most 12 h until the machine is at rest. The computer's clock
+may be wrong. A backup with a date in the future was made before the clock was set back, and counts as the
+oldest backup.
 """
 
 from __future__ import annotations
@@ -25,12 +26,12 @@ _FIRST_LOOK, _LOOK = 60.0, 600.0  # s
 
 @dataclass(slots=True)
 class DailyBackup:
-    """Makes a backup each day, verifies it and deletes old backups.
+    """Service that makes and verifies a backup each day and deletes old backups.
 
     ``write_backup`` writes a backup. ``verify_backup`` returns the defects of a backup file. ``is_idle``
-    returns whether the machine is at rest. ``data_folder`` is the folder of the backed-up data if the
-    machine file specifies another folder for backups. ``report_same_disk`` is called if that folder is on
-    the same disk.
+    returns whether the machine is at rest. ``data_folder`` is the folder of the original data if the
+    machine file specifies a separate folder for backups. ``report_same_disk`` is called if both folders are
+    on the same disk.
     """
 
     folder: Path
@@ -50,7 +51,7 @@ class DailyBackup:
         self._thread = RepeatingThread("daily-backup", self.make_if_due, _LOOK, _FIRST_LOOK)
 
     def start(self) -> None:
-        """Start the thread that makes the backups. Call this once."""
+        """Start the thread that makes the backups. Call this method only once."""
         self._thread.start()
 
     def close(self) -> None:
@@ -58,7 +59,10 @@ class DailyBackup:
         self._thread.close()
 
     def make_if_due(self) -> Path | None:
-        """Make the daily backup if it is due, and return its path. Report an error once a day."""
+        """Make the daily backup if it is due, and return its path, or None if no backup was made.
+
+        An error is reported once per day.
+        """
         try:
             age = self._find_age()
             if age is not None and (age < _DAY or (age < _DAY + _MAX_WAIT and not self.is_idle())):
@@ -73,8 +77,8 @@ class DailyBackup:
     def _find_age(self) -> timedelta | None:
         """Return the age of the newest backup.
 
-        None if no backup exists, or if the newest one has a date in the future because the clock was set
-        back.
+        The result is None if no backup exists, or if the newest backup has a date in the future because the
+        clock was set back.
         """
         newest = max(self._there(), key=partial(_sort_key, self._name()), default=None)
         if newest is None:
@@ -89,9 +93,10 @@ class DailyBackup:
         return f"{DAILY_PREFIX}{self.read_clock():%Y-%m-%d-%H%M%S}{BACKUP_SUFFIX}"
 
     def _make_backup(self) -> Path:
-        """Write and verify a backup, delete the oldest backups, and return the new path.
+        """Write and verify a backup, delete the oldest backups, and return the path of the new backup.
 
-        A backup that fails the check is deleted, and the older ones remain. Raises OSError or StoreError.
+        A backup that fails verification is deleted, and the older backups remain. Raises OSError or
+        StoreError.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
         target = self.folder / self._name()
@@ -130,5 +135,5 @@ class DailyBackup:
 
 
 def _sort_key(now: str, path: Path) -> tuple[bool, str]:
-    """Return the sort key for the age of a backup. ``now`` is the name of a backup made now."""
+    """Return the sort key for the age of a backup. ``now`` is the name that a backup made now would have."""
     return path.name <= now, path.name

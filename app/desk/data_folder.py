@@ -1,4 +1,4 @@
-"""The data folder (``TURNDESK_HOME``) of this installation, with its store, logs and settings."""
+"""Data folder (``TURNDESK_HOME``) of this installation, with its store, logs and settings."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ RECORDS_FOLDER = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):
-    """TURNDESK_HOME is not a folder, or must be set. The text explains how to set it."""
+    """Error for TURNDESK_HOME if it is not a folder, or if it must be set.
+
+    The text explains how to set the variable.
+    """
 
 
 def check_data_folder() -> None:
-    """Check that TURNDESK_HOME is not a file or inside a file. A folder that does not exist is accepted.
+    """Raise DataFolderError if TURNDESK_HOME is a file or is inside a file.
 
-    Raises DataFolderError.
+    A folder that does not exist is accepted.
     """
     named = os.environ.get(HOME_VARIABLE, "")
     if not named:
@@ -39,8 +42,8 @@ def check_data_folder() -> None:
 def find_data_folder() -> Path:
     """Return the folder of the store, logs and settings.
 
-    This is ``TURNDESK_HOME`` if it is set, else the platform's data folder. Raises DataFolderError for a user
-    without a home folder, as in a container.
+    This is ``TURNDESK_HOME`` if it is set, and otherwise the platform's data folder. Raises DataFolderError
+    for a user without a home folder, as in a container.
     """
     named = os.environ.get(HOME_VARIABLE, "")
     try:

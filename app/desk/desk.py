@@ -1,7 +1,8 @@
-"""The model of the Automatic page and of the running TurnDesk, without Qt and without waiting.
+"""Model of the Automatic page and of the running TurnDesk, which does not use Qt and never waits.
 
-Every method that a key or a touch calls returns at once. If the action is not possible, the prompt line shows
-why (``notice``). Otherwise the method posts a command, and a later snapshot shows the result.
+Every method that a key or a touch calls returns immediately. If the action is not possible, the prompt line
+shows the reason (``prompt_notice``). Otherwise the method posts a command, and a later snapshot shows the
+result.
 """
 
 from __future__ import annotations
@@ -60,10 +61,10 @@ _NO_MACHINE = DeskMachine()
 
 
 class Desk:
-    """The model of the Automatic page, and the objects that all pages share.
+    """Model of the Automatic page, with the objects that all pages share.
 
-    ``persistence`` stores settings, levels, counts and runs. Without it, they are lost when TurnDesk closes.
-    ``start_watch`` checks the first move of a start, if the machine supports this check.
+    ``persistence`` stores settings, levels, counts and runs. Without it, these are lost when TurnDesk
+    closes. ``start_watch`` checks the first move of a start, if the machine supports this check.
     """
 
     def __init__(
@@ -144,7 +145,7 @@ class Desk:
         return self.desk_control.read_snapshot()
 
     def say(self, text: str) -> None:
-        """Show a message for 4 s or until the next key."""
+        """Show a message for 4 s or until the next key press."""
         self.prompt_answers.say(text)
 
     def show_warning(self, text: str) -> None:
@@ -152,24 +153,25 @@ class Desk:
         self.prompt_answers.say(text, is_lasting=True)
 
     def show_success(self, text: str) -> None:
-        """Show a success message, which is drawn differently from a refusal."""
+        """Show a success message, which has a different style from a refusal."""
         self.prompt_answers.say(text, is_success=True)
 
     def show_refusal(self, reason: str) -> None:
-        """Show that an action was rejected, with the reason."""
+        """Show that an action was rejected, and the reason."""
         self.say(Message("REJECTED: {why}", why=reason))
 
     def ask_operator(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask the operator to confirm an action that loses data or moves the machine.
 
-        The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` means yes, and differs from
-        the key that caused the question. On a touch screen, the prompt line has a button for the answer.
+        The question has the form ``PRESS Y TO …, N TO …``. Esc means N. ``key`` means yes, and is different
+        from the key that caused the question. On a touch screen, the prompt line has a button for the
+        reply.
         """
         self.prompt_answers.ask_question(question, on_confirmed, key)
 
     @property
     def confirm_key(self) -> str:
-        """The key that means yes to the open question. Empty if no question is open."""
+        """Return the key that means yes to the open question, or an empty text if no question is open."""
         return self.prompt_answers.key if self.prompt_answers.on_confirmed is not None else ""
 
     def clear_prompt_line(self) -> None:
@@ -178,12 +180,12 @@ class Desk:
 
     @property
     def prompt_notice(self) -> str:
-        """The message for the last key, or else the open question. Empty if there is neither."""
+        """Return the message for the last key or the open question, or an empty text if there is neither."""
         return self.prompt_answers.notice
 
     @property
     def start_instruction(self) -> str:
-        """The instruction for starting a cycle at this machine."""
+        """Return the instruction that says how to start a cycle at this machine."""
         if self.desk_control.station_panel is None:
             return "PRESS BOTH PALM BUTTONS" if self.machine.is_two_hand else "PRESS CYCLE START"
         if self.machine.is_two_hand and self.machine.allows_one_hand and self.settings_store.current.latched:
@@ -194,7 +196,7 @@ class Desk:
 
     @property
     def release_instruction(self) -> str:
-        """The instruction for releasing the E-stop at this machine."""
+        """Return the instruction that says how to release the E-stop at this machine."""
         if self.window_state.has_text_field():
             by_hand = "F1, THEN U: RELEASE E-STOP"
             return (
@@ -206,11 +208,11 @@ class Desk:
 
     @property
     def readout_kind(self) -> ReadoutKind:
-        """The kind of value that the large position display shows."""
+        """Return the kind of value that the large position display shows."""
         return ReadoutKind(self.settings_store.current.readout)
 
     def is_refused(self, act: ProtectedChange) -> bool:
-        """Return whether the access level is too low for this act, and show the reason if it is."""
+        """Return whether the access level is too low for this act, and if so show the reason."""
         why = self.user_access.find_refusal(act)
         if why:
             self.say(why)
@@ -219,7 +221,7 @@ class Desk:
     def apply_setting(self, name: str, value: object) -> None:
         """Apply a screen setting.
 
-        If it cannot be saved, a message is shown and the setting lasts until TurnDesk closes.
+        If the setting cannot be saved, a message is shown, and the setting applies until TurnDesk closes.
         """
         if not self.is_refused(ProtectedChange.SCREEN):
             self.try_save(partial(self.settings_store.choose, name, value))
@@ -232,7 +234,9 @@ class Desk:
             self.say(Message("NOT SAVED: {error}", error=error))
 
     def select_next_readout(self) -> None:
-        """Switch the large position display to position, distance to go or distance from home in turn."""
+        """Switch the large position display to the next of position, distance to go, and distance from
+        home.
+        """
         self.apply_setting("readout", self.readout_kind.next_kind.value)
 
     def close(self) -> None:
@@ -244,12 +248,12 @@ class Desk:
         self.closing_sequence.close([*own, *self.page_registry.make_closing_steps()])
 
     def hear(self, event: LogEvent) -> None:
-        """Accept an event of the executor. This method may be called from the executor's thread."""
+        """Process an event of the executor. The executor's thread may call this method."""
         self.prompt_answers.hear(event)
         self.alarm_log.hear(event)
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now. Empty if they can start a cycle."""
+        """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
         if self.window_state.is_stop_held() or not self.window_state.can_start_here:
             return (
                 prompt_line.STOP_HELD if self.window_state.is_stop_held() else prompt_line.START_ON_AUTOMATIC
@@ -271,7 +275,9 @@ class Desk:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self) -> tuple[Snapshot, MachineStatus, LoadedProgram]:
-        """Update the models once a frame. Return the snapshot, the machine status and the loaded program."""
+        """Update the models once per frame, and return the snapshot, the machine status and the loaded
+        program.
+        """
         self.station_controls.advance_pots()
         snapshot = self.read_snapshot()
         self.user_access.update(snapshot)
@@ -306,7 +312,9 @@ class Desk:
             self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
     def find_first_move_refusal(self, snapshot: Snapshot) -> str:
-        """Return why the first move prevents a start of the program. Empty if the first move is clear."""
+        """Return why the first move prevents a start of the program, or an empty text if the first move is
+        clear.
+        """
         if self.start_watch is None or snapshot.state is not MachineState.IDLE:
             return ""
         return self.start_watch.start_refusal if snapshot.starts is StartAction.PROGRAM else ""
@@ -316,7 +324,7 @@ class Desk:
     def toggle_switch(self, name: str) -> None:
         """Toggle ``single_block``, ``optional_stop``, ``cycle_repeat`` or ``no_count``.
 
-        Raises ValueError for another name.
+        Raises ValueError for any other name.
         """
         if name not in RUN_SWITCHES:
             raise ValueError(f"there is no switch called {name!r}")
@@ -330,7 +338,7 @@ class Desk:
     def can_close(self, close: Callable[[], None]) -> bool:
         """Return whether TurnDesk can close without losing unsaved work.
 
-        If work would be lost, ask first; Y then calls ``close``.
+        If work would be lost, this method asks the operator. The key Y then calls ``close``.
         """
         waiting = self.storage_state.read_unsaved()
         if waiting:
@@ -341,7 +349,7 @@ class Desk:
     def start_feed_hold(self, source: str = SOURCE_SCREEN, press: int = 0) -> None:
         """Start feed hold in any state of the machine.
 
-        ``press`` is the number of the key press, 0 if unknown.
+        ``press`` is the number of the key press, or 0 if unknown.
         """
         self.post(FeedHold(source, press))
         self.clear_prompt_line()
@@ -349,7 +357,7 @@ class Desk:
     def reset_control(self) -> None:
         """Acknowledge an alarm, or cancel an interrupted program after the operator confirms.
 
-        If the control is silent, start another one where this is possible.
+        If the control is silent, start a new control where possible.
         """
         state = self.read_snapshot().state
         if self.desk_control.silence_watch.is_silent and self.desk_control.restart is not None:
@@ -389,13 +397,13 @@ class Desk:
             self.post(ConfirmStart(found.at))
 
     def reject_question(self) -> None:
-        """Handle the key N: reject the open question, or cancel the confirmed start at line 1."""
+        """Handle the key N, which rejects the open question or cancels the confirmed start at line 1."""
         self.clear_prompt_line()
         if self.read_snapshot().confirmed:
             self.post(ConfirmStart(""))
 
     def enable_drives(self) -> None:
-        """Switch the drives on after an E-stop or after power-up, or show why this is not possible."""
+        """Switch the drives on after an E-stop or power-up, or show why this is not possible."""
         state = self.read_snapshot().state
         if state is MachineState.DISABLED:
             self.clear_prompt_line()
@@ -408,10 +416,10 @@ class Desk:
             self.show_success("THE DRIVES ARE ALREADY ON")
 
     def handle_escape(self) -> bool:
-        """Handle the Esc key; return False if there was nothing to do.
+        """Handle the Esc key, and return False if it has no effect.
 
-        Esc cancels an open question, or a confirmed start at line 1. While the machine moves, Esc starts feed
-        hold. A message without a question does not delay the feed hold.
+        Esc cancels an open question or a confirmed start at line 1. While the machine moves, Esc starts
+        feed hold. A message without a question does not delay the feed hold.
         """
         shot = self.read_snapshot()
         moves = shot.state in prompt_line.MOVING_STATES
@@ -435,5 +443,7 @@ class Desk:
 
     @property
     def was_question_read(self) -> bool:
-        """Whether the open question was shown long enough before the present key press to have been read."""
+        """Return whether the operator had enough time to read the open question before the current key
+        press.
+        """
         return self.prompt_answers.was_read(self.station_controls.at())

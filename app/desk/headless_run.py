@@ -25,11 +25,11 @@ RUNNING_STATES = frozenset(MachineState) - {
 
 
 class HeadlessControl(Protocol):
-    """Interface of the executor as the headless run uses it."""
+    """Interface of the executor that the headless run uses."""
 
     @property
     def snapshot(self) -> Snapshot:
-        """The snapshot of the present tick."""
+        """Return the snapshot of the current tick."""
         ...
 
     def post(self, command: Command) -> None:
@@ -43,10 +43,10 @@ class HeadlessControl(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class RunOutcome:
-    """The result of a run.
+    """Outcome of a run.
 
-    ``state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``why`` is the reason as text.
-    ``elapsed_s`` is the cycle time in seconds.
+    ``final_state`` is ``complete``, ``refused``, ``alarm``, ``hold`` or ``waiting``. ``reason`` is the
+    reason as text. ``elapsed_s`` is the cycle time in seconds.
     """
 
     final_state: str
@@ -56,7 +56,7 @@ class RunOutcome:
 
 
 class HeadlessRun:
-    """Loads and starts a job, presses Cycle Start at M00 and M01, and reports the outcome."""
+    """Run that loads and starts a job, presses Cycle Start at M00 and M01, and reports the outcome."""
 
     def __init__(
         self,
@@ -69,9 +69,9 @@ class HeadlessRun:
     ) -> None:
         """Create a run that uses this executor and clock.
 
-        ``press_start`` presses both palm buttons, or asks a person to press them, if a command cannot start a
-        cycle. ``on_snapshot`` gets every snapshot after the machine is ready, including those before the
-        start.
+        ``press_start`` presses both palm buttons, or asks a person to press them, if a command cannot start
+        a cycle. ``on_snapshot`` receives every snapshot after the machine is ready, including the snapshots
+        before the start.
         """
         self._executor = executor
         self._clock = clock
@@ -83,7 +83,7 @@ class HeadlessRun:
         self._last_move = 0.0
 
     def run_job(self, job: Job, proof: Proof, *, optional_stop: bool = False) -> RunOutcome:
-        """Execute one cycle of a job, and return its outcome."""
+        """Execute one cycle of a job and return its outcome."""
         self._until(lambda s: s.state is not MachineState.DISABLED, EnableDrives(), tries=100)
         if not self._home_axes():
             self._executor.post(FeedHold("the command line"))
@@ -106,7 +106,7 @@ class HeadlessRun:
         return self._ended()
 
     def _home_axes(self) -> bool:
-        """Home the axes that are not homed. Return False if homing does not finish."""
+        """Home the axes that are not homed, and return whether homing finishes in time."""
         snapshot = self._executor.snapshot
         lost = [name for name, homed in zip(snapshot.axes, snapshot.homed, strict=True) if not homed]
         if not lost or snapshot.state is not MachineState.IDLE:
@@ -165,7 +165,10 @@ class HeadlessRun:
             self._step()
 
     def _has_restarted(self) -> bool:
-        """Press Cycle Start until the program continues. The control ignores a press soon after another."""
+        """Press Cycle Start repeatedly, and return whether the program continues.
+
+        The control ignores a press that follows another press too soon.
+        """
         for _ in range(_MAX_START_PRESSES):
             self._start(lambda s: s.state is not MachineState.PROGRAM_STOP)
             if self._executor.snapshot.state is not MachineState.PROGRAM_STOP:
@@ -173,7 +176,7 @@ class HeadlessRun:
         return False
 
     def _is_stuck(self, snapshot: Snapshot) -> bool:
-        """Return whether the program has waited too long for an input, which never changes in this run."""
+        """Return whether the program has waited too long for an input. Inputs never change in this run."""
         now = self._clock.now()
         if snapshot.state is not MachineState.WAIT or snapshot.waiting_for.startswith("DWELL"):
             self._last_move = now

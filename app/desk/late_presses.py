@@ -1,8 +1,8 @@
-"""The complete list of actions that a late key press or touch must not start.
+"""Complete list of actions that a late key press or touch must not start.
 
-A press is late if it was made before the end of a stall of the screen. All other late presses are executed in
-order. One key has many meanings, so each press is checked where it would start something: at the command that
-it posts, at the simulated station and at the answer to a question.
+A press is late if it was made before the end of a stall of the screen. All other late presses are executed
+in order. One key has many meanings, so each press is checked at the point where it would start an action.
+These points are the posting of a command, the simulated station, and the reply to a question.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ REPORT_INTERVAL_S = 4.0  # Seconds after the last dropped press. A press dropped
 
 
 class StartingAction(Enum):
-    """An action that a press may start, for example motion, drives or an output."""
+    """Action that a press may start, for example a motion, the drives or an output."""
 
     CYCLE = auto()
     DRIVES = auto()
@@ -43,7 +43,7 @@ class StartingAction(Enum):
 
 
 def name_starting_action(action: StartingAction) -> str:
-    """Return the operator's name of a starting action, translated."""
+    """Return the operator's translated name of a starting action."""
     names = {
         StartingAction.CYCLE: tr("CYCLE START"),
         StartingAction.DRIVES: tr("DRIVES ON"),
@@ -74,7 +74,10 @@ def _always(_command: Command, _now: Snapshot) -> bool:
 
 
 def _is_acknowledge(_command: Command, now: Snapshot) -> bool:
-    """Return whether a reset acknowledges an alarm, which may be new. Any other reset stops the program."""
+    """Return whether a reset would acknowledge an alarm, which may be new.
+
+    A reset in any other state stops the program.
+    """
     return now.state is MachineState.FAULT
 
 
@@ -83,7 +86,7 @@ def _begins_at_line_1(command: Command, _now: Snapshot) -> bool:
 
 
 def _is_drive_switch(command: Command, _now: Snapshot) -> bool:
-    """Return whether a forced output can start something. Only switching the coolant off cannot."""
+    """Return whether a forced output can start a motion or a device. Switching the coolant off cannot."""
     return isinstance(command, commands.ForceOutput) and (command.on or command.name != "coolant")
 
 
@@ -135,17 +138,17 @@ HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
 
 
 def find_starting_action(command: Command, now: Snapshot) -> StartingAction | None:
-    """Return the action that a command starts, or None if the command starts nothing."""
+    """Return the action that a command starts, or None if the command does not start an action."""
     found = STARTING_COMMANDS.get(type(command))
     return found[0] if found is not None and found[1](command, now) else None
 
 
 @dataclass(slots=True)
 class LatePresses:
-    """Drops actions that a late press would start, and collects their names for one message.
+    """Filter that drops actions of a late press, and collects their names for one message.
 
-    ``clock`` returns monotonic time in seconds. ``report_names`` gets the names of all dropped actions.
-    ``on_answer_dropped`` is called when the answer to a question was dropped.
+    ``clock`` returns monotonic time in seconds. ``report_names`` receives the names of all dropped actions.
+    ``on_answer_dropped`` is called when the reply to a question is dropped.
     """
 
     snapshot: Callable[[], Snapshot]
@@ -157,7 +160,7 @@ class LatePresses:
     _last: float = float("-inf")
 
     def refuse_late_press(self, action: StartingAction) -> bool:
-        """Return whether the present press is too late to start this action. A dropped action is reported."""
+        """Return whether the current press is too late to start this action. A dropped action is reported."""
         if self.is_late:
             self.report_dropped(action)
         return self.is_late
@@ -176,9 +179,9 @@ class LatePresses:
 
     @contextmanager
     def suspend_check(self) -> Iterator[None]:
-        """Return a context in which actions do not count as caused by the press.
+        """Return a context in which actions are not attributed to the current press.
 
-        It is used when a key that is held down is renewed, once a frame.
+        The context is used once per frame, while a key that is held down is renewed.
         """
         late, self.is_late = self.is_late, False
         try:
@@ -187,7 +190,7 @@ class LatePresses:
             self.is_late = late
 
     def guard_post(self, post: Callable[[Command], None]) -> Callable[[Command], None]:
-        """Return a version of ``post`` that drops the commands a late press must not give."""
+        """Return a version of ``post`` that drops commands that a late press must not send."""
 
         def guarded(command: Command) -> None:
             starting = find_starting_action(command, self.snapshot()) if self.is_late else None

@@ -1,4 +1,4 @@
-"""The description of a page of the main window. It contains class names but imports no class."""
+"""Description of a page of the main window, which contains class names but imports no class."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ ALL_LANGUAGES = LATHES | MILLS
 
 @dataclass(frozen=True, slots=True)
 class PageDescription:
-    """The description of one page.
+    """Description of one page.
 
     ``view_class`` and ``model_class`` are dotted class names, which are imported when the page is first
     opened. The model must be attached to TurnDesk. A view without a model gets its data from ``Desk``. A
-    page without a key is not in the main menu. ``deferred_modules`` lists dotted names that are imported
-    after the page has opened.
+    page without a key is not in the main menu. ``deferred_modules`` lists dotted names of modules that are
+    imported after the page has opened.
     """
 
     name: str
@@ -33,7 +33,7 @@ class PageDescription:
 
 @dataclass(frozen=True, slots=True)
 class ProgramKey:
-    """A function key of the program list that opens ``page``. ``use`` gets the program's name."""
+    """Function key of the program list that opens ``page``. ``use`` is called with the program's name."""
 
     label: str
     page: str

@@ -1,4 +1,4 @@
-"""Persistence as the screen uses it, and its replacement if no store can be opened."""
+"""Interface to the store that the screen uses, and its replacement if no store can be opened."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ NOTHING_SAVED = "no data is being saved; start turndesk with a writable folder (
 
 @dataclass(frozen=True, slots=True)
 class NullRunRecords:
-    """The run records where no store is open. Every record is dropped, and part counts are zero.
+    """Run records without an open store. Every record is dropped, and part counts are zero.
 
-    ``error_text`` is why no store is open. It is empty for scripts, which have no store.
+    ``error_text`` is the reason why no store is open. It is empty for scripts, which do not have a store.
     """
 
     error_text: str = ""
@@ -39,39 +39,39 @@ class NullRunRecords:
         return 0
 
     def add_parts(self, program: str, count: int = 1) -> None:
-        """Drop the change of a part count."""
+        """Ignore the change of a part count."""
 
     def reset_parts(self, program: str) -> None:
-        """Drop the change of a part count."""
+        """Ignore the reset of a part count."""
 
     def record_start(self, program: str) -> None:
-        """Drop the start of a run."""
+        """Ignore the start of a run."""
 
     def record_end(self, program: str, outcome: str) -> None:
-        """Drop the outcome of a run."""
+        """Ignore the outcome of a run."""
 
     def record_cycle(self, program: str, seconds: float) -> None:
-        """Drop the time of a cycle."""
+        """Ignore the time of a cycle."""
 
     def record_proof(self, program: str, result: str, planned: float | None, text: str | None = None) -> None:
-        """Drop the result of a proof."""
+        """Ignore the result of a proof."""
 
 
 @dataclass(slots=True)
 class Persistence:
-    """Settings, run records, versions, users and the event log.
+    """Storage of settings, run records, versions, users and the event log.
 
-    This base class is for scripts and for a store that cannot be opened. It stores settings until the program
-    ends, and nothing else. Reading may raise StoreError. Writing is posted and never waits. Call ``backup``,
-    ``restore``, ``save_settings``, ``events`` and ``save_version``, and wait for changes of
-    ``require_store``, on a worker thread only.
+    This base class is for scripts and for a store that cannot be opened. It stores only settings, and only
+    until the program ends. Reading may raise StoreError. Writing is posted and never waits. Call
+    ``backup``, ``restore``, ``save_settings``, ``events`` and ``save_version`` only on a worker thread.
+    Wait for changes of ``require_store`` only on a worker thread.
     """
 
     settings: dict[str, object] = field(default_factory=dict)
     who: Callable[[], str] = str  # Returns the signed-in user; empty if access levels are off.
 
     def read_setting(self, key: str) -> object:
-        """Return the stored value of a setting, or None."""
+        """Return the stored value of a setting, or None if it is not set."""
         return self.settings.get(key)
 
     def save_setting(self, key: str, value: object) -> None:
@@ -79,9 +79,9 @@ class Persistence:
         self.settings[key] = value
 
     def save_settings(self, values: Mapping[str, object]) -> None:
-        """Store several settings. Return when they are on the disk.
+        """Store several settings and wait until they are on the disk.
 
-        Call this method on a worker. Raises StoreError.
+        Call this method on a worker thread. Raises StoreError.
         """
         for key, value in values.items():
             self.save_setting(key, value)
@@ -89,8 +89,8 @@ class Persistence:
     def log_change(self, text: str, user_name: str = "") -> None:
         """Write a change to the event log, for data without its own history.
 
-        ``who`` is the user who requested the change; empty for the signed-in user. Without access levels,
-        nothing is written.
+        ``user_name`` is the user who requested the change, or empty for the signed-in user. Without access
+        levels, nothing is written.
         """
 
     def log_access(self, text: str, user_name: str) -> None:
@@ -98,11 +98,11 @@ class Persistence:
 
     @property
     def runs(self) -> RunRecords | NullRunRecords:
-        """The run records of the store that is open now. A restore opens another store."""
+        """Return the run records of the open store. A restore opens a different store."""
         return NullRunRecords()
 
     def require_store(self) -> Store:
-        """Return the store that is open now. Raises StoreError if no store is open."""
+        """Return the open store. Raises StoreError if no store is open."""
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def people(self) -> UserList:
@@ -110,14 +110,19 @@ class Persistence:
         return UserList()
 
     def events(self, _search: str, _kinds: Collection[str], _limit: int) -> Sequence[EventRow]:
-        """Return up to ``_limit`` log entries, newest first. Empty ``_kinds`` includes all kinds."""
+        """Return up to ``_limit`` log entries, with the newest entry first.
+
+        Empty ``_kinds`` includes all kinds.
+        """
         return ()
 
     def move_program_data(self, old: str, new: str) -> None:
         """Move the versions, part count and run record of a program to its new name."""
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
-        """Save a version of a program, and return its number when it is on the disk. Raises StoreError.
+        """Save a version of a program, wait until it is on the disk, and return its number.
+
+        Raises StoreError.
 
         Without a store, this method always raises the error, because the text would be lost.
         """
@@ -128,9 +133,12 @@ class Persistence:
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def check_backup(self, _source: Path) -> BackupVerdict:
-        """Check a backup and compare it with the present store. Call on a worker. Raises StoreError."""
+        """Check a backup, compare it with the current store, and return the result.
+
+        Call this method on a worker thread. Raises StoreError.
+        """
         raise StoreError(NOTHING_SAVED, "nothing-stored")
 
     def restore(self, _source: Path) -> Path | None:
-        """Replace the store by a backup, and return the path of the replaced store. Raises StoreError."""
+        """Replace the store with a backup, and return the path of the replaced store. Raises StoreError."""
         raise StoreError(NOTHING_SAVED, "nothing-stored")

@@ -1,4 +1,4 @@
-"""Values that were posted to the control and are not in its snapshot yet."""
+"""Values that were posted to the control but are not yet in its snapshot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ ARRIVAL_TIMEOUT_S = 0.3  # Seconds within which the snapshot shows a posted valu
 
 @dataclass(slots=True)
 class PostedValues:
-    """The newest posted value of each name, so that two quick key presses count twice.
+    """Newest posted value of each name, so that two quick key presses both take effect.
 
     ``clock`` returns monotonic time in seconds.
     """
@@ -19,13 +19,14 @@ class PostedValues:
     _posted: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     def toggle_value(self, name: str, displayed: bool) -> bool:
-        """Return the opposite state of a switch, to be posted now. ``displayed`` is the state in the
-        snapshot.
+        """Return the opposite state of a switch, which the caller posts immediately.
+
+        ``displayed`` is the state in the snapshot.
         """
         return bool(self.change_value(name, displayed, lambda now: not now))
 
     def change_value(self, name: str, displayed: float, change: Callable[[float], float]) -> float:
-        """Return the value after ``change``, to be posted now.
+        """Return the value after ``change``, which the caller posts immediately.
 
         The change applies to the value that was posted last, or to ``displayed`` if no value was posted in
         the last 0.3 s.

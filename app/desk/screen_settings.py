@@ -1,4 +1,4 @@
-"""Settings of the screen that the operator chooses, such as language, theme, units and readout."""
+"""Screen settings that the operator chooses, such as language, theme, units and readout."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SETTINGS_KEY = "screen"
 
 
 class DisplayUnits(StrEnum):
-    """The unit of displayed values. The operator always enters values in the unit of the control."""
+    """Unit of displayed values. The operator always enters values in the unit of the control."""
 
     PROGRAM = "AS THE PROGRAM"
     INCH = "INCH"
@@ -23,7 +23,7 @@ class DisplayUnits(StrEnum):
     def metric(self, is_control_metric: bool) -> bool:
         """Return whether displayed values are metric.
 
-        ``is_control_metric`` is whether the control uses metric units now.
+        ``is_control_metric`` is True if the control uses metric units now.
         """
         return is_control_metric if self is DisplayUnits.PROGRAM else self is DisplayUnits.METRIC
 
@@ -59,7 +59,7 @@ _UNLOGGED_SETTINGS = frozenset({"readout"})  # Settings that change many times p
 
 @dataclass(slots=True)
 class SettingsStore:
-    """The settings in force. A stored value that is not a valid choice is ignored."""
+    """The current screen settings. A stored value that is not a valid choice is ignored."""
 
     persistence: Persistence = field(default_factory=Persistence)
     current: ScreenSettings = field(init=False)
@@ -78,7 +78,10 @@ class SettingsStore:
         self.current = ScreenSettings(**{n: v for n, v in found.items() if n in names and _is_choice(n, v)})
 
     def choose(self, name: str, value: object) -> None:
-        """Apply a setting and save it. Raises ValueError for an invalid value, StoreError if saving fails."""
+        """Apply a setting and save it.
+
+        Raises ValueError if the value is invalid, or StoreError if saving fails.
+        """
         if not _is_choice(name, value):
             raise ValueError(f"{name} cannot be {value!r}")
         before, self.current = getattr(self.current, name), replace(self.current, **{name: value})  # type: ignore[arg-type]
@@ -89,13 +92,13 @@ class SettingsStore:
             )
 
     def find_next_choice(self, name: str) -> object:
-        """Return the choice after the present one, in a cycle."""
+        """Return the choice that follows the current choice. The first choice follows the last choice."""
         choices = SETTING_CHOICES[name]
         return choices[(choices.index(getattr(self.current, name)) + 1) % len(choices)]
 
     @property
     def display_units(self) -> DisplayUnits:
-        """The unit of displayed values."""
+        """Return the unit of displayed values."""
         return DisplayUnits(self.current.units)
 
 

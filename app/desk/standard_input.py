@@ -1,4 +1,7 @@
-"""Reading of standard input in place of a file, by the argument ``-``. Only one argument can use it."""
+"""Reading of standard input in place of a file for the argument ``-``.
+
+Only one argument can use standard input.
+"""
 
 from __future__ import annotations
 
@@ -13,15 +16,15 @@ _read_inputs: dict[str, bytes] = {}
 
 
 def reset_standard_input() -> None:
-    """Forget the input that was read. Call this at the beginning of a command."""
+    """Discard the input that was read. Call this function at the beginning of a command."""
     _read_inputs.clear()
 
 
 def read_standard_input(description: str) -> bytes:
     """Return all bytes of standard input, up to one byte more than the limit.
 
-    A second call with the same ``description`` returns the same bytes. Raises CommandError if standard input
-    is closed or was read for another purpose.
+    A second call with the same ``description`` returns the same bytes. Raises CommandError if standard
+    input is closed or was already read with a different ``description``.
     """
     if description in _read_inputs:
         return _read_inputs[description]

@@ -1,4 +1,4 @@
-"""The simulated operator station: palm buttons, feed hold, E-stop, spindle switch and pots."""
+"""Simulated operator station with palm buttons, feed hold, E-stop, spindle switch and pots."""
 
 from __future__ import annotations
 
@@ -33,31 +33,31 @@ class StationPanel(Protocol):
     def press_estop(self) -> None: ...
 
     def release_estop(self) -> None:
-        """Twist the E-stop button out again."""
+        """Release the E-stop button by twisting it."""
         ...
 
     def set_spindle_auto(self, is_auto: bool) -> None: ...
 
     def set_spindle_pot(self, fraction: float) -> None:
-        """Turn the spindle override pot to a fraction of its range, 0…1."""
+        """Turn the spindle override pot to a fraction of its range, 0 to 1."""
         ...
 
     def set_feed_pot(self, fraction: float) -> None:
-        """Set the feed override pot to a fraction of the programmed feed, 0…1.5."""
+        """Turn the feed override pot to a fraction of the programmed feed, 0 to 1.5."""
         ...
 
     def turn_handwheel(self, counts: int) -> None:
-        """Turn the handwheel by a signed number of counts, at a machine with a handwheel."""
+        """Turn the handwheel of a machine with a handwheel by a signed number of counts."""
         ...
 
 
 @dataclass(slots=True)
 class PalmButtons:
-    """The palm buttons that are pressed, with their times. It is used to explain a failed start.
+    """Pressed palm buttons with their press times, which explain a failed start.
 
-    A pair is dead if the buttons were not pressed in time, or if one was released and the other was not. A
-    dead pair starts nothing until both buttons are released, so that a button that is taped down starts
-    nothing.
+    A pair of presses is invalid if the buttons were not pressed in time, or if one button was released
+    while the other remained pressed. An invalid pair has no effect until both buttons are released, so that
+    a button that is taped down cannot start a cycle.
     """
 
     # "left" or "right", with its monotonic time in seconds.
@@ -66,7 +66,9 @@ class PalmButtons:
     is_pair_invalid: bool = False
 
     def press(self, side: str, time_s: float) -> bool:
-        """Record a press. Return True if both buttons are now down and were pressed within the time limit."""
+        """Record a press, and return whether both buttons are now pressed and were pressed within the time
+        limit.
+        """
         if side in self.press_times:
             return False
         self.press_times[side] = time_s
@@ -78,7 +80,9 @@ class PalmButtons:
         return not self.is_pair_invalid
 
     def release(self, side: str) -> bool:
-        """Record a release. Return True if the button was released without the other one pressed in time."""
+        """Record a release, and return whether the button was released before the other button was pressed
+        in time.
+        """
         if self.press_times.pop(side, None) is None:
             return False
         alone = not self.both_pressed
@@ -93,7 +97,10 @@ POT_SLEW_RATE = 1.0  # Fraction of the range per second. A control treats a fast
 
 @dataclass(slots=True)
 class OverridePot:
-    """A pot on the screen. ``wanted`` follows the touch, and ``position`` follows at a limited speed."""
+    """A pot on the screen.
+
+    ``wanted`` is the target that a touch sets. ``position`` moves toward the target at a limited speed.
+    """
 
     maximum: float
     wanted: float = 1.0
@@ -102,7 +109,7 @@ class OverridePot:
     late_presses: LatePresses | None = None
 
     def set(self, fraction: float) -> None:
-        """Set the target of the pot. The pot turns there at a limited speed.
+        """Set the target of the pot, toward which the pot turns at a limited speed.
 
         A late press does not raise the target, because an operator who sees no effect presses too often.
         """
@@ -117,7 +124,7 @@ class OverridePot:
         self.wanted = max(0.0, min(self.maximum, fraction))
 
     def advance(self, elapsed_s: float) -> bool:
-        """Turn the pot for this many seconds. Return True if the pot has moved."""
+        """Turn the pot for this number of seconds, and return whether it has moved."""
         if self.position == self.wanted:
             return False
         step = POT_SLEW_RATE * elapsed_s
@@ -134,11 +141,11 @@ MAX_TURN_STEP_S = 0.1
 
 @dataclass(slots=True)
 class StationControls:
-    """The buttons and pots of the simulated station that the operator uses on the screen.
+    """Buttons and pots of the simulated station that the operator uses on the screen.
 
-    Without a simulated station, all actions have no effect. ``say`` shows a message on the prompt line, and
-    ``clear`` removes it. ``starting`` is called when both palm buttons are pressed. ``barred`` returns why a
-    start is not possible now.
+    Without a simulated station, the actions have no effect. ``say`` shows a message on the prompt line, and
+    ``clear`` removes the message. ``starting`` is called when both palm buttons are pressed. ``barred``
+    returns why a start is not possible now.
     """
 
     station: StationPanel | None
@@ -161,22 +168,22 @@ class StationControls:
     _looked: float | None = None
 
     def use_late_presses(self, late: LatePresses) -> None:
-        """Drop late presses that would start something at the station."""
+        """Drop late presses that would start an action at the station."""
         self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late
 
     def _refuses(self, starting: StartingAction) -> bool:
         return self.late is not None and self.late.refuse_late_press(starting)
 
     def at(self) -> float:
-        """Return the time of the press that is being handled, by this clock."""
+        """Return the time of the press that is being processed, as measured by this object's clock."""
         return self.clock() - self.find_press_age()
 
     def palm(self, side: str, is_down: bool) -> None:
         """Press or release a palm button, at the time of the key event.
 
-        The relay of the station decides whether the pair starts a cycle. The relay gets presses when this
-        method is called. Therefore this method passes on only one press of a pair that was not pressed
-        together.
+        The relay of the station decides whether the pair starts a cycle. It receives a press when this
+        method is called and not at the time of the key event. Therefore this method forwards only one press
+        if the two buttons were not pressed together.
         """
         station = self.station
         if station is None:
@@ -196,8 +203,8 @@ class StationControls:
     def latch(self, side: str) -> None:
         """Press a palm button of a simulated machine with one touch or the mouse.
 
-        The button waits for the other one. A press of the other one presses both together, and the release of
-        the touch releases both.
+        The button remains latched until the other button is touched. That touch presses both buttons
+        together, and its release releases both buttons.
         """
         first, self.latched = self.update_latched_side(), ""
         if self._refuses(StartingAction.CYCLE):
@@ -213,9 +220,9 @@ class StationControls:
             self.palm(each, is_down=True)
 
     def update_latched_side(self) -> str:
-        """Return the palm button that waits for the other one.
+        """Return the palm button that is latched until the other button is touched.
 
-        After a time limit, the button no longer waits.
+        The latch ends after a time limit.
         """
         if self.latched and self.clock() - self._latched_at > LATCH_TIME_S:
             self.latched = ""
@@ -236,7 +243,9 @@ class StationControls:
             (station.press_left if side == "left" else station.press_right)()
 
     def release_all(self) -> None:
-        """Release all buttons, because the window has lost the keyboard and gets no release events."""
+        """Release all buttons, because the window has lost the keyboard focus and receives no release
+        events.
+        """
         self.latched = ""
         for side in tuple(self.palms.press_times):
             self.palm(side, is_down=False)
@@ -248,7 +257,7 @@ class StationControls:
             (self.station.press_hold if is_down else self.station.release_hold)()
 
     def estop(self, is_pressed: bool) -> None:
-        """Press the E-stop button, or twist it out."""
+        """Press the E-stop button, or release it by twisting."""
         if not is_pressed and self._refuses(StartingAction.RELEASE_ESTOP):
             return
         if self.station and is_pressed is not self.estop_pressed:
@@ -273,7 +282,7 @@ class StationControls:
         self.feed_pot.set(step_fraction(self.feed_pot.wanted, steps))
 
     def advance_pots(self) -> None:
-        """Move the pots toward their targets; called once a frame."""
+        """Move the pots toward their targets. The screen calls this method once per frame."""
         now = self.clock()
         passed = min(MAX_TURN_STEP_S, now - self._looked) if self._looked is not None else 0.0
         self._looked = now
@@ -285,10 +294,10 @@ class StationControls:
 
 
 def step_fraction(fraction: float, steps: int) -> float:
-    """Return an override fraction after a number of steps of ten percent, without a range limit."""
+    """Return an override fraction changed by a number of steps of ten percent, without a range limit."""
     return round(fraction / OVERRIDE_STEP + steps) * OVERRIDE_STEP
 
 
 def step_feed_override(fraction: float, steps: int) -> float:
-    """Return a feed override after a number of steps of ten percent, within its range."""
+    """Return a feed override changed by a number of steps of ten percent, limited to its range."""
     return max(0.0, min(MAX_OVERRIDE, step_fraction(fraction, steps)))

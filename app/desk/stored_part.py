@@ -1,6 +1,6 @@
-"""Stored settings of the part of a program: stock, stick-out and silenced checks.
+"""Stored part settings of a program, which are stock, stick-out and silenced checks.
 
-The store finds them by the program's name. They are never written to the program text.
+The settings are stored under the program's name. They are never written to the program text.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ ReadSetting = Callable[[str], object]
 
 @dataclass(frozen=True, slots=True)
 class StoredPart:
-    """The stored part settings of one program.
+    """Stored part settings of one program.
 
-    ``stock`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out`` is in mm, or None
-    if not entered. ``silenced_checks`` maps each silenced check to the reason.
+    ``stock`` is the stock as entered, for example ``bar:1.0+.02``, or empty. ``stick_out`` is in mm, or
+    None if it was not entered. ``silenced_checks`` maps each silenced check to the reason for silencing it.
     """
 
     stock: str = ""
@@ -52,6 +52,6 @@ def load_stored_part(read_setting: ReadSetting, program: str) -> StoredPart:
 
 
 def make_stock_absolute(stock: str) -> str:
-    """Return a stock description that is valid in every folder, with the absolute path of a file."""
+    """Return a stock specification that is valid in every folder, with the absolute path of its file."""
     kind, _, rest = stock.partition(":")
     return f"{kind}:{Path(rest).resolve()}" if kind in {"profile", "after"} else stock

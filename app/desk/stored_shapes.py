@@ -1,4 +1,4 @@
-"""Tool shapes as the proof uses them, from the stored shapes and the tool offsets."""
+"""Tool shapes for the proof, made from the stored shapes and the tool offsets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from core.tool_edges import format_edge_name, get_tool_number
 def make_tool_shape(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
     """Return the shape of a tool with the nose radius and tip quadrant of its offset.
 
-    Both are 0 for a tool without an offset.
+    Both values are 0 for a tool without an offset.
     """
     offset = tool or ToolRow()
     read = {
@@ -29,7 +29,7 @@ def make_tool_shape(row: ShapeRow, tool: ToolRow | None) -> ToolShape:
 def make_tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> dict[int, ToolShape]:
     """Return the valid shapes by tool number. Invalid shapes are omitted because they cannot be drawn.
 
-    A further cutting edge has the shape of its tool, with its own nose radius and tip quadrant.
+    An additional cutting edge has the shape of its tool, but its own nose radius and tip quadrant.
     """
     edges = {key: shapes[get_tool_number(key)] for key in tools if get_tool_number(key) in shapes}
     return {
@@ -42,8 +42,7 @@ def make_tool_shapes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow
 def describe_mistakes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRow]) -> tuple[str, ...]:
     """Return an error text for every mistake in the shapes.
 
-    Each field was valid when it was entered. A mistake results from a later change of another field or
-    offset.
+    Each field was valid when it was entered. A later change of another field or offset causes a mistake.
     """
     return tuple(
         Message(
@@ -58,7 +57,7 @@ def describe_mistakes(shapes: Mapping[int, ShapeRow], tools: Mapping[int, ToolRo
 
 
 def find_mistakes(row: ShapeRow, tool: ToolRow | None) -> tuple[ShapeMistake, ...]:
-    """Return the mistakes in a shape: contradicting fields, or an invalid code or outline."""
+    """Return the mistakes in a shape, such as contradictory fields, an invalid code or an invalid outline."""
     if row.profile and parse_outline(row.profile) is None:
         text = "a profile needs at least three points, each with Z and X in mm, for example 0,0 2.5,0 1.2,1.5"
         return (ShapeMistake("profile", text, "not-an-outline"),)

@@ -1,4 +1,4 @@
-"""Reading of TOML files that users write. All mistakes of a file are reported together."""
+"""Reading of TOML files that users write, with one error that reports all mistakes of a file."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _LEADING_POINT = re.compile(r"""(?:"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#.*)|([=\[,]\s
 def read_toml(path: Path) -> dict[str, object]:
     """Return the tables of a TOML file. Raises CommandError if the file cannot be read or is invalid.
 
-    Shops write ``.25``, which is not valid in TOML. It is read as 0.25.
+    Shops write ``.25``, which is not valid TOML. This function reads it as 0.25.
     """
     try:
         text = _read_bytes(path).decode("utf-8").replace("\r\n", "\n")
@@ -50,9 +50,9 @@ def _with_nought(found: re.Match[str]) -> str:
 
 
 def _read_bytes(path: Path) -> bytes:
-    """Return the bytes of a file; ``-`` is standard input.
+    """Return the bytes of a file, or of standard input for ``-``.
 
-    Raises CommandError if standard input is too large, TooLargeError if the file is, or OSError.
+    Raises CommandError if standard input is too large, TooLargeError if the file is too large, or OSError.
     """
     if str(path) == STDIN_ARGUMENT:
         data = read_standard_input("TOML")
@@ -71,7 +71,7 @@ def _too_large(path: Path) -> CommandError:
 
 
 def describe_unknown_key(key: str, known: Iterable[str]) -> str:
-    """Return the error text for an unknown key, with the most similar known key."""
+    """Return the error text for an unknown key, which names the most similar known key."""
     names = list(known)
     near = find_nearest(key, names)
     return Message(
@@ -82,7 +82,7 @@ def describe_unknown_key(key: str, known: Iterable[str]) -> str:
 
 
 def make_unknown_key_error(key: str, known: Iterable[str], table: str = "") -> CodedError:
-    """Return the error for an unknown key, with the name of its table."""
+    """Return the error for an unknown key, which names the table of the key."""
     return CodedError(
         Message("[{table}] {key}", table=table, key=describe_unknown_key(key, known))
         if table
@@ -92,7 +92,7 @@ def make_unknown_key_error(key: str, known: Iterable[str], table: str = "") -> C
 
 
 def raise_mistakes(path: Path, mistakes: Sequence[CodedError]) -> None:
-    """Raise CommandError with the texts and codes of all mistakes, if there are any."""
+    """Raise CommandError with the texts and codes of all mistakes, or return if there are no mistakes."""
     if mistakes:
         text = "; ".join(str(each) for each in mistakes)
         raise CommandError(

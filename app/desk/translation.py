@@ -1,7 +1,9 @@
-"""Translation of texts into the operator's language, without Qt. The screen sets the translator at its start.
+"""Translation of texts into the operator's language, without Qt.
 
-The template of a ``Message`` is translated, and its values are translated and inserted. A text without values
-is translated as a whole. A text that the catalog does not contain remains English.
+The screen sets the translator when it starts.
+
+The template of a ``Message`` is translated, and its values are translated and inserted. A text without
+values is translated as a whole. A text that is not in the catalog remains in English.
 """
 
 from __future__ import annotations
@@ -19,23 +21,23 @@ ENGLISH_CODE = "en"
 
 
 class _ActiveTranslation:
-    """The translator in use, and its language."""
+    """The active translator and its language."""
 
     translate: Translate | None = None
     language = ENGLISH_CODE
 
 
 def set_translator(translate: Translate | None, language: str = ENGLISH_CODE) -> None:
-    """Set the translator for all texts. None leaves the texts English.
+    """Set the translator for all texts. With None, the texts remain in English.
 
-    ``language`` is its ISO 639-1 code.
+    ``language`` is the ISO 639-1 code of the translator's language.
     """
     _ActiveTranslation.translate = None if translate is None else lru_cache(8192)(translate)
     _ActiveTranslation.language = language
 
 
 def get_language() -> str:
-    """Return the ISO 639-1 code of the language in use."""
+    """Return the ISO 639-1 code of the active language."""
     return _ActiveTranslation.language
 
 
@@ -48,12 +50,14 @@ _DATA, _END = "\u2068", "\u2069"  # Unicode's isolate characters, which are not 
 
 
 def mark_untranslated(text: str) -> str:
-    """Mark a text of the user, such as a remark or a name, so that ``tr`` does not translate it."""
+    """Return a user text, such as a remark or a name, with a mark that prevents ``tr`` from translating the
+    text.
+    """
     return f"{_DATA}{text}{_END}" if text else ""
 
 
 def tr(text: str) -> str:
-    """Return a text in the operator's language, or the English text if there is no translation."""
+    """Return a text in the operator's language, or the English text if it has no translation."""
     translate = _ActiveTranslation.translate
     shown = text if translate is None else _translated(text, translate)
     return shown.replace(_DATA, "").replace(_END, "") if _DATA in shown else str.__str__(shown)
@@ -81,7 +85,9 @@ def _fill_message(message: Message, translate: Translate) -> str:
 
 
 def _is_untranslatable(name: str, value: MessageValue, of_program: bool) -> bool:
-    """Return whether a value must not be translated: a number, a name, or a word of the program."""
+    """Return whether a value must not be translated because it is a number, a name, or a word of the
+    program.
+    """
     if isinstance(value, Message):
         return False
     if not isinstance(value, str) or name in _NAMES:

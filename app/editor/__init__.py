@@ -1,1 +1,4 @@
-"""Page EDITOR (F3): the text, its proof during typing, its files and its versions; model and view."""
+"""Editor page (F3): the program text, its proof while you type, its files and its versions.
+
+The package contains the model and the views.
+"""

@@ -1,4 +1,4 @@
-"""Code help of the editor: the meaning and picture of the code at the cursor, and a list of codes."""
+"""Code help of the editor: the meaning and a sketch of the code at the cursor, and the list of codes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ Point = tuple[float, float]
 
 
 def make_code_sketch(code: str, dialect: Dialect = Dialect.OMNITURN) -> Sketch | None:
-    """Return the sketch of a lathe code, Z to the right and radius up, or None without a sketch."""
+    """Return the sketch of a lathe code, or None if the code has no sketch.
+
+    In the sketch, Z points to the right and the radius points up.
+    """
     return _CODE_SKETCHES.get(dialect, {}).get(code)
 
 
@@ -36,7 +39,10 @@ def _arc(centre: Point, radius: float, begin: float, end: float) -> tuple[Point,
 
 
 def _make_arc_sketch(text: str, *, convex: bool) -> Sketch:
-    """Return a sketch from the face to the chuck with an arc: a rounded shoulder or a filled corner."""
+    """Return the sketch of an arc from the face to the chuck.
+
+    A convex arc is a rounded shoulder, and a concave arc is a filled corner.
+    """
     corner = _arc((-4, 4), 4, 0, 90) if convex else _arc((0, 8), 4, 270, 180)
     solid = make_part_outline((0, 0), *corner, (-16, 8), (-16, 0))
     return make_sketch(
@@ -48,16 +54,16 @@ def _make_arc_sketch(text: str, *, convex: bool) -> Sketch:
 
 
 def _make_arrow(a: Point, b: Point) -> Outline:
-    """Return an arrow in the direction of tool motion."""
+    """Return an arrow from ``a`` to ``b`` that shows the direction of tool motion."""
     angle = math.atan2(b[1] - a[1], b[0] - a[0])
     ends = [(b[0] - 1.4 * math.cos(angle + s), b[1] - 1.4 * math.sin(angle + s)) for s in (0.5, -0.5)]
     return Outline((ends[0], b, ends[1]), "tool")
 
 
 def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
-    """Return a sketch of a roughing cycle.
+    """Return the sketch of a roughing cycle.
 
-    ``deep`` and ``left`` are the words for the depth of cut and the allowance, and ``points`` are those for
+    ``deep`` and ``left`` are the words for the depth of cut and the allowance. ``points`` are the words for
     the start and end points.
     """
     profile = ((0, 3), (-6, 3), (-9, 6), (-14, 6), (-14, 9))
@@ -74,7 +80,7 @@ def _make_roughing_sketch(deep: str, left: str, *points: str) -> Sketch:
 
 
 def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch:
-    """Return a sketch of a threading cycle with the words for lead, start, last pass and end."""
+    """Return the sketch of a threading cycle, labeled with the words for lead, start, last pass and end."""
     teeth = [(-float(k), 7.0 if k % 2 else 5.6) for k in range(13)]
     depths = [
         make_cut_outline((3, 7.0 - 0.7 * math.sqrt(k)), (-12, 7.0 - 0.7 * math.sqrt(k))) for k in (1, 2, 3, 4)
@@ -90,7 +96,7 @@ def _make_threading_sketch(lead: str, start: str, last: str, end: str) -> Sketch
 
 
 def _make_side_sketch(*, outside: bool) -> Sketch:
-    """Return a sketch of the tool nose along the outside or inside contour, moving to the chuck."""
+    """Return the sketch of a tool nose that follows the outside or inside contour toward the chuck."""
     solid = make_part_outline((0, 0), (0, 5), (-8, 5), (-12, 8), (-18, 8), (-18, 0))
     off = 1.2 if outside else -1.2
     path = make_cut_outline((2, 5 + off), (-8, 5 + off), (-12, 8 + off), (-18, 8 + off))
@@ -105,9 +111,9 @@ def _make_side_sketch(*, outside: bool) -> Sketch:
 
 
 def _make_quadrant_sketch() -> Sketch:
-    """Return a sketch of the tip quadrants around the nose center.
+    """Return the sketch of the tip quadrants around the nose center.
 
-    The radius points up, to the operator.
+    The radius axis points up, toward the operator.
     """
     nose = Outline(_arc((0, 0), 3, 0, 360), "tool", is_closed=True)
     tips = tuple(Dimension(str(n), (6.0 * z, 6.0 * x)) for n, (z, x) in TIP_DIRECTIONS.items() if n)
@@ -143,7 +149,7 @@ SKETCH_HEIGHT = 17.0  # units: height of a sketch
 
 
 class CodeStrip(Panel):
-    """Line with one code, its syntax and meaning. A press opens the list."""
+    """Strip that shows one code with its syntax and meaning; a press opens the list of codes."""
 
     ground_color = "panel"
     entry: RedrawingAttribute[CodeBookEntry | None] = RedrawingAttribute(None)
@@ -164,7 +170,7 @@ class CodeStrip(Panel):
 class CodeList(CodeChoiceList):
     """List of codes.
 
-    For the selected code, the list shows its description, examples and sketch.
+    For the selected code, the list also shows the description, examples and a sketch.
     """
 
     def __init__(
@@ -175,7 +181,10 @@ class CodeList(CodeChoiceList):
         return_to_text: Callable[[], None],
         parent: QWidget,
     ) -> None:
-        """Create the list. ``return_to_text`` closes the list and returns to the text."""
+        """Create the list.
+
+        ``return_to_text`` is called to close the list and to return to the text.
+        """
         self._codes = CodeHelp()
         super().__init__(theme, self._codes, self._insert_code, parent)
         self._field, self._proof, self._back = text_field, live_proof, return_to_text
@@ -183,7 +192,7 @@ class CodeList(CodeChoiceList):
         self._picture = SketchPanel(theme, lambda _word: None, lambda _point: None, self)
 
     def update_code(self) -> CodeBookEntry | None:
-        """Update the code under the cursor and return its entry."""
+        """Look up the code at the cursor and return its entry, or None if no code is there."""
         field = self._field
         self._codes.update_for_cursor(
             self._proof.current.code_book, field.textCursor().block().text(), field.cursor_column
@@ -191,7 +200,10 @@ class CodeList(CodeChoiceList):
         return self._codes.current_entry
 
     def open_choices(self) -> bool:
-        """Open the list for the typed text. Return False if no text has been proved yet."""
+        """Open the list for the code at the cursor and return whether it opened.
+
+        The list cannot open before a text has been proved.
+        """
         self.update_code()
         return self._codes.open_choices()
 
@@ -203,7 +215,10 @@ class CodeList(CodeChoiceList):
         self._back()
 
     def refresh(self) -> None:
-        """Update the sketch and the list; called once per frame."""
+        """Update the sketch and the list.
+
+        This method is called once per frame.
+        """
         super().refresh()
         chosen = self._codes.selected_entry
         drawn = make_code_sketch(chosen.head, self.dialect) if chosen is not None else None
@@ -224,15 +239,15 @@ class CodeList(CodeChoiceList):
             )
 
     def _find_foot_height(self) -> float:
-        """Return the height of the example and the sketch in pixels."""
+        """Return the height of the area for the example and the sketch in pixels."""
         return super()._find_foot_height() + self._find_sketch_height()
 
     def _find_sketch_height(self) -> float:
-        """Return the height of the sketch in pixels."""
+        """Return the height of the sketch in pixels, or 0 while the sketch is hidden."""
         return SKETCH_HEIGHT * self.theme.u if not self._picture.isHidden() else 0.0
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys while the list is open."""
+        """Return the function keys that apply while the list is open."""
         shown = self._codes
         return {
             2: FunctionKey("WRITE", self._insert_code),

@@ -1,4 +1,4 @@
-"""Document of the editor: its file, how it is saved, and the draft that protects unsaved text."""
+"""Document of the editor: its file, the functions that save it, and the draft that protects unsaved text."""
 
 from __future__ import annotations
 
@@ -31,10 +31,11 @@ class InvalidNameError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """Edited program. ``text`` has line feeds only, and ``line_ending`` is the line ending of the file.
+    """Program that is being edited.
 
-    ``is_read_only`` marks a sample, which must be saved under another name. ``is_new`` marks a document that
-    is not on the disk yet.
+    ``text`` contains line feeds only, and ``line_ending`` is the line ending of the file. ``is_read_only``
+    marks a sample, which must be saved under another name. ``is_new`` marks a document that is not on the
+    disk yet.
     """
 
     path: Path
@@ -45,16 +46,19 @@ class Document:
 
     @property
     def name(self) -> str:
-        """File name of the program."""
+        """Return the file name of the program."""
         return self.path.name
 
     def encode(self, text: str) -> bytes:
-        """Return ``text`` as the bytes of the file, with the file's line ending."""
+        """Return ``text`` as bytes with the line ending of the file."""
         return end_last_line(text).replace("\n", self.line_ending).encode("utf-8", "replace")
 
 
 def end_last_line(text: str) -> str:
-    """Return the text with a final line feed, as it is saved and proved."""
+    """Return the text with a final line feed.
+
+    TurnDesk saves and proves texts in this form. An empty text remains empty.
+    """
     return text if text.endswith("\n") or not text else text + "\n"
 
 
@@ -80,7 +84,7 @@ def open_document(path: Path, samples_folder: Path) -> Document:
 
 
 def _read_text(path: Path) -> str:
-    """Return the text of a file. An empty file is permitted."""
+    """Return the text of a file, which can be empty."""
     try:
         return load_source(path).text
     except SourceError as error:
@@ -90,14 +94,18 @@ def _read_text(path: Path) -> str:
 
 
 def create_document(folder: Path, typed_name: str, default_extension: str) -> Document:
-    """Return a new, empty document for a typed name. Raises NameRefusedError."""
+    """Return a new, empty document for a typed name.
+
+    Raises InvalidNameError if the name is not valid.
+    """
     return Document(folder / make_program_name(typed_name, default_extension), is_new=True)
 
 
 def make_program_name(typed_name: str, default_extension: str) -> str:
-    """Return the file name for a typed name, with the ``default_extension`` extension if the name has none.
+    """Return the file name for a typed name.
 
-    Raises NameRefusedError if the name is not valid.
+    A name without an extension gets ``default_extension``. Raises InvalidNameError if the name is not
+    valid.
     """
     name = typed_name.strip()
     if not name:
@@ -134,9 +142,9 @@ CHANGED_EXTERNALLY = "changed by another program"
 def save_document(document: Document, text: str, archive: VersionArchive, may_overwrite: bool) -> str:
     """Write ``text`` to the file of ``document`` and archive it as a version.
 
-    Returns an empty string, the reason why no version was archived, or ``CHANGED_EXTERNALLY``.
-    ``CHANGED_EXTERNALLY`` means that the file differs from the opened text. Nothing is written then, unless
-    ``may_overwrite`` is set. Raises FileError.
+    Returns an empty string on success, or the reason why no version was archived. If the file on the disk
+    differs from the text that was opened, and ``may_overwrite`` is not set, nothing is written and the
+    result is ``CHANGED_EXTERNALLY``. Raises FileOperationError.
     """
     there = read_if_exists(document.path)
     foreign = there is not None and not _matches_opened(document, there)
@@ -153,14 +161,14 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
 
 
 def _matches_opened(document: Document, data: bytes) -> bool:
-    """Return whether the file still contains the text that was opened or last saved."""
+    """Return whether the file data still equal the text that was opened or last saved."""
     if document.is_new:
         return False
     return data == document.encode(document.text) or _matches_text(document, data)
 
 
 def _matches_text(document: Document, data: bytes) -> bool:
-    """Return whether data from DOS decodes to the document's text.
+    """Return whether file data from DOS decode to the text of the document.
 
     Such data can have another character set, a byte order mark or an end-of-file character.
     """
@@ -187,7 +195,10 @@ WHY = "unsaved draft"
 
 @dataclass(slots=True)
 class DraftStore:
-    """Draft files, one per text, written by a worker with the latest unsaved text."""
+    """Store of draft files, one for each document with unsaved text.
+
+    A worker writes the latest unsaved text.
+    """
 
     folder: Path
     archive: VersionArchive
@@ -196,19 +207,19 @@ class DraftStore:
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-drafts"))
 
     def set_text(self, document: Document, text: str) -> None:
-        """Record the present text of the editor as the draft."""
+        """Store the present text of the editor as the draft of the document."""
         self._wanted[document.name] = None if text == document.text else text
         self._go_on()
 
     def delete_draft(self, document: Document) -> None:
-        """Delete the draft of a document, because its text was saved or discarded."""
+        """Delete the draft of a document whose text was saved or discarded."""
         self._wanted[document.name] = None
         self._go_on()
 
     def recover_draft(self, document: Document, show_message: Callable[[str], None]) -> None:
-        """Move a leftover draft of the document to the history before a new draft is written.
+        """Move a draft from an earlier session to the version history before a new draft is written.
 
-        ``show_message`` is called with a message.
+        ``show_message`` is called with the result for the operator.
         """
         self.worker.enqueue(lambda: self._recovered(document), show_message, show_message)
 
@@ -231,7 +242,10 @@ class DraftStore:
         return Message(messages.DRAFT_NOT_ARCHIVED, name=aside, why=why)
 
     def poll(self) -> None:
-        """Process finished writes and start the next; called once per frame."""
+        """Process finished writes and start the next write.
+
+        This method is called once per frame.
+        """
         self.worker.poll()
         self._go_on()
 
@@ -253,7 +267,10 @@ class DraftStore:
         self._go_on()
 
     def _write_draft(self, name: str, text: str | None) -> str:
-        """Write or delete a draft file atomically, and return an error message or an empty string."""
+        """Write or delete a draft file atomically.
+
+        Returns an error message, or an empty string on success.
+        """
         place = self._place(name)
         try:
             if text is None:

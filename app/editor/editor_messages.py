@@ -1,4 +1,7 @@
-"""Messages of the editor. The first two are texts of the original control."""
+"""Messages of the editor.
+
+The first two are texts of the original control.
+"""
 
 from __future__ import annotations
 

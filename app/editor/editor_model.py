@@ -1,7 +1,8 @@
-"""Editor model without Qt: opening, creating, saving and leaving programs, with version history.
+"""Model of the editor without Qt: opening, creating, saving and closing programs, with version history.
 
-No method waits. Each request of the operator starts at once and ends in a later ``poll``, which is called
-once per frame. The text is in the text field of the page, which passes it with each request.
+No method blocks. Each request of the operator starts at once and ends in a later call of
+``EditorModel.poll``, which is made once per frame. The text field of the page contains the text and passes
+it with each request.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from core.message import Message
 
 
 class EditorStage(StrEnum):
-    """State of the editor."""
+    """Stage of work on a document in the editor."""
 
     CLOSED = "closed"
     OFFERED = "offered"  # a new file: F1 creates it, Esc cancels
@@ -49,7 +50,8 @@ class EditorStage(StrEnum):
 class ClosedProgram:
     """Program that was closed in the editor.
 
-    ``changed`` means that it was saved with changes, and ``should_load`` that it is to be loaded.
+    ``is_changed`` means that the program was saved with changes, and ``should_load`` that it is to be
+    loaded.
     """
 
     path: Path
@@ -60,10 +62,10 @@ class ClosedProgram:
 
 @dataclass(slots=True)
 class EditorModel:
-    """Editor of one document at a time. ``left`` is called with the program that was closed.
+    """Model of an editor for one document at a time.
 
-    ``loading_steps`` prove a text without storing anything, and ``programs`` is the operator's program
-    folder.
+    ``on_closed`` is called with the program that was closed. ``loading_steps`` prove a text without storing
+    anything. ``programs_folder`` is the program folder of the operator.
     """
 
     loading_steps: LoadingSteps
@@ -101,7 +103,10 @@ class EditorModel:
         self.draft_store = DraftStore(self.programs_folder / ".drafts", self.version_archive)
 
     def poll(self) -> None:
-        """Process finished work; called once per frame."""
+        """Process finished work.
+
+        This method is called once per frame.
+        """
         self.worker.poll()
         self.draft_store.poll()
         if self.draft_store.error_text and not self.message:
@@ -116,20 +121,20 @@ class EditorModel:
     # --- opening -------------------------------------------------------------------------------------
 
     def open_program(self, path: Path, block_delete: bool = False) -> None:
-        """Read a program into the editor."""
+        """Start reading a program into the editor."""
         self.clear_message()
         self.block_delete = block_delete
         self.stage = EditorStage.READING
         self.worker.enqueue(lambda: open_document(path, self.samples_folder), self._opened, self._not_opened)
 
     def offer_new(self, typed_name: str) -> None:
-        """Ask whether to create a new file with this name."""
+        """Ask whether to create a new file with the typed name."""
         self.clear_message()
         self.stage, self._offered = EditorStage.OFFERED, typed_name
         self.message = messages.CREATE_FILE
 
     def create_document(self) -> None:
-        """Create the offered document (F1)."""
+        """Create the document that was offered (F1)."""
         if self.stage is not EditorStage.OFFERED:
             return
         try:
@@ -170,12 +175,12 @@ class EditorModel:
 
     @property
     def is_saved_since_open(self) -> bool:
-        """Whether the document was saved since it was opened."""
+        """Return whether the document was saved after it was opened."""
         return self._changed
 
     @property
     def name(self) -> str:
-        """Name of the document or of the offered new file."""
+        """Return the name of the document or of the new file that is offered."""
         return self.document.name if self.document else self._offered
 
     def update_text(self, text: str) -> None:
@@ -194,7 +199,7 @@ class EditorModel:
         return document is not None and text != document.text
 
     def restore_version(self, text: str, version_number: int) -> None:
-        """Replace the text with an older version, as one step that can be undone."""
+        """Replace the text with that of an older version, so that one undo reverses the change."""
         self._put(text, restored=True)
         self.message = messages.VERSION_RESTORED.format(version_number)
 
@@ -205,7 +210,10 @@ class EditorModel:
     # --- saving and leaving --------------------------------------------------------------------------
 
     def save_document(self, text: str, *, leave_after: bool = False, may_overwrite: bool = False) -> None:
-        """Save the file and archive the version, then leave if requested."""
+        """Save the file, archive the version, and close the editor if ``leave_after`` is set.
+
+        ``may_overwrite`` permits replacing a file that another program has changed.
+        """
         document = self.document
         if document is None or self.stage is not EditorStage.OPEN:
             return
@@ -221,7 +229,7 @@ class EditorModel:
             self._write(document, text, replacing=may_overwrite)
 
     def save_under_name(self, typed_name: str) -> bool:
-        """Save a sample under the typed name. Return False if the name is rejected."""
+        """Save a sample under the typed name and return whether the name was accepted."""
         document = self.document
         if document is None or self.stage is not EditorStage.NAMING:
             return False
@@ -246,9 +254,10 @@ class EditorModel:
             self.stage, self._leaving = EditorStage.OPEN, False
 
     def save_and_leave(self, text: str, *, should_load: bool = False) -> None:
-        """Save changes and leave the editor. An empty new file is discarded.
+        """Save changes and close the editor.
 
-        If ``should_load`` is set, the program is loaded (F3). Otherwise the loaded program remains (F1).
+        An empty new file is discarded. If ``should_load`` is set, the program is then loaded (F3).
+        Otherwise the loaded program stays loaded (F1).
         """
         document, self._to_desk = self.document, should_load
         if document is None or self.stage is not EditorStage.OPEN:
@@ -261,7 +270,10 @@ class EditorModel:
             self._go(document)
 
     def discard_and_leave(self, text: str) -> None:
-        """Leave without saving. Unsaved changes require confirmation with another key."""
+        """Close the editor without saving.
+
+        If the text has unsaved changes, the operator must first confirm with another key.
+        """
         if self.stage is not EditorStage.OPEN:
             return
         if self.is_dirty(text):
@@ -321,8 +333,8 @@ class EditorModel:
 def open_editor(desk: Desk, editor: EditorModel) -> bool:
     """Open the editor with the program whose name was typed, or else with the loaded program.
 
-    An unknown name is offered as a new file. Returns False if the editor cannot be opened. TurnDesk shows the
-    reason.
+    An unknown name is offered as a new file. Returns False if the editor cannot open; TurnDesk then shows
+    the reason.
     """
     name, now = editor.pending_name.strip(), desk.program_loader.loaded
     editor.pending_name = ""
@@ -340,10 +352,7 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
 
 
 def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
-    """Load the closed program if F3 requires it.
-
-    Otherwise report which program remains loaded.
-    """
+    """Load the closed program if F3 requires this, or else report which program remains loaded."""
     path, now = closed.path, desk.program_loader.loaded
     if closed.is_changed:
         desk.storage_state.recheck_file()
@@ -372,9 +381,10 @@ def _stays(left: ClosedProgram, now: LoadedProgram) -> str:
 
 
 def _should_load(closed: ClosedProgram, loaded: LoadedProgram) -> bool:
-    """Return whether F3 loads the program: it was changed, or the loaded program has another text.
+    """Return whether F3 loads the closed program.
 
-    Viewing a program never replaces another loaded program.
+    F3 loads a program that was changed, and reloads the loaded program if its text is different. A program
+    that was only viewed never replaces another loaded program.
     """
     if closed.is_changed or loaded.path is None:
         return True
@@ -382,7 +392,10 @@ def _should_load(closed: ClosedProgram, loaded: LoadedProgram) -> bool:
 
 
 def _is_loaded(text: str, current: LoadedProgram) -> bool:
-    """Return whether the loaded program has this text, ignoring line endings."""
+    """Return whether the loaded program has this text.
+
+    Different line endings are ignored.
+    """
     if current.source is None:
         return False
     loaded = current.source.text.replace("\r\n", "\n").replace("\r", "\n")

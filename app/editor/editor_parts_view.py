@@ -1,4 +1,4 @@
-"""Parts of the page EDITOR: head line, path, findings and keyboard, with their visibility and layout."""
+"""Parts of the editor page: head line, path, findings and keyboard, with their visibility and layout."""
 
 from __future__ import annotations
 
@@ -42,9 +42,10 @@ if TYPE_CHECKING:
 
 
 class EditorPathView(PathView):
-    """Path of the edited text. An adjusted view remains while the text changes.
+    """Path of the edited text.
 
-    ``jump_to_line`` is called with the source line of a touched path.
+    A view that the operator adjusted does not change while the text changes. When a path is touched, the
+    line is passed to the ``jump_to_line`` function of the constructor.
     """
 
     title = "PATH TO THE CURSOR"
@@ -63,11 +64,14 @@ class EditorPathView(PathView):
 
     @property
     def tip_position(self) -> TipPosition:
-        """Tip at the end of the cursor line."""
+        """Return the position of the tool tip at the end of the cursor line."""
         return self._tip or TipPosition()
 
     def follow_line(self, line: int) -> None:
-        """Move the tip to the end of a source line, or of the nearest earlier line with motion."""
+        """Move the tool tip to the end of a source line.
+
+        If the line contains no motion, the tip moves to the end of the nearest earlier line with motion.
+        """
         picture = self.picture
         if picture is None or not len(picture.z) or (picture, line) == self._followed:
             return
@@ -80,9 +84,9 @@ class EditorPathView(PathView):
         self.mark(picture.find_blocks_for_line(line))
 
     def jump_to_path_line(self) -> str:
-        """Go to the source line of the path at the crosshair.
+        """Move the cursor to the source line of the path at the crosshair.
 
-        Return a message if the crosshair is off the path.
+        Returns a message if the crosshair is not on the path, or else an empty string.
         """
         block = self.measurement.find_block() if self.measurement is not None else 0
         if not block:
@@ -91,7 +95,7 @@ class EditorPathView(PathView):
         return ""
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys while the path has the keyboard."""
+        """Return the function keys that apply while the path has the keyboard focus."""
         return {
             2: FunctionKey("FEED HOLD", self._set_measured_point),
             4: FunctionKey("VIEW", self.select_next_view),
@@ -101,7 +105,7 @@ class EditorPathView(PathView):
         }
 
     def _set_measured_point(self) -> None:
-        """Set a measured point at the crosshair."""
+        """Set a point of the measurement at the crosshair."""
         if self.measurement is not None:
             self.measurement.set_point()
             self.update()
@@ -119,9 +123,9 @@ FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
 
 
 class FindingList(RowPanel):
-    """List of findings in the order of lines.
+    """List of findings in the order of the lines.
 
-    The finding of the cursor line is marked and remains visible.
+    The finding of the cursor line is marked and stays visible.
     """
 
     scroll_step = 1
@@ -142,7 +146,7 @@ class FindingList(RowPanel):
 
     @property
     def words(self) -> str:
-        """Title line of the list."""
+        """Return the title line of the list."""
         found = self.findings
         if found.error_text:
             return found.error_text
@@ -158,9 +162,10 @@ class FindingList(RowPanel):
         )
 
     def find_next_error(self, line: int) -> Diagnostic | None:
-        """Return the next error after a line.
+        """Return the next error after a line, or None if no finding has a line.
 
-        The search continues at the start of the list. Without errors, the next other finding is returned.
+        After the last line, the search continues at the start of the list. If there are no errors, the next
+        warning or note is returned.
         """
         placed = [d for d in self.findings.diagnostics if d.line]
         found = [d for d in placed if d.severity is Severity.ERROR] or placed
@@ -208,7 +213,7 @@ HEAD_KEY_WIDTH = 14.0  # units: width of the key that shows the keyboard and of 
 class EditorHeading(NamedTuple):
     """Content of the head line.
 
-    ``mark`` is CHANGED, SAMPLE, NEW or empty for an unchanged file.
+    ``mark`` is CHANGED, SAMPLE or NEW, or empty for an unchanged file.
     """
 
     name: str = ""
@@ -229,7 +234,7 @@ class EditorHeadLine(Panel):
     ) -> None:
         """Create the head line.
 
-        ``keys`` shows or hides the keyboard, ``panel`` opens the panel of a key.
+        ``keys`` shows or hides the keyboard, and ``open_panel`` opens the panel of a key.
         """
         super().__init__(theme, parent)
         self._keys, self._panel = keys, open_panel
@@ -262,11 +267,11 @@ HEAD_LINE_HEIGHT = 6.8  # units: a fingertip, for the key that shows the keyboar
 
 
 class EditorLayout(NamedTuple):
-    """Areas of the page. ``question_line`` is empty without a question, and ``keys`` without the drawn
-    keyboard.
+    """Areas of the editor page.
 
-    ``code_strip`` is the line that explains the code at the cursor, and ``code_list`` is the list of codes.
-    ``path`` is the area of all pictures of the program.
+    ``question_line`` is empty if no question is shown, and ``keyboard`` is empty while the drawn keyboard
+    is hidden. ``code_strip`` is the line that explains the code at the cursor, and ``code_list`` is the
+    list of codes. ``path_area`` contains all pictures of the program.
     """
 
     head_line: Rect
@@ -283,10 +288,10 @@ class EditorLayout(NamedTuple):
 def make_editor_layout(
     width: int, height: int, u: float, *, has_question: bool, keyboard_height: float = 0.0
 ) -> EditorLayout:
-    """Return the layout of the page in pixels. ``u`` is the unit of the page.
+    """Return the layout of the page in pixels.
 
-    ``keys`` is the height of the drawn keyboard in units. With the keyboard, the text has the full width
-    above it.
+    ``u`` is the layout unit of the page in pixels. ``keyboard_height`` is the height of the drawn keyboard
+    in these units, or 0 if it is hidden. If the keyboard is shown, the text has the full width above it.
     """
     gap = max(4, round(0.7 * u))
     head = Rect(0, 0, width, round(HEAD_LINE_HEIGHT * u))
@@ -328,9 +333,9 @@ ASKING_MODES = frozenset({EditorMode.FIND, EditorMode.LINE_NUMBER, EditorMode.NA
 
 
 class EditorParts(Page):
-    """Editor page as a set of parts, which ``EditorPage`` creates.
+    """Editor page with its parts, which ``EditorPage`` creates.
 
-    ``mode`` determines the visible parts.
+    ``mode`` determines which parts are visible.
     """
 
     mode: EditorMode
@@ -350,7 +355,7 @@ class EditorParts(Page):
     _with_letters = False
 
     def show_text(self) -> None:
-        """Update heading, findings and picture for the present text."""
+        """Update the heading, the findings and the picture for the present text."""
         editor = self.editor
         line, column, count = (
             self.text_field.cursor_line,
@@ -371,7 +376,7 @@ class EditorParts(Page):
         self._show_path(findings.picture, line)
 
     def _show_path(self, picture: ProgramPicture | None, line: int) -> None:
-        """Show the path up to the cursor line, or on a mill the plane of that line in 3D."""
+        """Show the path up to the cursor line, or on a mill the working plane of that line in 3D."""
         scene = picture.scene if picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(
@@ -386,7 +391,7 @@ class EditorParts(Page):
         self.path_view.draw_slice()
 
     def show_mode(self) -> None:
-        """Show the parts of the present mode."""
+        """Show the parts that belong to the present mode."""
         self.path_view.set_measuring(is_on=self.mode is EditorMode.PATH)
         self.version_list.setVisible(self.mode is EditorMode.HISTORY)
         self.code_list.setVisible(self.mode is EditorMode.CODES)
@@ -406,7 +411,10 @@ class EditorParts(Page):
 
     @property
     def is_keyboard_shown(self) -> bool:
-        """Whether the drawn keyboard is visible: the user has requested it, and the mode accepts text."""
+        """Return whether the drawn keyboard is visible.
+
+        The keyboard is visible if the user has requested it and the mode accepts text.
+        """
         return self._with_letters and self.mode in ASKING_MODES | {EditorMode.TEXT}
 
     def toggle_keyboard(self) -> None:
@@ -418,7 +426,7 @@ class EditorParts(Page):
         send_key(key, self.letter_pad.focusProxy() or self.text_field)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts again after a change of size."""
+        """Lay out all parts again after the size of the page has changed."""
         self._lay_out()
         self.apply_theme()
 

@@ -1,4 +1,7 @@
-"""Proof during typing: runs on a worker for the latest text only, without delaying keys."""
+"""Proof of the program while the operator types.
+
+The proof runs on a worker, for the latest text only, and does not delay the keys.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,10 @@ _SEVERITY_WEIGHTS = {Severity.ERROR: 2, Severity.WARNING: 1, Severity.NOTE: 0}
 
 @dataclass(frozen=True, slots=True)
 class ProofFindings:
-    """Result of proving the text with this number. ``picture`` can belong to an older text."""
+    """Result of proving the text with the number ``number``.
+
+    ``picture`` can belong to an older text.
+    """
 
     number: int = 0
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -38,19 +44,20 @@ class ProofFindings:
 
     @property
     def error_count(self) -> int:
-        """Number of findings that prevent a run."""
+        """Return the number of errors, which prevent a run."""
         return sum(d.severity is Severity.ERROR for d in self.diagnostics)
 
     @property
     def warning_count(self) -> int:
-        """Number of warnings."""
+        """Return the number of warnings."""
         return sum(d.severity is Severity.WARNING for d in self.diagnostics)
 
 
 def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
-    """Return the most severe finding of each line, the first of equals.
+    """Return the most severe finding of each line.
 
-    Line 0 is the whole file.
+    If several findings of a line have the same severity, the first one is returned. Line 0 represents the
+    whole file.
     """
     found: dict[int, Diagnostic] = {}
     for one in diagnostics:
@@ -64,7 +71,7 @@ def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 class LiveProof:
     """Proof of the latest text.
 
-    ``submit_text`` and ``current`` never wait, and older texts are skipped.
+    ``submit_text`` and ``current`` never block, and older texts are skipped.
     """
 
     steps: LoadingSteps
@@ -78,24 +85,27 @@ class LiveProof:
 
     @property
     def current(self) -> ProofFindings:
-        """Latest findings. A failure of the worker appears as ``error_text``."""
+        """Return the latest findings.
+
+        If the worker fails, ``error_text`` of the findings contains the reason.
+        """
         self.worker.poll()
         return self._now
 
     @property
     def is_outdated(self) -> bool:
-        """Whether a newer text than that of ``current`` is waiting or being proved."""
+        """Return whether a text newer than that of ``current`` is waiting or being proved."""
         return self.worker.is_busy
 
     def submit_text(self, name: str, text: str, block_delete: bool = False) -> int:
-        """Submit the present text, and return its number."""
+        """Submit the present text for proving, and return its number."""
         self._number += 1
         work = partial(self._prove_text, self._number, ProgramSource(name, text), block_delete)
         self.worker.request(work, self._show, self._failed)
         return self._number
 
     def clear_findings(self) -> None:
-        """Clear the findings when another document opens."""
+        """Clear the findings because another document opens."""
         self._number += 1
         self._now = ProofFindings(self._number)
 
@@ -108,7 +118,7 @@ class LiveProof:
     ) -> ProofFindings:
         """Prove a text on the worker.
 
-        Findings are published before the picture is drawn. Those of the part follow last.
+        The findings are published before the picture is drawn. The findings about the part follow last.
         """
         job = self.steps.make_job(source, block_delete)
         proved = self.steps.prove_job(job, request)

@@ -1,4 +1,4 @@
-"""Question line of the editor: find and replace, go to line, and file name."""
+"""Question line of the editor for find and replace, a line number or a file name."""
 
 from __future__ import annotations
 
@@ -22,17 +22,20 @@ from core.message import Message
 
 @dataclass(frozen=True, slots=True)
 class TextSearch:
-    """Search for ``search_text``, ignoring case.
+    """Search for ``search_text`` that ignores case.
 
-    ``matches_whole_words`` excludes matches inside longer words and numbers. F100 is then not found in F1000
-    or F100.5, so that replacing F100 does not change those words.
+    ``matches_whole_words`` excludes matches inside longer words and numbers. F100 is then not found in
+    F1000 or F100.5, so replacing F100 does not change those words.
     """
 
     search_text: str
     matches_whole_words: bool = True
 
     def find_matches(self, text: str) -> tuple[int, ...]:
-        """Return the start positions of the matches, from 0, without overlaps."""
+        """Return the start positions of the matches in the text.
+
+        Positions count from 0, and matches do not overlap.
+        """
         if not self.search_text:
             return ()
         return tuple(match.start() for match in re.finditer(self._pattern, text))
@@ -51,13 +54,13 @@ class TextSearch:
         return pattern + "(?![A-Za-z])" if self.search_text[-1].isalpha() else pattern
 
     def inside(self, text: str) -> int:
-        """Return the number of matches inside longer words and numbers."""
+        """Return the number of matches that are parts of longer words or numbers."""
         return len(TextSearch(self.search_text, matches_whole_words=False).find_matches(text)) - len(
             self.find_matches(text)
         )
 
     def words(self, text: str) -> str:
-        """Return the number of matches as display text."""
+        """Return a display text with the number of matches."""
         count = len(self.find_matches(text))
         found = Message("{count} FOUND", count=count) if count else "NOT FOUND"
         if not self.matches_whole_words:
@@ -71,14 +74,20 @@ class TextSearch:
 
 
 def following(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the first position from ``at`` on, starting over at the top, or None without positions."""
+    """Return the first position that is not before ``start``.
+
+    After the last position, the search continues at the first. Returns None if there are no positions.
+    """
     if not positions:
         return None
     return positions[bisect_left(positions, start) % len(positions)]
 
 
 def find_preceding(positions: tuple[int, ...], start: int) -> int | None:
-    """Return the last position before ``at``, starting over at the end, or None without positions."""
+    """Return the last position before ``start``.
+
+    Before the first position, the search continues at the last. Returns None if there are no positions.
+    """
     return positions[bisect_left(positions, start) - 1] if positions else None
 
 
@@ -87,7 +96,7 @@ MESSAGE_WIDTH = 34.0  # units: width of the message
 
 
 class QuestionLine(Panel):
-    """Line with one or two fields and their labels, and a message about the entry on the right."""
+    """Line with one or two labeled fields, and a message about the entry on the right."""
 
     ground_color = "panel"
     message_text = RedrawingAttribute("")  # message about the entry
@@ -103,7 +112,10 @@ class QuestionLine(Panel):
         self.hide()
 
     def show_question(self, *labels: str, initial_text: str | None = None) -> None:
-        """Show the line with the keyboard focus. The previous entry is selected for overtyping."""
+        """Show the line and move the keyboard focus to it.
+
+        The previous entry is selected, so that typing replaces it.
+        """
         self._labels = labels
         self.message_text = ""
         if initial_text is not None:
@@ -123,7 +135,7 @@ class QuestionLine(Panel):
             (self.second_field if self.first_field.hasFocus() else self.first_field).setFocus()
 
     def apply_theme(self) -> None:
-        """Apply font and colors to the fields."""
+        """Apply the font and the colors of the theme to the fields."""
         for edit in (self.first_field, self.second_field):
             style_line_edit(edit, self.theme, 2.3, 0.6)
 
@@ -153,7 +165,10 @@ class QuestionLine(Panel):
 
 
 class TextFinder:
-    """Search of the text typed in the question line. The cursor moves to the next match."""
+    """Finder that searches the program for the text typed in the question line.
+
+    The cursor moves to the next match.
+    """
 
     def __init__(self, text_field: ProgramTextField, question_line: QuestionLine) -> None:
         self._field, self._ask = text_field, question_line
@@ -161,7 +176,10 @@ class TextFinder:
         question_line.first_field.textEdited.connect(lambda _text: self.count_matches())
 
     def find_initial_text(self) -> str:
-        """Return the initial search text: the selection within one line, or the previous search text."""
+        """Return the initial search text.
+
+        This is the selection if it is within one line, or else the previous search text.
+        """
         marked = self._field.textCursor().selectedText()
         return marked if marked and "\u2029" not in marked else self._ask.first_field.text()
 
@@ -170,13 +188,13 @@ class TextFinder:
         return TextSearch(self._ask.first_field.text(), self.matches_whole_words)
 
     def count_matches(self) -> None:
-        """Count the matches and select the first from the cursor on."""
+        """Count the matches and select the first match at or after the cursor."""
         if self._ask.isVisible():
             cursor = self._field.textCursor()
             self._show(following(self._places(), cursor.selectionStart()))
 
     def select_match(self, direction: int) -> None:
-        """Select the next match (1) or the previous match (-1)."""
+        """Select the next match if ``direction`` is 1, or the previous match if it is -1."""
         cursor, places = self._field.textCursor(), self._places()
         if direction > 0:
             after = cursor.selectionEnd() if cursor.hasSelection() else cursor.position()
@@ -197,7 +215,7 @@ class TextFinder:
             self.select_match(1)
 
     def replace_all_matches(self) -> None:
-        """Replace all matches as one step that can be undone."""
+        """Replace all matches, so that one undo reverses the change."""
         places = self._places()
         if places:
             self._field.replace_ranges(places, len(self._search.search_text), self._ask.second_field.text())
@@ -206,12 +224,12 @@ class TextFinder:
         )
 
     def toggle_whole_words(self) -> None:
-        """Switch between whole words and partial words."""
+        """Switch between a search for whole words and a search for parts of words."""
         self.matches_whole_words = not self.matches_whole_words
         self.count_matches()
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys during a search."""
+        """Return the function keys that apply during a search."""
         return {
             2: FunctionKey("NEXT", partial(self.select_match, 1)),
             3: FunctionKey("PREVIOUS", partial(self.select_match, -1)),

@@ -1,4 +1,4 @@
-"""Text field with syntax colors and a margin of line numbers and finding marks."""
+"""Text field with syntax colors, and a margin with line numbers and finding marks."""
 
 from __future__ import annotations
 
@@ -51,7 +51,10 @@ _TOKEN_COLORS = {
 
 
 class SyntaxHighlighter(QSyntaxHighlighter):
-    """Syntax highlighter. The state passed from line to line depends on the language."""
+    """Syntax highlighter for program text.
+
+    The state that is passed from line to line depends on the language.
+    """
 
     def __init__(self, theme: ScreenTheme, document: QTextDocument) -> None:
         super().__init__(document)
@@ -61,20 +64,29 @@ class SyntaxHighlighter(QSyntaxHighlighter):
         self._dialect = Dialect.OMNITURN
 
     def set_dialect(self, dialect: Dialect) -> None:
-        """Set the language of the text. A changed language highlights the whole text again."""
+        """Set the language of the text.
+
+        If the language changes, the whole text is highlighted again.
+        """
         if dialect is not self._dialect:
             self._dialect = dialect
             self.rehighlight()
 
     def apply_theme(self) -> None:
-        """Apply the present colors. The text is highlighted again only after a change."""
+        """Apply the present colors.
+
+        The text is highlighted again only if the colors have changed.
+        """
         if self._dressed is not self._look.palette:
             self._dressed = self._look.palette
             self._formats.clear()
             self.rehighlight()
 
     def highlightBlock(self, text: str) -> None:
-        """Highlight a line, as Qt requests after a change of the line or of its start state."""
+        """Highlight a line.
+
+        Qt calls this method after a change of the line or of its start state.
+        """
         found, state = color_program_line(self._dialect, text, max(self.previousBlockState(), PLAIN_STATE))
         self.setCurrentBlockState(state)
         for start, length, ink in found:
@@ -99,9 +111,9 @@ SEVERITY_NAMES = {Severity.ERROR: "ERROR", Severity.WARNING: "WARNING", Severity
 
 
 class ProgramTextField(QPlainTextEdit):
-    """Text field with Qt's undo, selection and clipboard.
+    """Text field for a program, with the undo history, selection and clipboard of Qt.
 
-    Function keys pass through to the page.
+    Function keys are passed to the page.
     """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
@@ -121,13 +133,13 @@ class ProgramTextField(QPlainTextEdit):
 
     @property
     def cursor_line(self) -> int:
-        """Line of the cursor, from 1."""
+        """Return the line number of the cursor, counted from 1."""
         return self.textCursor().blockNumber() + 1
 
     def put_text(self, text: str, *, as_new: bool) -> None:
-        """Put a text into the field.
+        """Replace the text of the field.
 
-        ``as_new`` clears the undo history. Otherwise the change can be undone as one step.
+        ``as_new`` clears the undo history. Otherwise one undo reverses the change.
         """
         if as_new:
             self.setPlainText(text)
@@ -139,7 +151,7 @@ class ProgramTextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def move_cursor_to(self, line: int, column: int = 0) -> None:
-        """Move the cursor to a line and column, and center the line."""
+        """Move the cursor to a line and column, and scroll so that the line is in the middle."""
         block = self.document().findBlockByNumber(max(0, min(self.blockCount(), line) - 1))
         cursor = QTextCursor(block)
         cursor.setPosition(block.position() + max(0, min(column - 1, block.length() - 1)))
@@ -156,13 +168,13 @@ class ProgramTextField(QPlainTextEdit):
 
     @property
     def cursor_column(self) -> int:
-        """Column of the cursor, from 1."""
+        """Return the column of the cursor, counted from 1."""
         return self.textCursor().positionInBlock() + 1
 
     def insert_text(self, text: str, start: int = 0) -> None:
         """Insert text at the cursor.
 
-        ``start`` is the column from which text of the line is replaced.
+        If ``start`` is not 0, the inserted text replaces the text from the column ``start`` to the cursor.
         """
         cursor = self.textCursor()
         cursor.beginEditBlock()
@@ -173,7 +185,10 @@ class ProgramTextField(QPlainTextEdit):
         self.setTextCursor(cursor)
 
     def replace_ranges(self, positions: tuple[int, ...], length: int, replacement: str) -> None:
-        """Replace the ranges with ``replacement`` as one step that can be undone."""
+        """Replace the ranges with ``replacement``, so that one undo reverses the change.
+
+        The ranges have the start positions ``positions`` and the same ``length``.
+        """
         cursor = QTextCursor(self.document())
         cursor.beginEditBlock()
         for start in reversed(positions):
@@ -183,7 +198,7 @@ class ProgramTextField(QPlainTextEdit):
         cursor.endEditBlock()
 
     def show_findings(self, line_findings: Mapping[int, Diagnostic]) -> None:
-        """Show the findings by line."""
+        """Show the findings in their lines."""
         if line_findings != self._found:
             self._found = line_findings
             self.line_margin.update()
@@ -194,7 +209,7 @@ class ProgramTextField(QPlainTextEdit):
         return self._found.get(line)
 
     def apply_theme(self) -> None:
-        """Apply font and colors of the look."""
+        """Apply the font and the colors of the theme."""
         colours = self.theme.palette
         self.setFont(self.theme.make_font(TEXT_SIZE))
         self.setStyleSheet(
@@ -215,9 +230,9 @@ class ProgramTextField(QPlainTextEdit):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Handle keys that edit.
+        """Handle the editing keys.
 
-        Function keys, Esc and the page's key combinations go to the page.
+        Function keys, Esc and the key combinations of the page are passed to the page.
         """
         chord = event.modifiers() & Qt.KeyboardModifier.ControlModifier
         page = event.key() in _PAGE_KEYS or (bool(chord) and event.key() in _CHORD_KEYS)
@@ -227,9 +242,9 @@ class ProgramTextField(QPlainTextEdit):
             super().keyPressEvent(event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Clear the selection before a press.
+        """Clear the selection before a mouse press is handled.
 
-        A drag of selected text would block all keys, including the stop keys.
+        Dragging selected text would block all keys, including the stop keys.
         """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self.textCursor().hasSelection() and event.button() is Qt.MouseButton.LeftButton and not shift:
@@ -237,13 +252,13 @@ class ProgramTextField(QPlainTextEdit):
         super().mousePressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Place the margin after a change of size."""
+        """Place the margin after the size of the field has changed."""
         super().resizeEvent(event)
         room = self.contentsRect()
         self.line_margin.setGeometry(room.left(), room.top(), self.line_margin.width_px, room.height())
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        """Draw the text, and the message after each line with a finding."""
+        """Draw the text and, after each line with a finding, the message of the finding."""
         super().paintEvent(event)
         if not self._found:
             return
@@ -265,7 +280,7 @@ class ProgramTextField(QPlainTextEdit):
             draw_text(painter, room, ALIGN_LEFT, found.text)
 
     def find_visible_blocks(self) -> list[tuple[QTextBlock, QRectF]]:
-        """Return the visible blocks with their boxes."""
+        """Return the visible text blocks with their rectangles."""
         rows = []
         block = self.firstVisibleBlock()
         box = self.blockBoundingGeometry(block).translated(self.contentOffset())
@@ -294,7 +309,7 @@ class ProgramTextField(QPlainTextEdit):
 
 
 class LineMargin(QWidget):
-    """Margin with line numbers and a colored letter for each finding."""
+    """Margin with line numbers and a colored letter for each line with a finding."""
 
     def __init__(self, text_field: ProgramTextField) -> None:
         super().__init__(text_field)
@@ -302,7 +317,7 @@ class LineMargin(QWidget):
 
     @property
     def width_px(self) -> int:
-        """Width in pixels for the present number of digits."""
+        """Return the width in pixels that the present number of digits needs."""
         digits = max(3, len(str(self._field.blockCount())))
         return round((3.4 + 1.35 * digits) * self._field.theme.u)
 
@@ -342,7 +357,7 @@ _CHORD_KEYS = frozenset(
 
 
 class TextSynchronizer:
-    """Link between the text field and the editor, updated at most once per frame."""
+    """Synchronization between the text field and the editor model, at most once per frame."""
 
     def __init__(self, text_field: ProgramTextField, editor_model: EditorModel) -> None:
         self._field, self._editor = text_field, editor_model
@@ -366,16 +381,19 @@ class TextSynchronizer:
 
     @property
     def is_dirty(self) -> bool:
-        """Whether the text has unsaved changes; compared again only after a change."""
+        """Return whether the text has unsaved changes.
+
+        The text is compared again only after a change.
+        """
         seen = (self._field.document().revision(), self._editor.document)
         if seen != self._seen:
             self._seen, self._dirty = seen, self._editor.is_dirty(self.read_text())
         return self._dirty
 
     def synchronize(self) -> None:
-        """Put a new text of the editor into the field, or pass typed text to the proof.
+        """Copy a new text of the editor into the field, or pass typed text to the proof.
 
-        Called once per frame.
+        This method is called once per frame.
         """
         editor, field = self._editor, self._field
         self._update_dialect()
@@ -393,7 +411,10 @@ class TextSynchronizer:
         field.setReadOnly(editor.stage is not EditorStage.OPEN)
 
     def _update_dialect(self) -> None:
-        """Set the language of the file name. New colors do not count as changed text."""
+        """Set the language that the file name indicates.
+
+        New colors do not count as a change of the text.
+        """
         document = self._editor.document
         if document is not None:
             before, self._taking = self.is_stale, True
@@ -402,7 +423,7 @@ class TextSynchronizer:
 
     @property
     def mark(self) -> str:
-        """State of the text relative to its file, as a word."""
+        """Return the word for the state of the text compared with its file."""
         document = self._editor.document
         if document is None:
             return ""

@@ -1,4 +1,4 @@
-"""Versions of the edited program and their differences, line by line."""
+"""Versions of the edited program, and line-by-line comparison of their texts."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from core.store.store_rows import VersionRow
 
 
 class VersionArchive(Protocol):
-    """Archive of program versions; called on the editor's worker only.
+    """Archive of program versions.
 
-    All methods raise StoreError.
+    The methods are called only on the worker of the editor. All methods raise StoreError.
     """
 
     def versions(self, name: str) -> Sequence[VersionRow]:
@@ -28,7 +28,7 @@ class VersionArchive(Protocol):
         ...
 
     def save_version(self, name: str, text: bytes, reason: str) -> int:
-        """Store a version and return its number once it is on the disk.
+        """Store a version and return its number after it is written to the disk.
 
         An unchanged text does not create a new version.
         """
@@ -36,14 +36,14 @@ class VersionArchive(Protocol):
 
 
 class NullArchive:
-    """Empty archive for scripts and for a TurnDesk whose store cannot be opened."""
+    """Empty archive for scripts, and for TurnDesk if its store cannot be opened."""
 
     def versions(self, _name: str) -> Sequence[VersionRow]:
         """Return no versions."""
         return ()
 
     def read_version_text(self, name: str, version: int) -> bytes:
-        """Raise StoreError, because no version is stored."""
+        """Raise StoreError because no version is stored."""
         raise StoreError(
             Message("version {version} of {name} is not in the program history", version=version, name=name),
             "no-version",
@@ -63,7 +63,11 @@ MAX_COMPARED_LINES = 20_000  # number of lines above which only the first and la
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRow:
-    """Line of a comparison. ``sign`` is + (new), - (old), blank (both) or … (lines omitted)."""
+    """Line of a comparison.
+
+    ``sign`` is + for a new line, - for an old line, a blank for a line in both texts, and … for omitted
+    lines.
+    """
 
     sign: str
     old: int  # line number in the old text, or 0
@@ -72,7 +76,7 @@ class DifferenceRow:
 
 
 def compare_texts(old: str, new: str) -> tuple[DifferenceRow, ...]:
-    """Return the rows of a comparison, or an empty tuple for equal texts."""
+    """Return the rows of a comparison, or an empty tuple if the texts are equal."""
     if old == new:
         return ()
     before, after = old.splitlines(), new.splitlines()
@@ -112,9 +116,9 @@ def _rows(
 
 @dataclass(slots=True)
 class VersionHistory:
-    """Version history.
+    """Versions of a program, one of which is selected and compared with the present text.
 
-    ``changes`` are the differences from the selected version to the present text.
+    ``changes`` are the differences between the selected version and the present text.
     """
 
     archive: VersionArchive
@@ -128,13 +132,16 @@ class VersionHistory:
     error_text: str = ""
 
     def open_history(self, name: str, current_text: str) -> None:
-        """Open the history of a program. ``now`` is the text in the editor."""
+        """Open the history of a program.
+
+        ``current_text`` is the text in the editor.
+        """
         self.program_name, self.current_text = name, current_text
         self.rows, self.marked, self.text, self.changes, self.error_text = (), 0, None, (), ""
         self.worker.enqueue(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
 
     def mark(self, index: int) -> None:
-        """Select a version and compare it."""
+        """Select a version and compare its text with the present text."""
         if not self.rows:
             return
         self.marked = max(0, min(len(self.rows) - 1, index))
@@ -148,7 +155,7 @@ class VersionHistory:
         self.worker.request(compare, self._compared, self._failed)
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
-        """Return the old and the new text of the comparison."""
+        """Return the texts of the comparison, the old text first."""
         return selected, current
 
     def heading(self) -> str:
@@ -157,7 +164,7 @@ class VersionHistory:
 
     @property
     def number(self) -> int:
-        """Number of the selected version, or 0 without versions."""
+        """Return the number of the selected version, or 0 if there are no versions."""
         return self.rows[self.marked].number if self.rows else 0
 
     def words(self) -> str:

@@ -1,4 +1,4 @@
-"""Version history: versions on the left, the differences of the selected version on the right."""
+"""View of the version history, with the versions on the left and the differences on the right."""
 
 from __future__ import annotations
 
@@ -31,9 +31,10 @@ SIGN_COLORS = {"+": "run", "-": "alarm", " ": "soft", "…": "off"}
 
 
 class VersionList(RowPanel):
-    """List of versions. The selection itself is part of the history.
+    """List of versions with the comparison of the selected version.
 
-    The comparison scrolls, and the selected version is in the middle of the list.
+    The history stores the selection. The comparison scrolls, and the selected version is in the middle of
+    the list.
     """
 
     title = "HISTORY"
@@ -46,7 +47,10 @@ class VersionList(RowPanel):
         self.hide()
 
     def refresh(self) -> None:
-        """Redraw when the history has changed; called once per frame."""
+        """Redraw the list if the history has changed.
+
+        This method is called once per frame.
+        """
         history = self._history
         now = (history.rows, history.marked, history.changes, history.words())
         if now[:3] != self._shown[:3]:
@@ -117,7 +121,7 @@ class VersionList(RowPanel):
         }
 
     def arrow_actions(self) -> dict[int, Callable[[], None]]:
-        """Return the same actions for the arrow keys."""
+        """Return the actions of the function keys for the arrow keys and the page keys."""
         by = {number: key.action for number, key in self.function_keys().items()}
         return {
             Qt.Key.Key_Up: by[4],

@@ -1,1 +1,1 @@
-"""The Jog page: manual axis motion, homing, tool setting and touch-off."""
+"""Jog page with manual axis motion, homing, tool setting and touch-off."""

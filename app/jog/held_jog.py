@@ -1,8 +1,9 @@
-"""Continuous jog while one key or touch is held down, with its steps, speeds and directions.
+"""Jog while one key or touch is held down, with its steps, speeds and directions.
 
-The motion ends when the key is released, when the window loses the keyboard, at another key or touch, after a
-change of the step, after a stall of the screen, or if the key stops repeating. After such an end, nothing
-moves until all keys are released and one is pressed again.
+The motion ends when the key is released, when the window loses the keyboard focus, when another key or
+touch is pressed, when the step changes, when the screen stalls, or when the key stops repeating. If the
+motion ends for another reason than a release, nothing moves until all keys are released and one key is
+pressed again.
 """
 
 from __future__ import annotations
@@ -35,10 +36,10 @@ CONTINUOUS_STEP = -1
 
 @dataclass(slots=True)
 class JogSpeeds:
-    """The selected step and speed.
+    """Selected step and speed.
 
-    ``step`` is CONTINUOUS or the index of one of four lengths. ``speed_index`` is the index of one of four
-    speeds.
+    ``step_index`` is CONTINUOUS_STEP or the index of one of four lengths. ``speed_index`` is the index of
+    one of four speeds.
     """
 
     machine: Machine
@@ -46,11 +47,14 @@ class JogSpeeds:
     speed_index: int = 1
 
     def select_next_step(self) -> None:
-        """Select the next step: continuous, then from the longest to the shortest, and continuous again."""
+        """Select the next step.
+
+        The order is continuous, then the steps from the longest to the shortest, and then continuous again.
+        """
         self.step_index = self.step_index + 1 if self.step_index < len(INCH_STEPS) - 1 else CONTINUOUS_STEP
 
     def select_next_speed(self) -> None:
-        """Select the next faster speed, or after the fastest the slowest."""
+        """Select the next faster speed, or the slowest speed after the fastest."""
         self.speed_index = (self.speed_index + 1) % len(INCH_SPEEDS)
 
     def _turns(self, axis: str) -> bool:
@@ -59,7 +63,8 @@ class JogSpeeds:
     def find_step_length(self, axis: str, mode: ValueMode, step: int | None = None) -> float:
         """Return the length of a step in mm or degrees.
 
-        If X is a diameter, a step of X changes the displayed diameter by the step length.
+        If X is displayed as a diameter, a step in X changes the displayed diameter by the length of the
+        step. The axis then moves half of this length, which is the returned value.
         """
         step = self.step_index if step is None else step
         if self._turns(axis):
@@ -68,7 +73,7 @@ class JogSpeeds:
         return length / 2 if axis == "X" and mode.is_diameter else length
 
     def format_step(self, axis: str, mode: ValueMode, step: int) -> str:
-        """Return the length of a step of this axis as text."""
+        """Return the length of a step of an axis as text."""
         return _short(DEGREE_STEPS[step]) if self._turns(axis) else make_step_labels(mode)[step]
 
     def find_step_speed(self, axis: str) -> float:
@@ -91,7 +96,7 @@ class JogSpeeds:
 
 
 def make_step_labels(mode: ValueMode) -> tuple[str, ...]:
-    """Return the step lengths as key labels."""
+    """Return the lengths of the steps as key labels."""
     return tuple(_short(step) for step in (MM_STEPS if mode.is_metric else INCH_STEPS))
 
 
@@ -123,7 +128,10 @@ _NO_ARROW: ArrowPoint = (0, 0)
 
 @dataclass(frozen=True, slots=True)
 class JogDirection:
-    """One jog direction: axis and sign, its cell in the cross, and its key with Qt's name and a label."""
+    """Jog direction with its axis and sign, its cell in the cross of arrows, and its key.
+
+    ``key_name`` is the name of the key in Qt, and ``label`` is the text of the key.
+    """
 
     axis: str
     direction_sign: int
@@ -163,7 +171,10 @@ _ROTARY_DIRECTIONS = (
 
 
 def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
-    """Return all jog directions of a machine. A lathe has C only if its spindle can be positioned."""
+    """Return all jog directions of a machine.
+
+    A lathe has directions of C only if its spindle can be positioned.
+    """
     if machine.kind != "mill":
         turning = tuple(
             replace(each, displayed_axis=machine.displayed_axis_name("C")) for each in _LATHE_C_DIRECTIONS
@@ -185,7 +196,7 @@ RENEWALS_PER_LEASE = 4  # Renewals per lease.
 
 @dataclass(slots=True)
 class ActiveJog:
-    """One continuous jog while its key or touch is held down."""
+    """Continuous jog that is active while its key or touch is held down."""
 
     key_source: str
     axis: str
@@ -201,10 +212,11 @@ class ActiveJog:
 
 @dataclass(slots=True)
 class HeldJog:
-    """The jog of one key or touch.
+    """Jog by one key or touch that is held down.
 
-    ``lease_s`` is in seconds. ``find_refusal`` returns why jogging is not possible now. ``clock`` returns
-    monotonic time in seconds.
+    ``lease_s`` is the time in seconds after which the motion ends unless it is renewed. ``find_refusal``
+    returns the reason why jogging is not possible now, or an empty string. ``clock`` returns a monotonic
+    time in seconds.
     """
 
     starting_action: ClassVar[StartingAction] = StartingAction.JOG
@@ -229,7 +241,8 @@ class HeldJog:
     def press_direction(self, source: str, axis: str, sign: int, *, is_rapid: bool, button: str = "") -> None:
         """Handle a press on a direction.
 
-        ``source`` is the key or touch. ``button`` is the input name of a button at the machine, or empty.
+        ``source`` identifies the key or touch. ``button`` is the input name of a button on the machine, or
+        empty.
         """
         others, self._ended = self.keys_down - {source}, ""
         self.is_rapid_armed = False
@@ -245,14 +258,20 @@ class HeldJog:
             self._start_jog(source, axis, sign, is_rapid)
 
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
-        """Start a step or a continuous jog. Subclasses may start another motion."""
+        """Start a step or a continuous jog.
+
+        A subclass can start another motion.
+        """
         if self.jog_speeds.step_index != CONTINUOUS_STEP:
             self._start_step(axis, sign, rapid)
         else:
             self._begin(source, axis, sign, rapid)
 
     def _start_step(self, axis: str, sign: int, rapid: bool) -> None:
-        """Start one step. Holding the key does not make the step longer."""
+        """Start one step.
+
+        Holding the key down does not make the step longer.
+        """
         if rapid:
             self.show_message(tr("RAPID NEEDS CONTINUOUS JOG. SELECT CONT OR RELEASE SHIFT"))
             return
@@ -275,7 +294,7 @@ class HeldJog:
         self.post_command(command)
 
     def note_repeat(self, source: str) -> None:
-        """Note a key repeat, which shows that the key is still down."""
+        """Store the time of a key repeat, which shows that the key is still held down."""
         if self.active_jog is not None and self.active_jog.key_source == source:
             self.active_jog.repeat_time = self.clock()
 
@@ -286,23 +305,29 @@ class HeldJog:
             self.stop_jog("")
 
     def stop_for_other_key(self) -> None:
-        """End the jog because another key was pressed, so that the operator may not be watching the axis."""
+        """Stop the jog because another key was pressed.
+
+        The operator may then no longer be watching the axis.
+        """
         if self.active_jog is not None:
             self.stop_jog(tr("JOG STOPPED: ANOTHER KEY WAS PRESSED"))
 
     def release_shift(self) -> None:
-        """End a rapid jog when Shift is released."""
+        """Stop a rapid jog when Shift is released."""
         if self.active_jog is not None and self.active_jog.is_rapid:
             self.stop_jog(tr("SHIFT RELEASED. RAPID STOPPED"))
 
     def release_all(self, reason: str = "") -> None:
-        """Release all keys and end the jog, because no release event will arrive."""
+        """Mark all keys as released and stop the jog, because no release event will arrive."""
         self.keys_down.clear()
         if self.active_jog is not None:
             self.stop_jog(reason)
 
     def stop_jog(self, reason: str) -> None:
-        """End the jog. Nothing moves until all keys are released."""
+        """Stop the jog.
+
+        Nothing moves until all keys are released.
+        """
         if self.active_jog is not None:
             self.active_jog = None
             self.post_command(StopJog())
@@ -311,7 +336,10 @@ class HeldJog:
             self.show_message(reason)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the lease of the jog, or end the jog after an error; called once a frame."""
+        """Renew the lease of the jog, or stop the jog after a fault.
+
+        This method is called once per frame.
+        """
         self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
         held, now = self.active_jog, self.clock()
         if held is None:
@@ -334,7 +362,7 @@ class HeldJog:
             self.post_command(StopJog())
 
     def _repeat_reason(self, snapshot: Snapshot) -> None:
-        """Show the reason of the end again, because a change of state removed the first message."""
+        """Show the reason for the stop again, because a change of state has cleared the first message."""
         if self._ended and snapshot.state is not MachineState.JOG:
             self.show_message(self._ended)
             self._ended = ""

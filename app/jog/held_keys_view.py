@@ -20,7 +20,7 @@ TouchHandler = Callable[[str, str, int], None]  # Arguments: source, axis, sign.
 
 
 def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], color: str) -> None:
-    """Draw an arrow at the side of its target to which the arrow points."""
+    """Draw an arrow in its touch target, on the side to which the arrow points."""
     size = 0.16 * min(box.width(), box.height())
     centre = box.center() + QPointF(direction[0] * 0.30 * box.width(), direction[1] * 0.28 * box.height())
     forward, side = (
@@ -33,7 +33,10 @@ def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], 
 
 
 def draw_jog_mode(painter: ThemedPainter, box: QRectF, labels: tuple[str, str, str]) -> None:
-    """Draw the present jog mode in the middle of the cross: its kind, value and unit."""
+    """Draw the present jog mode in the middle of the cross.
+
+    ``labels`` are the type of the mode, its value and its unit.
+    """
     kind, figure, unit = labels
     high, edge = 2.2 * painter.theme.u, 0.1 * box.height()
     painter.draw_text_line(
@@ -44,7 +47,10 @@ def draw_jog_mode(painter: ThemedPainter, box: QRectF, labels: tuple[str, str, s
 
 
 class JogCross(TouchPanel):
-    """Cross of touch targets. An axis moves while one of its targets is touched."""
+    """Cross of touch targets.
+
+    An axis moves while one of its targets is touched.
+    """
 
     def __init__(
         self,
@@ -59,7 +65,7 @@ class JogCross(TouchPanel):
         self.axis_suffix = ""  # Mark that follows X, Y and Z in a tilted plane.
 
     def draw_cross(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the targets in this rectangle, and return the rectangle in their middle."""
+        """Draw the touch targets in a rectangle and return the area in the middle of the cross."""
         u = self.theme.u
         columns = 1 + max(2, *(each.column for each in self._directions))
         wide, high = area.width() / columns, area.height() / 3
@@ -94,7 +100,10 @@ class JogCross(TouchPanel):
         self.controls.append(self._make_control(box, axis, sign))
 
     def _make_control(self, box: QRectF, axis: str, sign: int) -> TouchControl:
-        """Return the control of a target. It acts until the touch ends or leaves the target."""
+        """Return the touch control of a target.
+
+        The control is active until the touch ends or leaves the target.
+        """
         hold = self._hold
         source = f"finger {axis}{sign}"
 
@@ -114,7 +123,10 @@ CHORD_MODIFIERS = (
 
 
 class HeldKeysModel(PageModel, Protocol):
-    """Interface of the page's model. ``is_active``: a key is held down, or the handwheel is selected."""
+    """Interface of the model of the page.
+
+    ``is_active`` is True while a key is held down or the handwheel is selected.
+    """
 
     @property
     def held_jog(self) -> HeldJog: ...
@@ -129,9 +141,10 @@ class HeldKeysModel(PageModel, Protocol):
 
 
 class HeldKeysPage(ModelPage):
-    """A page with keys that act while they are held down. ``jog_cross`` is its cross.
+    """Page with keys that act while they are held down.
 
-    The page detects presses and releases. The model decides what they do.
+    The page detects presses and releases, and the model acts on them. ``jog_cross`` is the cross of touch
+    targets.
     """
 
     model: HeldKeysModel
@@ -149,7 +162,10 @@ class HeldKeysPage(ModelPage):
     # --- keys ----------------------------------------------------------------------------------------
 
     def handle_key_press(self, event: QKeyEvent) -> bool:
-        """Handle a direction key. Any other key ends the motion and then has its usual function."""
+        """Handle a direction key.
+
+        Any other key stops the motion and then has its usual function.
+        """
         key, model = Key(event.key()), self.model
         if key not in self._arrows:
             if not event.isAutoRepeat():
@@ -169,11 +185,14 @@ class HeldKeysPage(ModelPage):
         return True
 
     def handle_other_key(self, _event: QKeyEvent) -> bool:
-        """Handle a key that is not a direction. Return True if the key was handled."""
+        """Handle a key that is not a direction key, and return whether it was used."""
         return False
 
     def handle_key_release(self, event: QKeyEvent) -> None:
-        """Handle the release of a direction key or Shift. Releases of a repeating key are ignored."""
+        """Handle the release of a direction key or of Shift.
+
+        Release events of a key that is repeating are ignored.
+        """
         if event.isAutoRepeat():
             return
         key = Key(event.key())
@@ -183,19 +202,19 @@ class HeldKeysPage(ModelPage):
             self.model.held_jog.release_shift()
 
     def end_held_actions(self) -> None:
-        """End the motion because another key or touch acts."""
+        """Stop the motion because another key or touch was pressed."""
         self.model.held_jog.stop_for_other_key()
 
     def release_all(self) -> None:
-        """Release all keys and touches, because the window has lost the keyboard."""
+        """Release all keys and touches because the window has lost the keyboard focus."""
         self.jog_cross.release_all()
         self.model.release_all()
 
     def _has_keyboard(self) -> bool:
-        """Return whether keys still reach this page, and no dialog, menu or other window.
+        """Return whether keys reach this page and not a dialog, a menu or another window.
 
-        Without a window manager, the window is never active. In this case, only a loss of the active state
-        counts.
+        Without a window manager, the window is never active. In this case, only the loss of an active state
+        is detected.
         """
         active = self.window().isActiveWindow()
         if not self.model.is_active:
@@ -204,6 +223,9 @@ class HeldKeysPage(ModelPage):
         return covered is None and (active or not self._was_active)
 
     def release_if_active(self) -> None:
-        """End the motion if something is active, because another window would get the release event."""
+        """Stop the motion if a key is held down or the handwheel is selected.
+
+        Otherwise, another window would receive the release event.
+        """
         if self.model.is_active:
             self.release_all()

@@ -1,7 +1,8 @@
-"""The handwheel of the Jog page, and jog buttons at the machine.
+"""Handwheel of the Jog page, and jog buttons on the machine.
 
-The axis of the handwheel is selected by key, by touch or by switches of the operator station. After the
-handwheel was switched off, the key selects it again. A switch must first be turned to another position.
+The axis of the handwheel is selected by a key, by touch or by switches of the operator station. After the
+handwheel was turned off, the key can select its axis again. A switch must first be turned to another
+position.
 """
 
 from __future__ import annotations
@@ -37,7 +38,10 @@ WheelChoice = tuple[str, int]  # Axis and step index.
 
 @dataclass(slots=True)
 class JogHandwheel:
-    """The handwheel. ``wheel_choice`` is the axis and step that it moves, or None."""
+    """Handwheel of the Jog page.
+
+    ``wheel_choice`` contains the axis that the handwheel moves and its step, or is None.
+    """
 
     machine: Machine
     held_jog: HeldJog
@@ -52,17 +56,17 @@ class JogHandwheel:
 
     @property
     def is_available(self) -> bool:
-        """Whether the machine has a handwheel."""
+        """Return whether the machine has a handwheel."""
         return HANDWHEEL in self.machine.hardware.analog_inputs
 
     @property
     def counts_per_click(self) -> int:
-        """The number of encoder counts per click, or 0 without a handwheel."""
+        """Return the number of encoder counts per click, or 0 if the machine has no handwheel."""
         return self.machine.hardware.analog_inputs[HANDWHEEL].counts_per_click if self.is_available else 0
 
     @property
     def has_axis_switch(self) -> bool:
-        """Whether switches of the operator station select the axis."""
+        """Return whether switches of the operator station select the axis of the handwheel."""
         return any(axis_selector_input(name) in self.machine.inputs for name in self.axis_names)
 
     @property
@@ -74,11 +78,14 @@ class JogHandwheel:
         return self.held_jog.post_command
 
     def select_next_axis(self) -> None:
-        """Select the next axis, or no axis after the last one."""
+        """Select the next axis, or no axis after the last axis."""
         self.select_axis(following(("", *self.axis_names), self.wheel_choice[0] if self.wheel_choice else ""))
 
     def select_next_step(self) -> None:
-        """Select the next step for a click, by a button of the handwheel."""
+        """Select the next step per click.
+
+        A button of the handwheel calls this function.
+        """
         if any(name in self.machine.inputs for name in STEP_FACTORS):
             return
         fine = range(FINE_STEP_INDEX - 1, FINE_STEP_INDEX + 2)
@@ -87,7 +94,10 @@ class JogHandwheel:
         )
 
     def select_axis(self, axis: str) -> None:
-        """Select an axis by key or touch. An empty name switches the handwheel off."""
+        """Select the axis of the handwheel by key or touch.
+
+        An empty name turns the handwheel off.
+        """
         self._left = None
         if not self.is_available:
             self.held_jog.show_message(tr("THIS MACHINE HAS NO HANDWHEEL"))
@@ -106,7 +116,7 @@ class JogHandwheel:
             self.held_jog.clear_message()
 
     def deselect(self, reason: str) -> None:
-        """Switch the handwheel off, and show why."""
+        """Turn the handwheel off and show the reason."""
         self._by_hand = ""
         if self.wheel_choice is not None:
             self._left, self.wheel_choice = self.wheel_choice, None
@@ -114,7 +124,10 @@ class JogHandwheel:
             self.held_jog.stop_jog(reason)  # This shows the reason again when the axis is at rest.
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the selected handwheel, or switch it off; called once a frame."""
+        """Renew the selection of the handwheel, or turn the handwheel off.
+
+        This method is called once per frame.
+        """
         now = self.held_jog.clock()
         away, self._looked = now - self._looked, now
         if not self.is_available:
@@ -135,9 +148,9 @@ class JogHandwheel:
             self._renew(wanted, now)
 
     def _find_wanted_choice(self, snapshot: Snapshot) -> WheelChoice | None:
-        """Return the axis and step that key, touch or switches select, or None.
+        """Return the axis and step that are selected by key, touch or switches, or None.
 
-        If no switch selects the step, the page's step applies.
+        If no switch selects the step, the step of the page applies.
         """
         axis, step = self._by_hand, self._speeds.step_index
         if self.has_axis_switch:
@@ -173,7 +186,10 @@ _MAX_UPDATE_INTERVAL_S = 0.25  # Seconds between two updates. Presses during a l
 
 @dataclass(slots=True)
 class PendantButtons:
-    """Jog buttons at the machine. ``jog_buttons`` contains the axis and sign of each input that jogs."""
+    """Jog buttons on the machine.
+
+    ``jog_buttons`` contains the axis and sign of each jog input by input name.
+    """
 
     machine: Machine
     held_jog: HeldJog
@@ -189,7 +205,10 @@ class PendantButtons:
         self.jog_buttons = {name: way for name, way in named.items() if name in self.machine.inputs}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Handle presses and releases of the buttons; called once a frame."""
+        """Handle presses and releases of the buttons.
+
+        This method is called once per frame.
+        """
         now, before, on = self.held_jog.clock(), self._on, snapshot.inputs
         away, self._looked, self._on = now - self._looked, now, on
         for name in self.jog_buttons:

@@ -1,4 +1,4 @@
-"""Homing from the Jog page: the state of each axis, and a question before an axis moves."""
+"""Homing from the Jog page, with the homing state of each axis and a question before an axis moves."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class HomingState(StrEnum):
 
     @property
     def state_name(self) -> str:
-        """The translated name of the state."""
+        """Return the translated name of the homing state."""
         words = {
             HomingState.HOMED: tr("HOMED"),
             HomingState.NOT_HOMED: tr("NOT HOMED"),
@@ -35,7 +35,10 @@ class HomingState(StrEnum):
 
 @dataclass(slots=True)
 class HomingQuestion:
-    """The question which axes to home. Enter homes all axes in order, a letter homes one axis."""
+    """Question that asks which axes to home.
+
+    Enter homes all axes in order. The letter of an axis homes that axis.
+    """
 
     machine: Machine
     desk: Desk
@@ -43,12 +46,15 @@ class HomingQuestion:
 
     @property
     def is_open(self) -> bool:
-        """Whether this question is open."""
+        """Return whether the homing question is open."""
         return self._asked and self.desk.confirm_key == "Enter"
 
     @property
     def homing_axes(self) -> tuple[Axis, ...]:
-        """The axes that can be homed. C of a lathe is included only if the spindle is an axis."""
+        """Return the axes that can be homed.
+
+        C of a lathe is included only if the spindle is used as an axis.
+        """
         return tuple(
             a
             for a in self.machine.axes
@@ -74,7 +80,10 @@ class HomingQuestion:
         ]
 
     def handle_home_key(self, snapshot: Snapshot, refusal: str) -> None:
-        """Handle the home key: ask which axes to home, or show ``refusal``."""
+        """Handle the home key by asking which axes to home.
+
+        If ``refusal`` is not empty, it is shown instead.
+        """
         lost = self.find_unhomed(snapshot)
         if refusal:
             self.desk.say(refusal)
@@ -88,9 +97,9 @@ class HomingQuestion:
             self._asked = True
 
     def answer_axis(self, key: str, snapshot: Snapshot) -> bool:
-        """Handle the letter of an axis while the question is open. Any other key cancels the question.
+        """Handle a key while the question is open, and return whether it was the letter of an axis.
 
-        Return True if the key was an axis letter.
+        The letter of an axis starts homing that axis. Any other key cancels the question.
         """
         if not self.is_open:
             return False
@@ -105,7 +114,10 @@ class HomingQuestion:
         return False
 
     def home_axis(self, name: str, snapshot: Snapshot, refusal: str) -> None:
-        """Handle a touch on one axis: ask first, then home this axis at a second touch."""
+        """Handle a touch on one axis.
+
+        The first touch asks a question, and the second touch homes the axis.
+        """
         if self.is_open and not refusal:
             self.answer_axis(name, snapshot)
         else:
@@ -117,7 +129,7 @@ class HomingQuestion:
         self.desk.post(HomeAxes(axis))
 
     def cancel(self) -> bool:
-        """Cancel the question. Return False if it was not open."""
+        """Cancel the question and return whether it was open."""
         was, self._asked = self.is_open, False
         if was:
             self.desk.clear_prompt_line()
@@ -125,7 +137,7 @@ class HomingQuestion:
 
 
 def _make_tool_warning(snapshot: Snapshot) -> str:
-    """Return a warning before the question, if a tool may be in a part. Empty otherwise."""
+    """Return a warning for the question if a tool may be in the part, or an empty string."""
     found = snapshot.interrupted
     if found is None:
         return ""

@@ -1,4 +1,4 @@
-"""The model of the Jog page: functions of its keys, and conditions for manual motion."""
+"""Model of the Jog page, with the functions of its keys and the conditions for manual motion."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ QUESTION_LETTERS = {
 
 @dataclass(slots=True)
 class JogModel:
-    """The model of the Jog page, with jog, handwheel, homing, tool setting and manual functions."""
+    """Model of the Jog page, with jog, handwheel, homing, tool setting and manual functions."""
 
     desk: Desk
     machine: Machine
@@ -87,14 +87,14 @@ class JogModel:
 
     @property
     def is_asking(self) -> bool:
-        """Whether an entry is open: a question about the tool, or the spindle speed."""
+        """Return whether the operator is entering a value for the tool or the spindle speed."""
         return bool(self.tool_setting.question_name) or self.manual_functions.is_asking_speed
 
     def _now(self) -> float:
         return self.desk.station_controls.clock()
 
     def find_jog_refusal(self) -> str:
-        """Return why axes cannot be jogged now. Empty if they can.
+        """Return the reason why axes cannot be jogged now, or an empty string.
 
         An open homing question is canceled.
         """
@@ -108,7 +108,10 @@ class JogModel:
         return find_jog_refusal(state)
 
     def _find_wheel_refusal(self) -> str:
-        """Return why the handwheel cannot move an axis now. An open question is not canceled."""
+        """Return the reason why the handwheel cannot move an axis now, or an empty string.
+
+        An open question is not canceled.
+        """
         if self.tilted_jog.is_on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
         if self.is_asking:
@@ -116,7 +119,10 @@ class JogModel:
         return find_jog_refusal(self.desk.read_snapshot().state)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update all parts and renew the lease of the jog; called once a frame."""
+        """Update all parts of the page and renew the lease of the jog.
+
+        This method is called once per frame.
+        """
         self.tilted_jog.update(snapshot)
         self.held_jog.update(snapshot)
         self.pendant_buttons.update(snapshot)
@@ -132,7 +138,7 @@ class JogModel:
             self.manual_functions.cancel_selection()
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt of the page."""
+        """Return the prompt that applies on the page now."""
         if self.tool_setting.is_setter_result:
             return tr("ENTER: SAVE MEASURED VALUE   ESC: DISCARD")
         if self.tool_setting.question_name:
@@ -140,7 +146,7 @@ class JogModel:
         return self._make_work_prompt(snapshot) or self._prompt_of_jog(snapshot)
 
     def _make_work_prompt(self, snapshot: Snapshot) -> str:
-        """Return the prompt for work other than jogging. Empty without such work."""
+        """Return the prompt for work other than jogging, or an empty string if there is no such work."""
         hand = self.manual_functions
         if hand.is_asking_speed or hand.selected_function or hand.is_line_running(snapshot):
             return hand.prompt_text(snapshot)
@@ -165,32 +171,35 @@ class JogModel:
     # --- step and speed: any change ends the jog -----------------------------------------------------
 
     def select_next_step(self) -> None:
-        """Handle F2: select the next step, and end the jog."""
+        """Select the next step and stop the jog (F2)."""
         self._another_step()
         self.jog_speeds.select_next_step()
 
     def select_step(self, step: int) -> None:
-        """Select a touched step, and end the jog."""
+        """Select a touched step and stop the jog."""
         self._another_step()
         self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step, False
 
     def select_next_speed(self) -> None:
-        """Handle F3: select the next speed, and end the jog."""
+        """Select the next speed and stop the jog (F3)."""
         self._another_speed()
         self.jog_speeds.select_next_speed()
 
     def select_speed(self, speed: int) -> None:
-        """Select a touched speed, and end the jog."""
+        """Select a touched speed and stop the jog."""
         self._another_speed()
         self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed, False
 
     def toggle_rapid(self) -> None:
-        """Toggle rapid for the next jog by touch. Any other jog cancels it."""
+        """Turn rapid on or off for the next jog by touch.
+
+        Any other jog turns rapid off.
+        """
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
 
     def press_direction(self, source: str, axis: str, sign: int) -> None:
-        """Handle a press on a direction by touch or mouse."""
+        """Handle a touch or mouse press on a direction."""
         self.held_jog.press_direction(source, axis, sign, is_rapid=self.held_jog.is_rapid_armed)
 
     def _another_step(self) -> None:
@@ -202,7 +211,7 @@ class JogModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def ask_tool_value(self, quantity: str) -> None:
-        """Ask for a value of the tool, and end the jog."""
+        """Ask for a value of the tool and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.cancel_selection()
         self.skim_cut.cancel()
@@ -210,11 +219,14 @@ class JogModel:
 
     @property
     def is_mill(self) -> bool:
-        """Whether the machine is a mill, which has separate pages for tools and presets."""
+        """Return whether the machine is a mill.
+
+        A mill has separate pages for tools and presets.
+        """
         return self.machine.kind == "mill"
 
     def toggle_tilt(self) -> None:
-        """Toggle 3D-ROT, and switch the handwheel off."""
+        """Turn 3D-ROT on or off, and turn the handwheel off."""
         self.handwheel.deselect("")
         self.tilted_jog.toggle(find_jog_refusal(self.desk.read_snapshot().state))
 
@@ -222,27 +234,27 @@ class JogModel:
         self.held_jog.release_all(why)
 
     def press_function(self, name: str) -> None:
-        """Handle a touch on a manual function, and end the jog."""
+        """Handle a touch on a manual function and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.select_function(name)
 
     def ask_spindle_speed(self) -> None:
-        """Ask for the spindle speed, and end the jog."""
+        """Ask for the spindle speed and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.ask_speed()
 
     def toggle_manual(self) -> None:
-        """Show or hide the manual functions, and end the jog."""
+        """Show or hide the manual functions and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.manual_functions.toggle_shown()
 
     def ask_master(self) -> None:
-        """Ask whether the selected tool becomes the master, and end the jog."""
+        """Ask whether the selected tool becomes the master tool, and stop the jog."""
         self.held_jog.stop_for_other_key()
         self.tool_setting.ask_master()
 
     def start_setter_touch(self) -> None:
-        """Start a touch-off at the tool setter. End the jog, and switch the handwheel off."""
+        """Start a touch-off at the tool setter, stop the jog, and turn the handwheel off."""
         self.held_jog.stop_for_other_key()
         self.handwheel.deselect("")
         self.homing_question.cancel()
@@ -250,11 +262,14 @@ class JogModel:
 
     @property
     def is_wheel_shown(self) -> bool:
-        """Whether the handwheel on the screen moves an axis now. It exists only with a simulated station."""
+        """Return whether the handwheel on the screen can move an axis now.
+
+        This handwheel exists only with a simulated operator station.
+        """
         return self.handwheel.wheel_choice is not None and self.desk.station_controls.station is not None
 
     def turn_handwheel(self, clicks: int) -> None:
-        """Turn the handwheel on the screen."""
+        """Turn the handwheel on the screen by a number of clicks."""
         station = self.desk.station_controls.station
         if (
             self.is_wheel_shown
@@ -264,13 +279,16 @@ class JogModel:
             station.turn_handwheel(clicks * self.handwheel.counts_per_click)
 
     def handle_home_key(self) -> None:
-        """Handle the home key, which asks which axes to home."""
+        """Handle the home key by asking which axes to home."""
         self.held_jog.release_all()
         self.handwheel.deselect("")
         self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
 
     def home_axis(self, axis: str) -> None:
-        """Handle a touch on the homing target of one axis. A second touch homes the axis."""
+        """Handle a touch on the homing target of one axis.
+
+        The first touch asks a question, and the second touch homes the axis.
+        """
         self.held_jog.release_all()
         self.handwheel.deselect("")
         self.homing_question.home_axis(axis, self.desk.read_snapshot(), self._no_homing())
@@ -282,12 +300,15 @@ class JogModel:
         return tr("AXES ARE STILL MOVING") if state is MachineState.JOG else find_jog_refusal(state)
 
     def on_open(self) -> None:
-        """Prepare for the open page: ignore earlier changes of offsets, and let Cycle Start run lines."""
+        """Prepare the model when the page opens.
+
+        Earlier offset changes are then ignored, and Cycle Start runs the lines of manual functions.
+        """
         self.tool_setting.history.on_open()
         self.manual_functions.on_open()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave the key to the window."""
+        """Handle a key, and return False if the window must handle it."""
         if self.is_asking:
             return (
                 self.manual_functions.handle_key(key)
@@ -313,14 +334,17 @@ class JogModel:
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether this character has a function on this page."""
+        """Return whether a character has a function on this page."""
         own = {"v", "b"} if self.is_mill else {*QUESTION_LETTERS, "m", "v", "p", "b", "c"}
         if self.is_asking:
             return self.manual_functions.accepts_key(key) or self.tool_setting.accepts_key(key)
         return key.lower() in own
 
     def handle_escape(self) -> bool:
-        """Handle Esc: end the jog, or cancel a question or entry. Return False if there was nothing to do."""
+        """Handle Esc, and return False if Esc has no function now.
+
+        Esc stops the jog, or cancels a question or an entry.
+        """
         if self.held_jog.active_jog is not None:
             self.held_jog.release_all()
             return True
@@ -340,11 +364,11 @@ class JogModel:
 
     @property
     def is_active(self) -> bool:
-        """Whether a key is held down or the handwheel is selected."""
+        """Return whether a key is held down or the handwheel is selected."""
         return self.held_jog.active_jog is not None or self.handwheel.wheel_choice is not None
 
     def release_all(self) -> None:
-        """End the jog and the handwheel, because the page no longer gets key events."""
+        """Stop the jog and turn the handwheel off because the page no longer receives key events."""
         self.held_jog.release_all(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.handwheel.deselect(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.is_rapid_armed = False
@@ -355,7 +379,10 @@ class JogModel:
             self.desk.post(StopJog())
 
     def try_leave(self) -> bool:
-        """Return whether the page can close. If it can, end all motion, questions and entries."""
+        """Return whether the page can close.
+
+        If the page can close, all motion, questions and entries are ended.
+        """
         self.held_jog.release_all()
         if not self.manual_functions.try_leave():
             return False
@@ -372,7 +399,7 @@ class JogModel:
 
 
 def find_jog_refusal(state: MachineState) -> str:
-    """Return why manual motion is not possible in this state. Empty if it is possible."""
+    """Return the reason why manual motion is not possible in a machine state, or an empty string."""
     words = {
         MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
         MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
@@ -389,7 +416,8 @@ def find_jog_refusal(state: MachineState) -> str:
 def make_jog_prompt(state: MachineState, unhomed_axes: list[str], wheel_axis: str, step_index: int) -> str:
     """Return the prompt for manual motion.
 
-    ``lost`` are the axes that are not homed. ``wheel`` is the axis of the handwheel, or empty.
+    ``unhomed_axes`` are the axes that are not homed. ``wheel_axis`` is the axis of the handwheel, or empty.
+    ``step_index`` is the index of the selected step.
     """
     why = find_jog_refusal(state)
     if why:

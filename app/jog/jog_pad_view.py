@@ -1,4 +1,4 @@
-"""The jog pad: directions that move an axis while touched, with steps, speeds and homing."""
+"""Jog pad with directions that move an axis while they are touched, and with steps, speeds and homing."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ SHORT_WORD_LENGTH = 4  # Letters: a longer word gets a wider tile.
 
 @dataclass(frozen=True, slots=True)
 class TileRow:
-    """A row of touch tiles.
+    """Row of touch tiles.
 
-    ``name`` is the row name with its key. ``is_warning`` colors the selected tile as a warning, and
-    ``alarmed_indices`` are tiles in the alarm color.
+    ``row_name`` contains the name of the row and its key. ``is_warning`` shows the selected tile in the
+    warning color, and ``alarmed_indices`` are the indices of the tiles in the alarm color.
     """
 
     row_name: tuple[str, str]
@@ -55,7 +55,7 @@ class TileRow:
 def draw_tiles(
     painter: ThemedPainter, row: QRectF, tiles: TileRow
 ) -> list[tuple[QRectF, Callable[[], None]]]:
-    """Draw a row of tiles, and return the rectangle and action of each tile."""
+    """Draw a row of tiles and return the rectangle and the action of each tile."""
     u, left = painter.theme.u, row.x()
     if tiles.row_name[0]:
         left += NAME_WIDTH * u
@@ -78,7 +78,7 @@ def _name(painter: ThemedPainter, box: QRectF, name: tuple[str, str]) -> None:
 
 
 def _draw_tile(painter: ThemedPainter, box: QRectF, word: str, tiles: TileRow, number: int) -> None:
-    """Draw one tile, filled if it is selected, and in a warning color if necessary."""
+    """Draw one tile, filled if it is selected, and in a warning or alarm color if necessary."""
     ink, ground, line = "text", "key", "frame"
     if number in tiles.alarmed_indices:
         ink = line = "alarm"
@@ -98,7 +98,11 @@ _SPOKE_COUNT = 24
 
 
 class HandwheelDial:
-    """The handwheel on the screen. ``on_turned`` gets the number of clicks, clockwise positive."""
+    """Handwheel on the screen.
+
+    The ``on_turned`` parameter is called with the number of clicks, which is positive for clockwise
+    rotation.
+    """
 
     def __init__(self, on_turned: Callable[[int], None]) -> None:
         self._turned = on_turned
@@ -107,7 +111,7 @@ class HandwheelDial:
         self._rest = 0.0  # Remaining degrees of an incomplete click.
 
     def make_control(self, box: QRectF) -> TouchControl:
-        """Return the control that turns the handwheel by touch."""
+        """Return the touch control that turns the handwheel."""
 
         def bearing(at: QPointF) -> float:
             away = at - box.center()
@@ -124,11 +128,14 @@ class HandwheelDial:
         return TouchControl(box, down, along, name="HANDWHEEL", kind="slider")
 
     def turn_by_mouse_wheel(self, delta: int) -> None:
-        """Turn the handwheel by the mouse wheel. ``delta`` is in Qt's unit; positive turns clockwise."""
+        """Turn the handwheel with the mouse wheel.
+
+        ``delta`` is in the unit of Qt, 120 per notch. A positive value turns the handwheel clockwise.
+        """
         self._turn(DEGREES_PER_CLICK * delta / _WHEEL_NOTCH)
 
     def draw(self, painter: ThemedPainter, box: QRectF, click_text: str) -> None:
-        """Draw the handwheel at its present angle, with the distance per click."""
+        """Draw the handwheel at its present angle, with the text of the distance per click."""
         size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.u
         painter.setPen(painter.theme.make_pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
@@ -155,7 +162,7 @@ DrawTileRow = Callable[[ThemedPainter, QRectF], None]
 
 
 class JogPad(JogCross):
-    """The jog pad with all its targets, which are as large as the room allows."""
+    """Jog pad with all its touch targets, which are as large as the available area permits."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _known: RedrawingAttribute[Mapping[str, HomingState]] = RedrawingAttribute({})
@@ -204,21 +211,30 @@ class JogPad(JogCross):
         self._draw_middle(painter, middle)
 
     def _make_row_drawers(self, area: QRectF) -> list[DrawTileRow]:
-        """Return the rows above the cross. Steps and speeds share one row if there is little height."""
+        """Return the functions that draw the rows above the cross.
+
+        Steps and speeds share one row if the height is small.
+        """
         wheel: list[DrawTileRow] = [self._draw_wheel] if self._model.handwheel.is_available else []
         both: list[DrawTileRow] = [self._steps, self._speeds]
         needed = self.theme.find_key_rows_height(len(both) + len(wheel) + 1 + CROSS_ROWS) + 0.6 * self.theme.u
         return [*(both if area.height() >= needed else [self._draw_steps_and_speeds]), *wheel]
 
     def _tile_height(self, area: QRectF, rows: int) -> float:
-        """Return the height of a tile row: a fingertip, if this leaves enough height for the jog targets."""
+        """Return the height of a tile row in pixels.
+
+        The row is as high as a fingertip if this leaves enough height for the jog targets.
+        """
         u = self.theme.u
         finger = self.theme.find_row_height(ROW, 9.0, is_touchable=True)
         left = area.height() - CROSS_ROWS * (HELD * u + 0.6 * u) - u
         return max(min(finger, float(FINGERTIP_PX)), ROW * u, min(finger, left / rows - 0.6 * u))
 
     def _draw_steps_and_speeds(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw step and speed in one row, with the functions of F2 and F3, and RAPID."""
+        """Draw the step, the speed and RAPID in one row.
+
+        The step and speed tiles have the functions of F2 and F3.
+        """
         model, mode = self._model, self._model.held_jog.value_mode
         step = model.jog_speeds.step_index
         said = tr("CONT")
@@ -277,7 +293,10 @@ class JogPad(JogCross):
 
     @property
     def _active_rotary_axis(self) -> str:
-        """The rotary axis that is jogged or that the handwheel moves, else empty. It has its own units."""
+        """Return the rotary axis that a jog or the handwheel moves, or an empty string.
+
+        A rotary axis has its own units.
+        """
         held, wheel = self._model.held_jog.active_jog, self._model.handwheel.wheel_choice
         axis = held.axis if held else wheel[0] if wheel else ""
         return axis if axis and self._model.machine.find_axis(axis).rotary else ""
@@ -290,7 +309,7 @@ class JogPad(JogCross):
         return f"{60 * velocity:.0f}"
 
     def _draw_wheel(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw the row that selects the handwheel axis."""
+        """Draw the row that selects the axis of the handwheel."""
         wheel = self._model.handwheel
         axis = wheel.wheel_choice[0] if wheel.wheel_choice else ""
         presses = [partial(wheel.select_axis, name) for name in ("", *wheel.axis_names)]
@@ -301,7 +320,7 @@ class JogPad(JogCross):
         )
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Turn the handwheel on the screen by the mouse wheel."""
+        """Turn the handwheel on the screen with the mouse wheel."""
         if self._model.is_wheel_shown:
             self._dial.turn_by_mouse_wheel(event.angleDelta().y())
             self.update()

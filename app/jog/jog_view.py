@@ -1,4 +1,7 @@
-"""The Jog page: jog pad at the left, tool setting or manual functions at the right, entry line below."""
+"""Jog page with the jog pad on the left, and tool setting or manual functions on the right.
+
+The entry line is below them.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,10 @@ StripKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
 def draw_function_key(
     painter: ThemedPainter, box: QRectF, letter: str, label: str, *, is_selected: bool, is_on: bool
 ) -> None:
-    """Draw a key with its letter, filled if its function is on, and framed if it is selected."""
+    """Draw a key with its letter and its label.
+
+    The key is filled if its function is on, and framed if its function is selected.
+    """
     u = painter.theme.u
     ground, ink = ("run", "on_state") if is_on else ("here" if is_selected else "key", "text")
     painter.draw_box(box, "lit" if is_selected else "frame", 0.3 if is_selected else 0.16, ground)
@@ -55,9 +61,10 @@ def draw_function_key(
 
 
 class ManualPanel(TouchPanel):
-    """The panel of the manual functions. A touch selects a function; the start buttons run it.
+    """Panel of the manual functions.
 
-    STOP acts immediately, also as a late press.
+    A touch selects a function, and the start buttons run the function. STOP takes effect immediately, even
+    if the press arrives late.
     """
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
@@ -67,7 +74,7 @@ class ManualPanel(TouchPanel):
         self._model = model
 
     def show_functions(self, snapshot: Snapshot) -> None:
-        """Show which function is selected, prepared or on."""
+        """Show which functions are selected, prepared or on."""
         hand = self._model.manual_functions
         self._shown = (
             hand.selected_function,
@@ -116,7 +123,7 @@ class ManualPanel(TouchPanel):
             )
 
     def _draw_spindle(self, painter: ThemedPainter, row: QRectF) -> None:
-        """Draw the state of the spindle, and the key that stops it."""
+        """Draw the state of the spindle and the key that stops the spindle."""
         u, hand, snapshot = self.theme.u, self._model.manual_functions, self._model.desk.read_snapshot()
         words = tr("SPINDLE STOPPED")
         if hand.is_spindle_turning(snapshot):
@@ -146,12 +153,15 @@ class ManualPanel(TouchPanel):
 
 
 def find_strip_key_height(theme: ScreenTheme) -> float:
-    """Return the height of the strip keys in pixels, at least a fingertip."""
+    """Return the height of the strip keys in pixels, which is at least the height of a fingertip."""
     return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.u)
 
 
 class ManualStrip(TouchPanel):
-    """The strip below tool setting while no question is open, with keys for manual functions and skim cut."""
+    """Strip below tool setting with keys for manual functions and for a skim cut.
+
+    The strip is shown while no question is open.
+    """
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     change_text, footer_text = RedrawingAttribute(""), RedrawingAttribute("")
@@ -161,7 +171,7 @@ class ManualStrip(TouchPanel):
         self._model = model
 
     def show_keys(self, snapshot: Snapshot, change_text: str, footer_text: str) -> None:
-        """Show the available keys, the last change, and the hint for other keys."""
+        """Show the available keys, the last change, and the hint about other keys."""
         skim, hand = self._model.skim_cut, self._model.manual_functions
         self.change_text, self.footer_text = change_text, footer_text
         self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
@@ -214,7 +224,10 @@ WIDE, ASKED, WORDS = 0.46, 12.0, 2.6
 
 
 class JogPage(HeldKeysPage):
-    """The Jog page. ``refresh`` renews the jog, so that a stall of the screen ends the motion."""
+    """Jog page.
+
+    ``refresh`` renews the jog. If the screen stalls, the motion therefore stops.
+    """
 
     NAME = page_table.JOG
     STARTS = True
@@ -253,19 +266,22 @@ class JogPage(HeldKeysPage):
         self.host.open_page(page_table.SECCMP)
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the key labels. A mill touches off on the pages of tools and presets."""
+        """Return the key labels.
+
+        A mill has no touch-off keys here, because tools and presets are set on their own pages.
+        """
         labels = super().key_labels()
         return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.is_mill else labels
 
     def handle_other_key(self, event: QKeyEvent) -> bool:
-        """Handle the Home key, which asks which axes to home."""
+        """Handle the Home key, which asks which axes to home, and return whether the key was used."""
         if event.key() != Qt.Key.Key_Home or event.isAutoRepeat() or event.modifiers() & CHORD_MODIFIERS:
             return False
         self.model.handle_home_key()
         return True
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions: steps, speeds, readout, touch-off and undo."""
+        """Return the key actions for steps, speeds, readout, touch-off and undo."""
         model = self.model
         common: KeyActions = {
             "F2": model.select_next_step,
@@ -280,7 +296,7 @@ class JogPage(HeldKeysPage):
         return {**common, **touch, "F4": model.tool_setting.ask_undo}
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the disabled keys of touch-off, undo and tilted plane."""
+        """Return the keys of touch-off, undo and tilted plane that are disabled now."""
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
             return frozenset() if model.tilted_jog.is_available(snapshot) else frozenset({"F5"})
@@ -293,7 +309,7 @@ class JogPage(HeldKeysPage):
         return frozenset(key for key, why in found.items() if why)
 
     def has_text_field(self) -> bool:
-        """Return whether a value of the tool or the spindle speed is being entered."""
+        """Return whether the operator is entering a tool value or the spindle speed."""
         return self.model.is_asking
 
     # --- page ----------------------------------------------------------------------------------------
@@ -303,12 +319,18 @@ class JogPage(HeldKeysPage):
         return self.model.prompt_text(self.desk.read_snapshot())
 
     def try_leave(self) -> bool:
-        """Release all keys, and return whether the page can close. It cannot while a line runs."""
+        """Release all keys and return whether the page can close.
+
+        The page cannot close while a line is running.
+        """
         self.jog_cross.release_all()
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update the model, which renews the jog, and show its state."""
+        """Update the model and show its state.
+
+        Updating the model renews the jog.
+        """
         if not self._has_keyboard():
             self.release_if_active()
         self.model.update(snapshot)
@@ -332,7 +354,7 @@ class JogPage(HeldKeysPage):
         self._show_question(snapshot)
 
     def _show_question(self, snapshot: Snapshot) -> None:
-        """Show the open question, or the keys that are available without a question."""
+        """Show the open question, or the available keys if no question is open."""
         tool, hand = self.model.tool_setting, self.model.manual_functions
         if hand.is_asking_speed:
             foot = tr("Enter: accept   Esc: cancel")
@@ -352,7 +374,7 @@ class JogPage(HeldKeysPage):
         self.manual_strip.show_keys(snapshot, tool.history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out the pad at the left, and the tool above the entry line at the right."""
+        """Arrange the pad on the left, and the tool above the entry line on the right."""
         u, gap = self.theme.u, max(4, round(0.7 * self.theme.u))
         left = round(WIDE * self.width())
         for part in (self.jog_cross, self.number_pad):

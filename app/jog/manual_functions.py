@@ -1,7 +1,7 @@
 """Manual functions of the Jog page: spindle, coolant and collet.
 
 Each function is an MDI line that the operator starts with the start buttons. The line is proved and checked
-like a typed MDI line, with the same interlocks. Switching a function off needs no start buttons.
+like a typed MDI line, and has the same interlocks. The start buttons are not needed to turn a function off.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ SPEED_KEY = "9"  # The key that asks for the spindle speed.
 
 
 class Words(NamedTuple):
-    """The code of each function in a programming language.
+    """Codes of the functions in a programming language.
 
-    ``speed`` is a separate line for the speed, if S is not allowed in the line of M3.
+    ``speed`` is a separate line for the speed in languages that do not permit S in the line with M3.
     """
 
     forward: str
@@ -60,7 +60,7 @@ LANGUAGE_CODES = {
 
 @dataclass(slots=True)
 class ManualFunctions:
-    """The manual function that is selected, prepared or running.
+    """Manual functions, one of which can be selected, prepared or running.
 
     ``is_open`` is True while the Jog page is open. ``is_shown`` is True while the panel of the functions is
     visible.
@@ -85,12 +85,12 @@ class ManualFunctions:
 
     @property
     def function_codes(self) -> Words:
-        """The codes in the machine's programming language."""
+        """Return the codes of the functions in the programming language of the machine."""
         return LANGUAGE_CODES[self.machine.language]
 
     @property
     def available_functions(self) -> frozenset[str]:
-        """The functions that this machine has."""
+        """Return the functions that this machine has."""
         found = {FORWARD, REVERSE, STOP}
         if "coolant" in self.machine.outputs:
             found |= {COOLANT_ON, COOLANT_OFF}
@@ -101,7 +101,10 @@ class ManualFunctions:
     # --- page ----------------------------------------------------------------------------------------
 
     def on_open(self) -> None:
-        """Prepare for the open Jog page: Cycle Start runs selected functions and no program."""
+        """Prepare the functions when the Jog page opens.
+
+        Cycle Start then runs a selected function and no program.
+        """
         self.is_open = True
         self._arm(self.desk.read_snapshot())
 
@@ -111,9 +114,9 @@ class ManualFunctions:
             self.prepared_line.cancel_line()
 
     def try_leave(self) -> bool:
-        """Return whether the page can close, which is not possible while a line runs.
+        """Return whether the page can close.
 
-        The spindle remains on.
+        The page cannot close while a line is running. The spindle remains on when the page closes.
         """
         if self.is_line_running(self.desk.read_snapshot()):
             self.desk.say(tr("A LINE IS RUNNING. LET IT END, OR STOP IT AND PRESS R"))
@@ -125,23 +128,26 @@ class ManualFunctions:
         return True
 
     def close(self) -> None:
-        """End the worker that proves lines."""
+        """Stop the worker that proves lines."""
         self.prepared_line.close()
 
     def is_line_running(self, snapshot: Snapshot) -> bool:
-        """Return whether a line that was selected here is running."""
+        """Return whether a line of a manual function is running."""
         return self._armed and snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
 
     # --- keys and touches ----------------------------------------------------------------------------
 
     def toggle_shown(self) -> None:
-        """Show the manual functions, or tool setting again."""
+        """Show the manual functions instead of tool setting, or show tool setting again."""
         self.cancel_selection()
         self.desk.clear_prompt_line()
         self.is_shown = not self.is_shown
 
     def select_function(self, function: str) -> None:
-        """Select a function. A function that switches something off acts immediately."""
+        """Select a function.
+
+        A function that turns something off takes effect immediately.
+        """
         if function == STOP:
             self.stop_spindle()
         elif function == COOLANT_OFF:
@@ -154,9 +160,9 @@ class ManualFunctions:
 
     @property
     def start_speed_rpm(self) -> float:
-        """The speed in rpm that FORWARD and REVERSE start, or 0 if none is known.
+        """Return the speed in rpm for FORWARD and REVERSE, or 0 if no speed is known.
 
-        The speed is the active S, or the entered one if S is in the line of the function.
+        The speed is the active S. If the line of the function contains S, an entered speed is used first.
         """
         modal = self.desk.read_snapshot().modal
         typed = 0.0 if self.function_codes.speed else self.entered_rpm
@@ -188,9 +194,9 @@ class ManualFunctions:
         return tr(Message(lines[name], rpm=self.entered_rpm if name == SPEED_KEY else self.start_speed_rpm))
 
     def _find_refusal(self, snapshot: Snapshot) -> str:
-        """Return why no function can be selected now.
+        """Return the reason why no function can be selected now, or an empty string.
 
-        The executor makes the same checks, and more, at the start.
+        At the start, the executor makes the same checks and additional checks.
         """
         if snapshot.state is MachineState.IDLE:
             return ""
@@ -206,7 +212,7 @@ class ManualFunctions:
     def stop_spindle(self) -> None:
         """Stop the spindle immediately, without the start buttons.
 
-        A running line of this page is canceled.
+        A running line of a manual function is canceled.
         """
         snapshot = self.desk.read_snapshot()
         self.cancel_selection()
@@ -230,7 +236,7 @@ class ManualFunctions:
         self.is_asking_speed, self.text = True, ""
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave the key to the page."""
+        """Handle a key, and return False if the page must handle it."""
         if self.is_asking_speed:
             if key == "Enter":
                 self._enter()
@@ -251,7 +257,7 @@ class ManualFunctions:
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether this character is text input for the speed."""
+        """Return whether a character can be entered for the speed."""
         return self.is_asking_speed and key in EXPRESSION_CHARACTERS
 
     def _enter(self) -> None:
@@ -284,7 +290,7 @@ class ManualFunctions:
     # --- cancel --------------------------------------------------------------------------------------
 
     def cancel_selection(self) -> bool:
-        """Cancel the selected function or the question. Return False if there was neither."""
+        """Cancel the selected function or the speed question, and return whether there was one to cancel."""
         was = bool(self.selected_function or self.is_asking_speed)
         if self._armed and self.selected_function and not self.is_line_running(self.desk.read_snapshot()):
             self.prepared_line.cancel_line()
@@ -296,14 +302,20 @@ class ManualFunctions:
         self.selected_function, self.is_asking_speed, self.text, self._wanted = "", False, "", ""
 
     def handle_cancel_key(self) -> bool:
-        """Handle Esc: cancel the selected function or the question. Return False if nothing was canceled."""
+        """Cancel the selected function or the speed question when Esc is pressed.
+
+        Returns False if nothing was canceled.
+        """
         if self.is_line_running(self.desk.read_snapshot()) or not self.cancel_selection():
             return False
         self.desk.clear_prompt_line()
         return True
 
     def hide_functions(self) -> bool:
-        """Handle Esc: show tool setting again. Return False if it is already shown or a line is running."""
+        """Show tool setting again when Esc is pressed.
+
+        Returns False if tool setting is already shown or a line is running.
+        """
         if self.is_line_running(self.desk.read_snapshot()):
             return False
         was, self.is_shown = self.is_shown, False
@@ -320,9 +332,9 @@ class ManualFunctions:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Accept the proof of a line; called once a frame.
+        """Process the proof of a line.
 
-        A prepared line is canceled if the axes have moved.
+        A prepared line is canceled if the axes have moved. This method is called once per frame.
         """
         self._arm(snapshot)
         if self._armed:
@@ -338,11 +350,14 @@ class ManualFunctions:
 
     @staticmethod
     def _is_gripping(snapshot: Snapshot) -> bool:
-        """Return whether the collet clamps a part that turns or that a switch could start to turn."""
+        """Return whether the collet clamps a part that is turning or that a switch could start to turn."""
         return ManualFunctions.is_spindle_turning(snapshot) or snapshot.requested_rpm != 0.0
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now. Empty if they can start a line."""
+        """Return the reason why the start buttons have no effect now.
+
+        The result is an empty string if the start buttons can start a line.
+        """
         snapshot = self.desk.read_snapshot()
         if snapshot.state in CYCLE_STATES:
             return "" if self.is_line_running(snapshot) else prompt_line.START_ON_AUTOMATIC
@@ -353,7 +368,7 @@ class ManualFunctions:
         return tr("NOTHING SELECTED. PICK 1–6, THEN CYCLE START")
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt for manual functions. Empty if the prompt for jogging applies."""
+        """Return the prompt for manual functions, or an empty string if the prompt for jogging applies."""
         if self.is_asking_speed:
             return tr("TYPE THE RPM AND PRESS ENTER. ESC: CANCEL")
         if self.is_line_running(snapshot):
@@ -384,5 +399,5 @@ class ManualFunctions:
 
     @staticmethod
     def is_spindle_turning(snapshot: Snapshot) -> bool:
-        """Return whether the spindle turns or is commanded to turn."""
+        """Return whether the spindle is turning or is commanded to turn."""
         return abs(snapshot.rpm_actual) > TURNING_RPM or snapshot.rpm_command != 0.0

@@ -1,8 +1,9 @@
-"""Touch-off of a tool by a skim cut (cut, retract, stop, measure, enter) or at the tool setter.
+"""Touch-off of a tool by a skim cut or at the tool setter.
 
-After the cut of a diameter, X must not move until the size is entered, and after a face Z. The tool retracts
-along the other axis. The offset is calculated from the axis position during the cut. If this axis moves after
-the cut, the position may belong to another cut and is discarded.
+A skim cut has these steps: cut, retract, stop the spindle, measure, and enter the size. After the cut of a
+diameter, X must not move until the size is entered. After the cut of a face, Z must not move. The tool
+retracts along the other axis. The offset is calculated from the axis position during the cut. If this axis
+moves after the cut, the position could belong to another cut, so it is discarded.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ MIN_CUT_MM = 0.25
 
 
 class SkimCutStep(Enum):
-    """The next step of a skim cut."""
+    """Step of a skim cut."""
 
     OFF = auto()
     CHOOSE_AXIS = auto()  # Choose a diameter or a face.
@@ -42,7 +43,10 @@ class SkimCutStep(Enum):
 
 @dataclass(slots=True)
 class SkimCut:
-    """A touch-off by a skim cut. Offsets change only when the size is entered. Esc cancels."""
+    """Touch-off by a skim cut.
+
+    Offsets change only when the size is entered. Esc cancels the skim cut.
+    """
 
     desk: Desk
     tool_setting: ToolSetting
@@ -60,23 +64,23 @@ class SkimCut:
 
     @property
     def is_open(self) -> bool:
-        """Whether a skim cut is in progress."""
+        """Return whether a skim cut is in progress."""
         return self.cut_step is not SkimCutStep.OFF
 
     @property
     def measured_axis(self) -> str:
-        """The axis that is measured and must not move after the cut."""
+        """Return the axis that is measured, which must not move after the cut."""
         return TOUCH_FIELDS[self.quantity].upper() if self.quantity else ""
 
     @property
     def travel_axis(self) -> str:
-        """The axis along which the tool cuts and retracts."""
+        """Return the axis along which the tool cuts and retracts."""
         return "Z" if self.measured_axis == "X" else "X"
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def begin_skim_cut(self) -> None:
-        """Ask for the axis, or show why no tool can be set now."""
+        """Ask for the axis of the skim cut, or show the reason why no tool can be set now."""
         if self.is_open:
             return
         why = self.tool_setting.find_refusal(TOUCH_X, self.desk.read_snapshot())
@@ -87,7 +91,7 @@ class SkimCut:
         self.cut_step = SkimCutStep.CHOOSE_AXIS
 
     def select_cut(self, quantity: str) -> None:
-        """Select a diameter or a face as the cut."""
+        """Select whether a diameter or a face is cut."""
         why = self.tool_setting.find_refusal(quantity, self.desk.read_snapshot())
         if why:
             self.desk.say(why)
@@ -97,7 +101,7 @@ class SkimCut:
         self._anew(self.desk.read_snapshot())
 
     def finish_cut(self) -> None:
-        """Finish the cut, and store the position of the axis."""
+        """Finish the cut and store the position of the measured axis."""
         snapshot = self.desk.read_snapshot()
         why = self._find_cut_refusal(snapshot)
         if why:
@@ -112,7 +116,7 @@ class SkimCut:
         )
 
     def _find_cut_refusal(self, snapshot: Snapshot) -> str:
-        """Return why there is no cut to measure yet. Empty if there is one."""
+        """Return the reason why there is no cut to measure yet, or an empty string."""
         if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
         if self.cut_length >= MIN_CUT_MM:
@@ -128,7 +132,7 @@ class SkimCut:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave the key to the page."""
+        """Handle a key, and return False if the page must handle it."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS and key.lower() in {"x", "z"}:
             self.select_cut(TOUCH_X if key.lower() == "x" else TOUCH_Z)
         elif self.cut_step is SkimCutStep.CUTTING and key == "Enter":
@@ -140,7 +144,7 @@ class SkimCut:
         return True
 
     def handle_escape(self) -> bool:
-        """Handle Esc: cancel the skim cut. Return False if none is in progress."""
+        """Cancel the skim cut when Esc is pressed, and return whether one was in progress."""
         was = self.is_open
         if was:
             self.cancel()
@@ -148,7 +152,7 @@ class SkimCut:
         return was
 
     def cancel(self) -> None:
-        """End the skim cut without a change of offsets."""
+        """End the skim cut without changing offsets."""
         if self.cut_step is SkimCutStep.MEASURING:
             self.tool_setting.close_question()
         self.cut_step, self.quantity, self.failure_reason = SkimCutStep.OFF, "", ""
@@ -157,7 +161,10 @@ class SkimCut:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Follow the axes and the spindle, and advance the skim cut; called once a frame."""
+        """Monitor the axes and the spindle, and advance the skim cut.
+
+        This method is called once per frame.
+        """
         if not self.is_open or self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return
         why = self._find_failure(snapshot)
@@ -177,7 +184,7 @@ class SkimCut:
             self.cut_step = SkimCutStep.RETRACT
 
     def _find_failure(self, snapshot: Snapshot) -> str:
-        """Return why the skim cut cannot continue. Empty if it can."""
+        """Return the reason why the skim cut cannot continue, or an empty string."""
         if snapshot.state in {
             MachineState.ESTOP,
             MachineState.FAULT,
@@ -192,7 +199,11 @@ class SkimCut:
         return ""
 
     def _follow_cut(self, snapshot: Snapshot) -> None:
-        """Measure the distance along the other axis with the spindle turning, since this axis moved last."""
+        """Update the length of the cut.
+
+        This is the travel along the other axis with the spindle turning, since the last move of the
+        measured axis.
+        """
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
             self._anew(snapshot)
         elif self._turns(snapshot):
@@ -204,7 +215,7 @@ class SkimCut:
         self.cut_length, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
 
     def _handle_moved(self, snapshot: Snapshot) -> None:
-        """Discard the stored position, because the axis moved after the cut."""
+        """Discard the stored position because the measured axis moved after the cut."""
         mode = self.tool_setting.history.value_mode
         away = self._place(snapshot) - self.commanded_position
         shown = format_length(
@@ -218,7 +229,7 @@ class SkimCut:
         self.failure_reason = tr(Message(words, axis=self.measured_axis, away=shown))
 
     def _measure_cut(self, snapshot: Snapshot) -> None:
-        """Ask for the size when the spindle and the axes are at rest."""
+        """Ask for the measured size when the spindle and the axes are stopped."""
         if snapshot.state is MachineState.IDLE and not self._turns(snapshot):
             self.cut_step = SkimCutStep.MEASURING
             self.tool_setting.ask_cut_size(self.quantity, self.cut_position)
@@ -236,7 +247,7 @@ class SkimCut:
     # --- display -------------------------------------------------------------------------------------
 
     def make_step_prompt(self, snapshot: Snapshot) -> str:
-        """Return the prompt for the next step."""
+        """Return the prompt that explains the next step, or an empty string."""
         if self.cut_step is SkimCutStep.CHOOSE_AXIS:
             return tr("SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL")
         if self.cut_step is SkimCutStep.RETRACT:
@@ -273,9 +284,10 @@ _DIRECTIONS_BY_TIP: dict[int, tuple[TouchDirection, ...]] = {
 
 
 def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
-    """Return the directions in which this tool can be touched off.
+    """Return the directions in which a tool can be touched off.
 
-    A tool that was never set allows all directions. A tool without a tip quadrant allows none.
+    A tool that was never set can be touched off in all directions. A tool without a tip quadrant cannot be
+    touched off.
     """
     return ALL_DIRECTIONS if row is None else _DIRECTIONS_BY_TIP.get(row.quadrant, ())
 
@@ -283,14 +295,17 @@ def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
 def find_zero_position(
     touch_position: float, direction: TouchDirection, setter: SetterModel, row: ToolRow | None
 ) -> float:
-    """Return the machine position in mm at which this tip is on part zero. The tip touched at ``place``."""
+    """Return the machine position in mm at which the tool tip is at part zero.
+
+    ``touch_position`` is the machine position in mm at which the tip touched the tool setter.
+    """
     axis, sign = direction
     before = sign * row.nose_radius if row is not None and row.quadrant == CENTER_TIP else 0.0
     return touch_position - (setter.touch_position(axis, sign) - before)
 
 
 def format_direction(direction: TouchDirection) -> str:
-    """Return a direction as text, for example X−."""
+    """Return a direction as text, such as X−."""
     return f"{direction[0]}{'+' if direction[1] > 0 else '−'}"
 
 
@@ -298,7 +313,8 @@ def format_direction(direction: TouchDirection) -> str:
 class SetterTouchOff:
     """Touch-off at the tool setter.
 
-    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contain the keys.
+    ``is_armed`` means that the next direction key starts a touch-off. ``directions`` contains the direction
+    keys.
     """
 
     desk: Desk
@@ -312,7 +328,7 @@ class SetterTouchOff:
 
     @property
     def setter(self) -> SetterModel | None:
-        """The tool setter from the machine file. None if the machine has no tool setter with an input."""
+        """Return the tool setter of the machine, or None if the machine has no tool setter with an input."""
         return (
             self.machine.hardware.find_driver_table(SetterModel)
             if PROBE_INPUT in self.machine.inputs
@@ -320,7 +336,7 @@ class SetterTouchOff:
         )
 
     def toggle_armed(self) -> None:
-        """Handle P: arm or cancel the touch-off of the selected tool."""
+        """Arm or cancel the touch-off of the selected tool (P)."""
         if self.is_armed:
             self.cancel()
         elif why := self._barred():
@@ -330,7 +346,7 @@ class SetterTouchOff:
             self.desk.clear_prompt_line()
 
     def cancel(self) -> None:
-        """Cancel the touch-off."""
+        """Cancel the touch-off that is armed."""
         self.is_armed = False
 
     def _barred(self) -> str:
@@ -348,7 +364,7 @@ class SetterTouchOff:
         return ""
 
     def make_command(self, axis: str, sign: int, button: str) -> Command | str:
-        """Return the touch-off command for this direction, or the reason as text if it is not possible."""
+        """Return the touch-off command for a direction, or the reason as text if it is not possible."""
         ways = find_touch_directions(self.tool_setting.tool_row)
         if (axis, sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
@@ -358,7 +374,10 @@ class SetterTouchOff:
         return TouchOffTool(axis, sign, self.lease_s, self._presses, button)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Ask whether to save the result of a touch-off, when the axis is at rest; called once a frame."""
+        """Ask whether to save the result of a touch-off when the axis has stopped.
+
+        This method is called once per frame.
+        """
         if self._seen is not None and snapshot.state is MachineState.JOG:
             return
         touched = snapshot.touched
@@ -390,7 +409,7 @@ class SetterTouchOff:
         self.tool_setting.ask_setter_result(TOUCH_X if touched.axis == "X" else TOUCH_Z, value, cause)
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the prompt for the touch-off. Empty if no touch-off is armed."""
+        """Return the prompt for the touch-off, or an empty string if no touch-off is armed."""
         if not self.is_armed:
             return ""
         words = {
@@ -414,7 +433,7 @@ class SetterTouchOff:
 
 @dataclass(slots=True)
 class HeldTouchOff(HeldJog):
-    """A continuous jog, or a touch-off while a key is held down if ``setter_touch`` is armed."""
+    """Jog by a key that is held down, or a touch-off by that key if ``setter_touch`` is armed."""
 
     setter_touch: SetterTouchOff | None = None
     _asked: Command | None = field(default=None)

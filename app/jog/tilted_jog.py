@@ -21,16 +21,20 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 
 @dataclass(frozen=True, slots=True)
 class JogFrame:
-    """The jog directions X, Y and Z in machine coordinates, as the columns of ``axes``.
+    """Frame with the jog directions X, Y and Z.
 
-    ``frame_text`` is the name of the frame.
+    The columns of ``axes`` are the directions in machine coordinates. ``frame_text`` is the name of the
+    frame.
     """
 
     axes: Matrix
     frame_text: str
 
     def find_direction(self, axis: str) -> Direction | None:
-        """Return the machine direction of a linear axis. None for a rotary axis, which jogs as usual."""
+        """Return the direction of a linear axis in machine coordinates.
+
+        The result is None for a rotary axis, because its jog does not depend on the frame.
+        """
         if axis not in LINEAR_AXES:
             return None
         x, y, z = (row[LINEAR_AXES.index(axis)] for row in self.axes)
@@ -40,8 +44,8 @@ class JogFrame:
 def make_jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
     """Return the frame for jogging, or the reason as text if there is no such frame.
 
-    The frame is the active tilted plane, if the rotary axes are at its angles. Without a plane, it is the
-    frame of a tilted head.
+    If a plane is active, its frame is used, but only if the rotary axes are at the angles of the plane. If
+    no plane is active, the frame of a tilted head is used.
     """
     swivel = snapshot.swivel
     angles = dict(zip(snapshot.axes, snapshot.actual, strict=True))
@@ -75,9 +79,9 @@ def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> 
 
 @dataclass(slots=True)
 class TiltedJog:
-    """Jog in a tilted frame. It is switched off when the frame is lost.
+    """Jog in a tilted frame, which is turned off if the frame is lost.
 
-    ``release_keys`` ends the jog, and ``show_message`` shows the reason.
+    ``release_keys`` stops the jog, and ``show_message`` shows the reason.
     """
 
     machine: Kinematics | None
@@ -88,7 +92,7 @@ class TiltedJog:
     refusal_reason: str = ""  # Why no frame is available.
 
     def toggle(self, refusal: str = "") -> None:
-        """Toggle 3D-ROT. Show the reason if this is not possible."""
+        """Turn 3D-ROT on or off, or show the reason why this is not possible."""
         self.release_keys("")
         if not self.is_on and self.jog_frame is None:
             self.show_message(self.refusal_reason)
@@ -99,15 +103,18 @@ class TiltedJog:
             self.show_message("")
 
     def is_available(self, snapshot: Snapshot) -> bool:
-        """Return whether the key has a function now."""
+        """Return whether the 3D-ROT key has a function now."""
         return self.is_on or (self.jog_frame is not None and snapshot.state in MANUAL_STATES)
 
     def switch_off(self) -> None:
-        """Switch 3D-ROT off, because the page closes."""
+        """Turn 3D-ROT off because the page closes."""
         self.is_on = False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the frame; called once a frame of the screen."""
+        """Update the frame for jogging.
+
+        This method is called once per frame of the screen.
+        """
         found = make_jog_frame(self.machine, snapshot)
         self.jog_frame, self.refusal_reason = (None, found) if isinstance(found, str) else (found, "")
         if self.is_on and self.jog_frame is None:
@@ -117,5 +124,5 @@ class TiltedJog:
             self.show_message(why)
 
     def find_direction(self, axis: str) -> Direction | None:
-        """Return the machine direction of a jog of this axis, or None for the machine axis itself."""
+        """Return the direction of a jog in machine coordinates, or None if the machine axis is jogged."""
         return self.jog_frame.find_direction(axis) if self.is_on and self.jog_frame is not None else None

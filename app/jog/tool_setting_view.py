@@ -1,4 +1,4 @@
-"""The right side of the Jog page: tool setting on a lathe, or tool, preset and 3D-ROT on a mill."""
+"""Right side of the Jog page, with tool setting on a lathe, or tool, preset and 3D-ROT on a mill."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _FIELD_QUESTIONS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
 class ToolSettingPanel(Panel):
-    """The panel of the tool setting. Every field is a touch target."""
+    """Panel of tool setting, in which every field is a touch target."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, float] | None] = RedrawingAttribute(None)
@@ -70,14 +70,17 @@ class ToolSettingPanel(Panel):
 
     @property
     def displayed_mode(self) -> ValueMode:
-        """The unit of the position display, so that the page never shows positions in two units."""
+        """Return the unit of the position display.
+
+        The panel uses this unit, so the page never shows positions in two units.
+        """
         return ValueMode(
             self._model.desk.settings_store.display_units.metric(self._mode.is_metric), self._mode.is_diameter
         )
 
     @property
     def tip_heading(self) -> str:
-        """The heading of the tip position, with its unit if the unit differs from the panel's."""
+        """Return the heading of the tip position, with its unit if the panel has a different unit."""
         if self.displayed_mode.is_metric == self._mode.is_metric:
             return tr("TIP POSITION FROM PART ZERO")
         return (
@@ -183,7 +186,7 @@ class ToolSettingPanel(Panel):
         return format_value(name, getattr(tool.tool_row, name), mode) if tool.tool_row else ""
 
     def _describe_master(self) -> str:
-        """Return the master tool, and the distance of this tool from the master."""
+        """Return a text with the master tool and the distance of this tool from the master tool."""
         tool, mode = self._model.tool_setting, self._mode
         master = tool.offset_book.master_number
         if not master:
@@ -214,7 +217,7 @@ _ROW_HEIGHT = 6.0  # Units: height of a row.
 
 
 class MillJogPanel(Panel):
-    """The panel of a mill. Tool, preset and 3D-ROT are touch targets."""
+    """Panel of a mill, in which tool, preset and 3D-ROT are touch targets."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
     _tip: RedrawingAttribute[tuple[float, ...] | None] = RedrawingAttribute(None)
@@ -231,7 +234,7 @@ class MillJogPanel(Panel):
         self._model, self._tools, self._presets = model, open_tools, presets
 
     def show_mill(self, snapshot: Snapshot) -> None:
-        """Show the active tool and preset, the tip position and the tilted frame."""
+        """Show the active tool, the active preset, the tip position and the tilted frame."""
         book, tilt, tool = self._model.desk.offset_book, self._model.tilted_jog, snapshot.modal.tool
         swivel = snapshot.swivel
         self._tip = swivel.system.transform.to_frame_point(_slides(snapshot)) if swivel is not None else None
@@ -326,7 +329,7 @@ class MillJogPanel(Panel):
         self.add_target(row, press)
 
     def _draw_axes(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the tip position in the active system, and the machine direction of each jog key."""
+        """Draw the tip position in the active coordinate system and the machine direction of each jog key."""
         u, tilt = self.theme.u, self._model.tilted_jog
         head = QRectF(area.x(), area.y(), area.width(), 2.2 * u)
         painter.draw_text_line(head, tr("TIP POSITION"), 1.5, "soft")

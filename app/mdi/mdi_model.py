@@ -1,4 +1,4 @@
-"""The model of the MDI page: entry, completion, proof and preparation of one line, without Qt."""
+"""Model of the MDI page without Qt: entry, completion, proof and preparation of one line."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ MAX_HISTORY = 100  # Number of lines.
 
 @dataclass(slots=True)
 class MdiInput:
-    """The input line with a cursor and a history. Up and Down recall lines, as in a shell."""
+    """Input line with a cursor and a history.
+
+    Up and Down recall earlier lines, as in a shell.
+    """
 
     persistence: Persistence = field(default_factory=Persistence)
     text: str = ""
@@ -46,7 +49,7 @@ class MdiInput:
         self.reload()
 
     def reload(self) -> None:
-        """Read the stored history. Invalid entries are ignored."""
+        """Read the stored history and ignore invalid entries."""
         try:
             kept = self.persistence.read_setting(HISTORY_SETTING)
         except StoreError:
@@ -55,7 +58,7 @@ class MdiInput:
         self.history = [line for line in lines if isinstance(line, str)][-MAX_HISTORY:]
 
     def handle_key(self, key: str) -> bool:
-        """Handle a character or an editing key. Return False if the key has no meaning here."""
+        """Handle a character or an editing key, and return False if the key has no function here."""
         match key:
             case "Back":
                 self._cut(self.cursor - 1)
@@ -73,12 +76,15 @@ class MdiInput:
         return True
 
     def set_text(self, text: str, cursor: int | None = None) -> None:
-        """Set the text, and the cursor to ``cursor`` or to the end."""
+        """Set the text, and move the cursor to the index ``cursor`` or to the end of the text."""
         self.text = text
         self.cursor = len(text) if cursor is None else cursor
 
     def recall_line(self, index: int) -> None:
-        """Recall a line of the history, counted from the newest. 0 restores the typed text."""
+        """Recall a line of the history.
+
+        ``index`` counts from 1 for the newest line. An index of 0 restores the typed text.
+        """
         if not 0 <= index <= len(self.history):
             return
         if not self.recall_index:
@@ -87,14 +93,17 @@ class MdiInput:
         self.set_text(self.history[-index] if index else self._draft)
 
     def finish_line(self) -> None:
-        """Add the started line to the history, and begin an empty line."""
+        """Add the line that was started to the history, and begin an empty line."""
         self.error_columns.pop(self.text, None)
         self._remember()
         self.set_text("")
         self.recall_index, self._draft = 0, ""
 
     def add_rejected(self, column: int) -> None:
-        """Add a rejected line to the history with the column of its error. The text remains."""
+        """Add a rejected line to the history with the column of its error.
+
+        The text remains in the input line.
+        """
         self._remember()
         self.error_columns[self.text] = column
         self.error_columns = {line: at for line, at in self.error_columns.items() if line in self.history}
@@ -116,8 +125,9 @@ CONTINUATION_SIGN = "~"  # A block of Klartext continues in the next line.
 
 @dataclass(slots=True)
 class LineCompletion:
-    """Code help and completion for the input line. ``is_open`` is True while the choices use the arrow
-    keys.
+    """Code help and completion for the input line.
+
+    ``is_open`` is True while the arrow keys select a choice.
     """
 
     mdi_input: MdiInput
@@ -126,7 +136,7 @@ class LineCompletion:
     is_open: bool = False
 
     def toggle_choices(self) -> None:
-        """Open the choices for the text before the cursor, or close them."""
+        """Open the choices for the text before the cursor, or close the choices."""
         self.is_open = not self.is_open
         if self.is_open:
             self.code_help.update_for_cursor(
@@ -135,9 +145,10 @@ class LineCompletion:
             self.code_help.open_choices()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Tab opens the choices. While they are open, arrow keys select a choice.
+        """Handle a key, and return False if the input line must handle it.
 
-        Return False to leave the key to the input line. Any other key closes the choices.
+        Tab opens the choices. While they are open, arrow keys select a choice, and any key without a
+        function closes the choices.
         """
         if not self.is_open:
             if key == "Tab":
@@ -155,7 +166,7 @@ class LineCompletion:
         return self.is_open or key in ("Enter", "Tab")
 
     def insert_code(self) -> None:
-        """Insert the selected code in place of the typed part of the code."""
+        """Replace the typed part of the code with the selected code."""
         self.is_open, chosen = False, self.code_help.selected_entry
         if chosen is None:
             return
@@ -169,8 +180,8 @@ class LineCompletion:
 def _fit_entry(entry: CodeBookEntry, max_length: int) -> str:
     """Return the text that completion inserts, with continuation lines joined into one line.
 
-    If this text is longer than ``max_length``, return only the code, or an empty text if the code is too
-    long as well.
+    If this text is longer than ``max_length``, only the code is returned. If the code is also too long, the
+    result is empty.
     """
     lines = entry.written.splitlines()
     joined = len(lines) == 1 or all(line.rstrip().endswith(CONTINUATION_SIGN) for line in lines[:-1])
@@ -181,8 +192,9 @@ def _fit_entry(entry: CodeBookEntry, max_length: int) -> str:
 
 @dataclass(slots=True)
 class MdiModel:
-    """The model of the MDI page. ``show_message`` shows a message, and ``read_code_book`` returns the
-    codes.
+    """Model of the MDI page.
+
+    ``show_message`` shows a message, and ``read_code_book`` returns the known codes.
     """
 
     prove_line: ProveLine
@@ -203,20 +215,27 @@ class MdiModel:
     # --- page ----------------------------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether MDI can be opened now. If not, show the reason."""
+        """Return whether MDI can open now, and show the reason if it cannot."""
         if why := find_mdi_refusal(self.read_snapshot()):
             self.show_message(why)
         return not why
 
     def on_open(self) -> None:
-        """Prepare for the open page: Cycle Start runs lines and no program."""
+        """Prepare the model when the page opens.
+
+        Cycle Start then runs entered lines and no program.
+        """
         self.is_open = True
         self.mdi_input.reload()
         self.completion.is_open = False
         self.prepared_line.cancel_line()
 
     def try_leave(self) -> bool:
-        """Return whether the page can close. The spindle remains on, and Cycle Start runs programs again."""
+        """Return whether the page can close.
+
+        The page cannot close while a line is running. When it closes, the spindle remains on, and Cycle
+        Start runs programs again.
+        """
         if not self.is_open:
             return True
         if self.read_snapshot().state in CYCLE_STATES:
@@ -227,18 +246,21 @@ class MdiModel:
         return True
 
     def close(self) -> None:
-        """End the worker that proves lines."""
+        """Stop the worker that proves lines."""
         self.prepared_line.close()
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether this character is text input now."""
+        """Return whether a character can be entered now."""
         return len(key) == 1 and self.has_keyboard
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether the line accepts input. It does so while the drives are off, but not while a line runs."""
+        """Return whether the input line accepts keys.
+
+        The input line accepts keys while the drives are off, but not while a line is running.
+        """
         return self.read_snapshot().state in {
             MachineState.IDLE,
             MachineState.DISABLED,
@@ -247,7 +269,7 @@ class MdiModel:
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave the key to the window."""
+        """Handle a key, and return False if the window must handle it."""
         if not self.has_keyboard:
             return False
         before = self.mdi_input.text
@@ -262,7 +284,7 @@ class MdiModel:
         return taken
 
     def prove_entered_line(self) -> None:
-        """Prove the line from the present machine state, or show why this is not possible."""
+        """Prove the entered line from the present machine state, or show why it cannot be proved."""
         snapshot = self.read_snapshot()
         self.clear_message()
         if snapshot.state is not MachineState.IDLE:
@@ -274,19 +296,22 @@ class MdiModel:
         self.prepared_line.prove_line(self.mdi_input.text, snapshot, self._failed)
 
     def toggle_choices(self) -> None:
-        """Toggle the choices for the typed text or the code at the cursor."""
+        """Open or close the choices for the typed text or the code at the cursor."""
         if self.has_keyboard:
             self.clear_message()
             self.completion.toggle_choices()
 
     def insert_code(self) -> None:
-        """Insert the selected code in the line."""
+        """Insert the selected code into the line."""
         self.completion.insert_code()
         self.clear_message()
         self.prepared_line.cancel_line()
 
     def recall_line(self, index: int) -> None:
-        """Recall a line of the history, counted from the newest."""
+        """Recall a line of the history.
+
+        ``index`` counts from 1 for the newest line.
+        """
         self.mdi_input.recall_line(index)
         self.clear_message()
         self.prepared_line.cancel_line()
@@ -294,7 +319,7 @@ class MdiModel:
     def handle_escape(self) -> bool:
         """Close the choices, cancel a prepared line, or clear the text.
 
-        Return False if there was nothing to do.
+        Returns False if there was nothing to close, cancel or clear.
         """
         under_way = self.read_snapshot().state in prompt_line.ACTIVE_STATES
         if self.completion.is_open:
@@ -309,21 +334,27 @@ class MdiModel:
         return True
 
     def stop_spindle(self) -> None:
-        """Stop the spindle, which a line may have left on."""
+        """Stop the spindle, which an earlier line may have started."""
         self.clear_message()
         self.post_command(StopSpindle())
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Accept the proof of the line; called once a frame. A started line is added to the history."""
+        """Process the proof of the line, and add a started line to the history.
+
+        This method is called once per frame.
+        """
         if self.is_open:
             self.prepared_line.renew_line_mode(snapshot)
         if self.prepared_line.update(snapshot):
             self.mdi_input.finish_line()
 
     def prompt_text(self, snapshot: Snapshot, start_instruction: str) -> str:
-        """Return the prompt. ``start`` is the instruction for starting a cycle."""
+        """Return the prompt of the page.
+
+        ``start_instruction`` is the instruction for starting a cycle.
+        """
         if snapshot.state is MachineState.DISABLED:
             return tr("DRIVES ARE OFF. F5: DRIVES ON. YOU CAN STILL TYPE A LINE")
         if snapshot.state is not MachineState.IDLE:
@@ -343,7 +374,10 @@ class MdiModel:
         return tr("TYPE A LINE   ENTER: PROVE   F1: EXIT, SPINDLE UNCHANGED")
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now. Empty if they can start a line."""
+        """Return the reason why the start buttons have no effect now.
+
+        The result is an empty string if the start buttons can start a line.
+        """
         if self.read_snapshot().state is MachineState.IDLE and self.prepared_line.ready_job is None:
             return tr("NO LINE IS READY. TYPE A LINE AND PRESS ENTER")
         return ""

@@ -1,4 +1,4 @@
-"""The MDI page (F4): the input line, its history, and the modal state."""
+"""MDI page (F4) with the input line, its history and the modal state."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from core.language.diagnostics import Diagnostic, Severity
 
 
 class MdiLinePanel(Panel):
-    """The input line with its cursor, the findings of its proof, and a mark when the line is prepared.
+    """Panel with the input line, its cursor, the findings of its proof, and a mark if the line is prepared.
 
-    A touch toggles the letter keyboard.
+    A touch shows or hides the letter keyboard.
     """
 
     text, at = RedrawingAttribute(""), RedrawingAttribute(0)
@@ -49,7 +49,7 @@ class MdiLinePanel(Panel):
 
     @property
     def finding_text(self) -> str:
-        """The first finding, errors before warnings."""
+        """Return the text of the first finding, with errors before warnings, or an empty string."""
         return f"{self._first.message} {self._first.hint}".strip() if self._first else ""
 
     @property
@@ -98,7 +98,10 @@ ROW_HEIGHT = 3.4  # Units.
 
 
 class MdiHistoryPanel(RowPanel):
-    """The history of lines. ``back`` is the position of the recalled line, 0 for none."""
+    """Panel with the history of lines.
+
+    ``recall_index`` is the position of the recalled line, counted from 1, or 0 if no line is recalled.
+    """
 
     history_lines: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())  # Oldest line first.
     recall_index = RedrawingAttribute(0)
@@ -135,7 +138,7 @@ class MdiHistoryPanel(RowPanel):
             painter.draw_text_line(empty, tr("No lines run yet."), 2.0, "soft", bold=False)
 
     def _draw_rejected(self, painter: ThemedPainter, row: QRectF, text: str, column: int) -> None:
-        """Underline the rejected word of a line, and write REJECTED at the right."""
+        """Underline the rejected word of a line and write REJECTED on the right."""
         u = self.theme.u
         metrics = QFontMetricsF(self.theme.make_font(2.2))
         start = max(0, column - 1)
@@ -153,7 +156,7 @@ LABEL_SHARE = 0.4  # Fraction of a row for its label.
 
 
 class ModalPanel(Panel):
-    """All rows of the modal state, as large as the room allows."""
+    """Panel with all rows of the modal state, which are as large as the available area permits."""
 
     rows: RedrawingAttribute[tuple[ModalRow, ...]] = RedrawingAttribute(())
 
@@ -175,7 +178,10 @@ LINE, STATE = 15.6, 46.0  # Units: height of the line, width of the modal state.
 
 
 class MdiPage(ModelPage):
-    """The MDI page. At rest, keys are text input. While a line runs, letters have their usual functions."""
+    """MDI page.
+
+    While no line is running, keys enter text. While a line is running, letters have their usual functions.
+    """
 
     NAME = page_table.MDI
     LABELS = ("MENU", "AUTO", "CODES", "READOUT", "DRIVES", "RESET", "ALARMS", "SPN STOP", "SECCMP", "SCOPE")
@@ -209,7 +215,7 @@ class MdiPage(ModelPage):
         }
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the keys DRIVES and RESET while they would be rejected."""
+        """Return the DRIVES and RESET keys if they have no function in the present state."""
         state = self.desk.read_snapshot().state
         found = {"F5": state in {MachineState.ESTOP, MachineState.FAULT}, "F6": state in MOVING_STATES}
         return frozenset(key for key, refused in found.items() if refused)
@@ -219,12 +225,12 @@ class MdiPage(ModelPage):
             self.model.recall_line(back)
 
     def _toggle_letter_pad(self) -> None:
-        """Show the letter keyboard in place of the history, or the history again."""
+        """Show the letter keyboard instead of the history, or show the history again."""
         self.letter_pad.setVisible(self.letter_pad.isHidden())
         self.letter_pad.raise_()
 
     def has_text_field(self) -> bool:
-        """Return whether the input line accepts text, which is so while no line runs."""
+        """Return whether the input line accepts text, which is the case while no line is running."""
         return self.model.has_keyboard
 
     def prompt_text(self) -> str:
@@ -232,15 +238,21 @@ class MdiPage(ModelPage):
         return self.model.prompt_text(self.desk.read_snapshot(), self.desk.start_instruction)
 
     def can_open(self) -> bool:
-        """Return whether the page can be opened, which is not possible while a program runs."""
+        """Return whether the page can open.
+
+        The page cannot open while a program is running.
+        """
         return self.model.can_open()
 
     def try_leave(self) -> bool:
-        """Return whether the page can close, which is not possible while a line runs."""
+        """Return whether the page can close.
+
+        The page cannot close while a line is running.
+        """
         return self.model.try_leave()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the line, its findings and the modal state of this instant."""
+        """Show the present line, its findings and the present modal state."""
         model, typing = self.model, self.model.mdi_input
         model.update(snapshot)
         running = snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
@@ -261,7 +273,7 @@ class MdiPage(ModelPage):
         self.modal_panel.rows = make_modal_rows(point, self.desk.machine.language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Draw the first move of a prepared line over the program's path, in place of the history."""
+        """Draw the first move of a prepared line over the path of the program, instead of the history."""
         legs = make_drawn_legs(self.model.prepared_line.first_move_result)
         if legs:
             self.path_view.show_picture(loaded.picture)
@@ -271,11 +283,11 @@ class MdiPage(ModelPage):
         self.path_view.setVisible(bool(legs))
 
     def apply_theme(self) -> None:
-        """Redraw the path in the present colors."""
+        """Draw the path again with the present colors."""
         self.path_view.redraw()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out the line above the history, and the modal state at their right."""
+        """Arrange the line above the history on the left, and the modal state on the right."""
         u = self.theme.u
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap

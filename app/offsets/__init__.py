@@ -1,1 +1,1 @@
-"""The pages TOOL OFFSETS, SECONDARY OFFSETS and ZERO OFFSETS: model and view."""
+"""Models and views of the pages TOOL OFFSETS, SECONDARY OFFSETS and ZERO OFFSETS."""

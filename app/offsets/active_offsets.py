@@ -35,23 +35,26 @@ def parse_r_parameters(stored: object) -> dict[int, float]:
 
 
 def find_active_preset(stored: object, presets: Mapping[int, PresetRow]) -> int:
-    """Return the number of the preset in force. A preset that is not in the table gives 0."""
+    """Return the number of the active preset, or 0 if it is not in the table."""
     return stored if isinstance(stored, int) and stored in presets else 0
 
 
 def make_tool_offsets(rows: Mapping[int, ToolRow]) -> dict[int, ToolOffset]:
-    """Return the tool offsets as sums of geometry and wear."""
+    """Return the tool offsets by number, each as the sum of geometry and wear."""
     return {n: ToolOffset(*row.offset, row.nose_radius, row.quadrant, row.remark) for n, row in rows.items()}
 
 
 def make_secondary_offsets(rows: Mapping[int, SecondaryRow]) -> dict[int, SecondaryOffset]:
-    """Return X, Z and nose radius of the secondary offsets."""
+    """Return X, Z and nose radius of the secondary offsets by number."""
     return {n: SecondaryOffset(*row) for n, row in rows.items()}
 
 
 @dataclass(frozen=True, slots=True)
 class MillOffsets:
-    """The offset tables of a mill by number, and the preset in force, or 0 for that of the machine file."""
+    """The offset tables of a mill by number, with the number of the active preset.
+
+    Preset 0 is the preset of the machine file.
+    """
 
     tools: Mapping[int, MillRow] = field(default_factory=dict)
     presets: Mapping[int, PresetRow] = field(default_factory=dict)
@@ -59,10 +62,10 @@ class MillOffsets:
 
 
 def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
-    """Return the job setup with the tables of a mill. The setup of a lathe is returned unchanged.
+    """Return the job setup with the offset tables of a mill.
 
-    Only the tools of the mill's table are used, and not a lathe's offsets in the same store.
-    ``job_setup.kinematics`` must be as in the machine file.
+    The setup of a lathe is returned unchanged. Only tools of the mill's table are used. Lathe tool offsets
+    in the same store are ignored. ``job_setup.kinematics`` must be as in the machine file.
     """
     machine = job_setup.kinematics
     if machine is None:
@@ -86,7 +89,7 @@ def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
 def make_mill_rows(tools: Mapping[int, ToolRow]) -> dict[int, MillRow]:
     """Return the tools of an offsets file as rows of a mill's tool table.
 
-    Z is the length, the remark is the name.
+    Z becomes the length, and the remark becomes the name.
     """
     return {number: MillRow(row.remark, row.z + row.wear_z, row.nose_radius) for number, row in tools.items()}
 
@@ -99,12 +102,12 @@ def make_datum_preset(row: PresetRow) -> DatumPreset:
 
 
 def find_rotary_zeros(row: PresetRow) -> dict[str, float]:
-    """Return the machine positions in degrees at which the rotary axes read 0, by name."""
+    """Return the machine positions at which the rotary axes read 0, in degrees by axis name."""
     return {"A": row.a, "B": row.b, "C": row.c}
 
 
 def _make_tool_offset(row: MillRow) -> ToolOffset:
-    """Return the length and radius of a tool with its oversizes."""
+    """Return the tool's length and radius, including its oversizes."""
     return ToolOffset(z=row.length + row.dl, nose_radius=max(row.radius + row.dr, 0.0), name=row.name)
 
 

@@ -1,4 +1,4 @@
-"""Base class of offset tables that the operator edits cell by cell, in mm and degrees."""
+"""Base class of the offset tables that the operator edits cell by cell, in mm and degrees."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ _PAGE_STEPS = {"Page up": -10, "Page down": 10}
 
 
 class CellTable(OffsetTable):
-    """A table with a selected cell and the text that is entered for it.
+    """A table with a selected cell and the text being entered in this cell.
 
-    A text cell accepts letters after Enter has opened it.
+    A text cell accepts letters after the operator opens it with Enter.
     """
 
     numbers: ClassVar[range]  # Numbers of the rows.
@@ -41,22 +41,22 @@ class CellTable(OffsetTable):
 
     @property
     def is_editing_text(self) -> bool:
-        """Whether a text cell is being edited."""
+        """Return whether a text cell is being edited."""
         return self.is_text_open
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The field names of the columns."""
+        """Return the field names of the columns."""
         return tuple(FIELDS_BY_KIND[self.kind])
 
     @property
     @abstractmethod
     def title(self) -> str:
-        """The title of the table, with its units."""
+        """Return the title of the table, with its units."""
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The column heads."""
+        """Return the column headings."""
         return tuple(self.field_of(name).label for name in self.columns)
 
     @abstractmethod
@@ -70,7 +70,8 @@ class CellTable(OffsetTable):
     def value_at(self, number: int, name: str) -> FieldValue:
         """Return the saved value of a cell.
 
-        A row that was never set gives 0 or an empty text. Unreadable offsets give ``UNKNOWN_VALUE``.
+        The value is 0 or an empty string if the row was never set, and ``UNKNOWN_VALUE`` if the offsets
+        could not be read.
         """
         row = self.offset_book.get_rows(self.kind).get(number)
         if self.offset_book.has_read_failed:
@@ -79,42 +80,42 @@ class CellTable(OffsetTable):
         return empty if row is None else getattr(row, name)
 
     def tone_at(self, _number: int, _name: str) -> Tone:
-        """Return the tone of a cell, which shows its urgency."""
+        """Return the color tone of a cell, which shows how urgent its value is."""
         return Tone.OFF
 
     @property
     def number(self) -> int:
-        """The number of the selected row."""
+        """Return the number of the selected row."""
         return self.numbers[self.row_index]
 
     @property
     def selected_number(self) -> int | None:
-        """The number of the selected row, to which undo applies."""
+        """Return the number of the selected row, to which undo applies."""
         return self.number
 
     @property
     def name(self) -> str:
-        """The field name of the selected column."""
+        """Return the field name of the selected column."""
         return self.columns[self.column_index]
 
     @property
     def selected_field(self) -> RowField:
-        """The field definition of the selected column."""
+        """Return the field definition of the selected column."""
         return self.field_of(self.name)
 
     @property
     def row_name(self) -> str:
-        """The displayed name of the selected row."""
+        """Return the displayed name of the selected row."""
         return f"{NUMBER_PREFIXES[self.kind]}{self.number}"
 
     @property
     def stored_row(self) -> OffsetRow | None:
-        """The saved values of the selected row. None if the row was never set."""
+        """Return the saved values of the selected row, or None if the row was never set."""
         return self.offset_book.get_rows(self.kind).get(self.number)
 
     @property
     def question_text(self) -> str:
-        """The prompt for the selected cell, with its unit."""
+        """Return the prompt for the selected cell, with its unit."""
         units = {
             FieldType.METRIC_LENGTH: ", MM",
             FieldType.ANGLE: tr(", DEGREES"),
@@ -124,12 +125,12 @@ class CellTable(OffsetTable):
 
     @property
     def stored_value(self) -> FieldValue:
-        """The saved value of the selected cell."""
+        """Return the saved value of the selected cell."""
         return self.value_at(self.number, self.name)
 
     @property
     def change_text(self) -> str:
-        """The change that is being entered, or else the last change."""
+        """Return the change that is being entered, or else the last change."""
         if not self.text.strip():
             return self.offset_history.last_change_text
         try:
@@ -140,15 +141,15 @@ class CellTable(OffsetTable):
         return f"{self.row_name} {self.selected_field.label}   {before}  →  {after}"
 
     def make_hint(self, _snapshot: Snapshot) -> str:
-        """Return how to enter a value and select another cell."""
+        """Return the hint on how to enter a value and how to select another cell."""
         if self.is_text_open:
             return tr("TYPE THE TEXT. ENTER: SAVE   ESC: CANCEL")
         return tr("ENTER A NUMBER OR EXPRESSION   ARROWS, TAB: OTHER CELL")
 
     def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
-        """Return why this table cannot be changed now. Empty if it can.
+        """Return why this table cannot be changed now, or an empty string if it can.
 
-        A change moves a zero point or a tip, so it is possible only between cycles.
+        A change moves a zero point or a tool tip. Changes are therefore allowed only between cycles.
         """
         if (
             snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOME}
@@ -162,7 +163,8 @@ class CellTable(OffsetTable):
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered.
 
-        These are the characters of numbers, C if it clears the table, or any character in an open text.
+        Accepted characters are those of numbers, C if it clears the table, and any character while a text
+        is open.
         """
         return (
             (self.is_text_open and len(key) == 1)
@@ -171,11 +173,14 @@ class CellTable(OffsetTable):
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. While a text is open, every character belongs to the text."""
+        """Handle a key, and add every character to the text while a text is open."""
         return self.handle_entry_key(key) if self.is_text_open else super().handle_key(key)
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a key of the table: arrow keys select a cell, and Enter saves the entered value."""
+        """Handle a key of the table.
+
+        The arrow keys select a cell, and Enter saves the entered value.
+        """
         if self.is_text_open and (len(key) == 1 or key in {"Back", "Delete"}):
             self.text = edit_text(self.text, key, int(self.selected_field.maximum))
             return True
@@ -196,13 +201,19 @@ class CellTable(OffsetTable):
         return True
 
     def move_selection(self, rows: int, columns: int) -> None:
-        """Select another cell by rows and columns. A value that was not entered is discarded."""
+        """Move the selection by a number of rows and columns.
+
+        An entry that was not saved is discarded.
+        """
         wide = len(self.columns)
         at = (self.row_index * wide + self.column_index + rows * wide + columns) % (len(self.numbers) * wide)
         self.choose(at // wide, at % wide)
 
     def choose(self, row: int, column: int) -> None:
-        """Select a touched cell. A second touch opens a text or toggles a flag."""
+        """Select a touched cell.
+
+        A second touch opens a text cell or toggles a flag.
+        """
         again = (row, column) == (self.row_index, self.column_index)
         self.row_index, self.column_index, self.text, self.is_text_open = row, column, "", False
         if again and self.selected_field.field_type is FieldType.TEXT:
@@ -211,7 +222,7 @@ class CellTable(OffsetTable):
             self._toggle_flag()
 
     def cancel_entry(self) -> bool:
-        """Discard the entered text. Return False if nothing was entered."""
+        """Discard the entered text, and return whether there was any."""
         typed = bool(self.text) or self.is_text_open
         self.discard_entry()
         return typed
@@ -234,7 +245,7 @@ class CellTable(OffsetTable):
             self.move_selection(0, 1)
 
     def _toggle_flag(self) -> None:
-        """Toggle a flag and save it."""
+        """Toggle a flag, and save it."""
         on = not self.stored_value
         self.save_cell(lambda: on, "1" if on else "0")
 
@@ -255,7 +266,10 @@ class CellTable(OffsetTable):
         )
 
     def check_range(self, value: float) -> float:
-        """Return the rounded value if it is in the range of the field. Raises EntryError otherwise."""
+        """Return the rounded value if it is in the range of the field.
+
+        Raise EntryError otherwise.
+        """
         field = self.selected_field
         if field.accepts(value):
             return round(value, 10)
@@ -276,10 +290,10 @@ class CellTable(OffsetTable):
         entered_text: str,
         find_dependent_values: Callable[[FieldValue], Mapping[str, FieldValue]] = lambda _new: {},
     ) -> bool:
-        """Save the selected cell, and return whether this succeeded. A rejected text remains for correction.
+        """Save the selected cell, and return whether this succeeded.
 
-        ``typed`` is recorded in the history. ``find_dependent_values`` returns other fields of the row that
-        depend on the new value.
+        A rejected text remains for correction. ``entered_text`` is recorded in the history.
+        ``find_dependent_values`` returns the other fields of the row that depend on the new value.
         """
         if why := self.find_refusal(self.desk.read_snapshot()):
             self.desk.say(why)
@@ -302,7 +316,10 @@ class CellTable(OffsetTable):
         return True
 
     def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
-        """Save fields of the selected row. Return why this was rejected, or an empty text."""
+        """Save fields of the selected row.
+
+        Return why this was rejected, or an empty string on success.
+        """
         return self.offset_questions.change_fields(self.kind, self.number, values, reason)
 
     def _reason(self, typed: str) -> str:

@@ -1,4 +1,7 @@
-"""Views of tables that are edited cell by cell: zero offsets of a lathe, tools and presets of a mill."""
+"""Views of the tables that are edited cell by cell.
+
+These are the zero offsets of a lathe, and the tools and presets of a mill.
+"""
 
 from __future__ import annotations
 
@@ -30,9 +33,10 @@ _NUMBER_SHARE = 0.07  # Fraction of the width for the row number.
 
 
 class CellPanel(RowPanel):
-    """A table whose cells are touch targets. The selected cell is filled, and the active row has a bar.
+    """A panel with a table whose cells are touch targets.
 
-    On a small screen with the number pad, only the columns that fit are shown, including the selected one.
+    The selected cell is filled, and the active row has a bar. On a small screen with the number pad, only
+    the columns that fit are shown, including the selected column.
     """
 
     stored: RedrawingAttribute[Mapping[int, OffsetRow]] = RedrawingAttribute({})
@@ -63,7 +67,7 @@ class CellPanel(RowPanel):
             self._row(painter, row.adjusted(0, 0, 0, -0.5 * u), number)
 
     def _find_cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
-        """Yield the visible columns with their rectangles in this row."""
+        """Yield the index and rectangle of each visible column in this row."""
         room, gap = row.width() * (1.0 - _NUMBER_SHARE), 0.5 * self.theme.u
         shown = self._find_visible_columns(room * min(self._wide) / (FINGERTIP_PX + gap))
         one = room / sum(self._wide[column] for column in shown)
@@ -74,9 +78,10 @@ class CellPanel(RowPanel):
             left += wide
 
     def _find_visible_columns(self, available_width: float) -> range:
-        """Return the visible columns, from the first one, or so that the selected one is the last.
+        """Return the indices of the visible columns.
 
-        ``available_width`` is in the units of the column widths.
+        The first column is visible if the selected column also fits. Otherwise the selected column is the
+        last one shown. ``available_width`` is in the units of the column widths.
         """
         first, end, used = 0, 0, 0.0
         while end < len(self._wide) and (
@@ -132,7 +137,10 @@ _ROW_LETTERS = {ZeroOffsetTable.kind: "G", MillToolTable.kind: "T", PresetTable.
 
 
 class CellTablePage(OffsetPage):
-    """Base class of the three pages. F2 touches off. These pages do not draw the effect of a change."""
+    """Base class of the three pages whose tables are edited cell by cell.
+
+    F2 touches off. These pages do not draw the effect of a change.
+    """
 
     model: CellTable
     table_panel: CellPanel
@@ -145,11 +153,11 @@ class CellTablePage(OffsetPage):
             self.number_pad.page_key = ("Tab", "→")
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of the keys, without F6 and F10."""
+        """Return the actions of the page's keys, which do not include F6 and F10."""
         return {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present state of the table."""
+        """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         self.table_panel.stored, self.table_panel.selected_cell = (
@@ -160,7 +168,7 @@ class CellTablePage(OffsetPage):
 
 
 class ZeroOffsetsPage(CellTablePage):
-    """The page of the zero offsets G54 to G59, with one row for each."""
+    """The page of the zero offsets G54 to G59, with one row for each offset."""
 
     NAME = page_table.ZERO
     LABELS = ("MENU", "SET POS.", "", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "SECCMP", "")
@@ -170,20 +178,20 @@ class ZeroOffsetsPage(CellTablePage):
         super().__init__(host, parent, ZeroOffsetTable(host.desk))
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the key labels. A SINUMERIK lathe has no secondary offsets."""
+        """Return the key labels, without secondary offsets on a SINUMERIK lathe."""
         return (*self.LABELS[:8], "", "") if self.desk.machine.language == "sinumerik" else self.LABELS
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reasons why keys are disabled, including F2 for setting the position."""
+        """Return why keys are disabled, including F2, which sets the position."""
         return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions, including F2 for setting the position."""
+        """Return the key actions, including F2, which sets the position."""
         return {**super().key_actions(), "F2": self.model.set_from_position}
 
 
 class MillToolsPage(CellTablePage):
-    """The tool table of a mill (TOOL.T), with one row for each tool."""
+    """The page of the tool table of a mill (TOOL.T), with one row for each tool."""
 
     NAME = page_table.MILL_TOOLS
     LABELS = ("MENU", "TOUCH L", "", "UNDO", "HISTORY", "", "ALARMS", "", "PRESETS", "")
@@ -193,22 +201,22 @@ class MillToolsPage(CellTablePage):
         super().__init__(host, parent, MillToolTable(host.desk))
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reasons why keys are disabled, including F2 for touching off the length."""
+        """Return why keys are disabled, including F2, which touches off the length."""
         return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions, including F2 for touching off the length."""
+        """Return the key actions, including F2, which touches off the length."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
         return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present table and the tool life, which changes while the page is open."""
+        """Update the table and the tool life, which changes while the page is open."""
         super().refresh(snapshot, status, loaded)
         self.table_panel.tool_lives = self.model.mill_lives.read_lives()
 
 
 class PresetsPage(CellTablePage):
-    """The page of the presets of a mill, with one row for each."""
+    """The page of the presets of a mill, with one row for each preset."""
 
     NAME = page_table.PRESETS
     LABELS = ("MENU", "TOUCH", "ACTIVATE", "UNDO", "HISTORY", "", "ALARMS", "TOOLS", "", "")
@@ -218,7 +226,7 @@ class PresetsPage(CellTablePage):
         super().__init__(host, parent, PresetTable(host.desk))
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reasons why keys are disabled, including F2 for touching off and F3 for activating."""
+        """Return why keys are disabled, including F2 (touch off) and F3 (activate)."""
         model = self.model
         return {
             **super().key_refusals(),
@@ -227,7 +235,7 @@ class PresetsPage(CellTablePage):
         }
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions, including F2 for touching off and F3 for activating a preset."""
+        """Return the key actions, including F2 (touch off) and F3 (activate a preset)."""
         rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
         own = {"F2": self.model.set_from_position, "F3": self.model.activate_preset}
         return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

@@ -1,9 +1,9 @@
-"""Rules for changes of offsets, for the screen and the command line.
+"""Rules for changes of offsets, used by the screen and the command line.
 
-They define which changes are suspicious, and which access right each change needs. A rule compares the new
-value with the value in use. The limits are larger than the usual size correction between two parts, and
+The rules define which changes are suspicious, and which access right each change needs. A rule compares the
+new value with the value in use. The limits are larger than the usual size correction between two parts, and
 smaller than most errors of a digit, a sign or a decimal point. Zero offsets and presets are not checked,
-because each new setup moves them by any distance. The proof checks the resulting path against the axis
+because a new setup can move them by any distance. The proof checks the resulting path against the axis
 travel.
 """
 
@@ -36,7 +36,7 @@ TravelLimits = Mapping[str, tuple[float, float]]  # Travel of x and z in mm from
 
 
 class SuspicionKind(StrEnum):
-    """The reason why a change is suspicious. The most serious reason comes first."""
+    """The reasons why a change is suspicious, the most serious first."""
 
     OUTSIDE_TRAVEL = "travel"  # The tip cannot reach part zero.
     WRONG_SIDE = "side"  # The tool would cut on the other side of the part.
@@ -45,7 +45,10 @@ class SuspicionKind(StrEnum):
 
 
 class Suspicion(NamedTuple):
-    """One suspicious field of an offset, with its old value (None: not set) and new value in mm."""
+    """One suspicious field of an offset, with its old and new values in mm.
+
+    The old value is None if the field was not set.
+    """
 
     kind: SuspicionKind
     number: int
@@ -55,9 +58,10 @@ class Suspicion(NamedTuple):
 
 
 def find_travel(machine: Machine | None) -> TravelLimits:
-    """Return the travel of X and Z of a lathe in mm. Empty for a mill or without a machine.
+    """Return the travel limits of X and Z of a lathe in mm.
 
-    The tool length of a mill is not a machine position, so it is not compared with the travel.
+    Return an empty mapping for a mill or without a machine. The tool length of a mill is not a machine
+    position and is not compared with the travel.
     """
     if machine is None or machine.kind != "lathe":
         return {}
@@ -74,9 +78,9 @@ def find_table_suspicions(
     changes: Mapping[int, Mapping[str, FieldValue]],
     travel: TravelLimits,
 ) -> tuple[Suspicion, ...]:
-    """Return the suspicious fields if these fields of table rows are set.
+    """Return the fields that would be suspicious if these changes were saved.
 
-    Rows with a value out of its range are omitted, because the store rejects them.
+    Rows with a value out of range are omitted, because the store rejects them.
     """
     new = {n: row for n, values in changes.items() if (row := _make_changed_row(kind, table.get(n), values))}
     found = [
@@ -91,7 +95,10 @@ def find_table_suspicions(
 def _make_changed_row(
     kind: OffsetKind, old: OffsetRow | None, values: Mapping[str, FieldValue]
 ) -> OffsetRow | None:
-    """Return the row with these values. None if its kind is not checked or a value is out of its range."""
+    """Return the row with these values.
+
+    Return None if rows of this kind are not checked or a value is out of range.
+    """
     fields = FIELDS_BY_KIND[kind]
     if not all(name in fields and fields[name].accepts(value) for name, value in values.items()):
         return None
@@ -107,7 +114,7 @@ def _make_changed_row(
 def find_suspicions(
     number: int, old: OffsetRow | None, new: OffsetRow, travel: TravelLimits
 ) -> tuple[Suspicion, ...]:
-    """Return the suspicious fields if ``new`` replaces ``old``, the most serious first."""
+    """Return the suspicious fields of a change from ``old`` to ``new``, the most serious first."""
     found: list[Suspicion] = []
     if isinstance(new, ToolRow):
         found = list(_of_tool(number, old if isinstance(old, ToolRow) else None, new, travel))
@@ -157,7 +164,10 @@ def _beyond(number: int, old: ToolRow | None, new: ToolRow, travel: TravelLimits
 def _check_corrections(
     number: int, old: OffsetRow, new: OffsetRow, names: tuple[str, ...], doubled: str
 ) -> Iterator[Suspicion]:
-    """Yield suspicious corrections. ``doubled`` is the field that is entered as a diameter."""
+    """Yield the suspicious corrections.
+
+    ``doubled`` is the field that is entered as a diameter.
+    """
     for name in names:
         limit = LARGE_CORRECTION_MM / (2.0 if name == doubled else 1.0)
         yield from _moved(number, old, new, (name,), limit)
@@ -173,7 +183,7 @@ def _moved(
 
 
 def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRow]) -> Iterator[Suspicion]:
-    """Yield the rows that become the master while the table contains tools that will follow."""
+    """Yield the rows that become the master while the table contains tools that follow the master."""
     for number, row in new.items():
         old = table.get(number)
         was = isinstance(old, ToolRow) and old.master
@@ -192,14 +202,14 @@ def apply_touch(tools: Mapping[int, ToolRow], number: int, touch: TouchPosition)
 
 
 def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
-    """Return the tools that follow if this tool is the master and is touched off."""
+    """Return the numbers of the tools that would move with this master tool when it is touched off."""
     return tuple(number for number in sorted(tools) if number != master)
 
 
 def find_follower_suspicions(
     tools: Mapping[int, ToolRow], master: int, new: ToolRow, travel: TravelLimits
 ) -> tuple[Suspicion, ...]:
-    """Return the followers that a touch-off of the master would move outside the travel."""
+    """Return the following tools that a touch-off of the master would move outside the travel."""
     old = tools[master]
     x, z = (after - before for before, after in zip(old.offset, new.offset, strict=True))
     found: list[Suspicion] = []
@@ -212,7 +222,10 @@ def find_follower_suspicions(
 def describe_suspicions(
     suspicions: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
 ) -> str:
-    """Return one text for all suspicions. Each field appears once, with its most serious reason."""
+    """Return one text that describes all suspicions.
+
+    Each field appears once, with its most serious reason.
+    """
     fields: dict[tuple[int, str], Suspicion] = {}
     for each in suspicions:
         fields.setdefault((each.number, each.name), each)
@@ -238,7 +251,7 @@ _RIGHTS_BY_KIND = {
 def find_required_right(kind: OffsetKind, fields: Collection[str] = ()) -> ProtectedChange:
     """Return the access right that is needed to change these fields.
 
-    Without fields, return the right to clear the table or to undo a change.
+    Without fields, return the right to clear the table or undo a change.
     """
     only = CORRECTION_FIELDS.get(kind, frozenset())
     return ProtectedChange.WEAR if fields and only.issuperset(fields) else _RIGHTS_BY_KIND[kind]

@@ -27,19 +27,19 @@ _LIFE_TONES = {ToolLifeState.WARNING: Tone.PAUSE, ToolLifeState.USED_UP: Tone.AL
 
 
 class MillToolTable(CellTable):
-    """The tool table with its selected cell and the text that is entered for it."""
+    """The tool table with its selected cell and the text being entered in this cell."""
 
     kind = OffsetKind.MILL_TOOL
     numbers = MILL_TOOL_NUMBERS
 
     @property
     def mill_lives(self) -> MillToolLives:
-        """The tool life of the tools."""
+        """Return the access to the tool life of the mill's tools."""
         return MillToolLives.find_for(self.desk)
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The field names of the columns. The cutting time follows the tool life limit."""
+        """Return the field names of the columns, with the cutting time after the tool life limit."""
         *fields, stops = super().columns
         return (*fields, CUTTING_TIME_FIELD, stops)
 
@@ -48,20 +48,26 @@ class MillToolTable(CellTable):
         return _USED_FIELD if name == CUTTING_TIME_FIELD else super().field_of(name)
 
     def value_at(self, number: int, name: str) -> FieldValue:
-        """Return the value of a cell. CUR.TIME is the cutting time in minutes since the tool was new."""
+        """Return the value of a cell.
+
+        CUR.TIME is the cutting time of the tool since it was new, in minutes.
+        """
         if name != CUTTING_TIME_FIELD:
             return super().value_at(number, name)
         life = self.mill_lives.read_lives().get(number)
         return round(life.seconds / 60.0, 1) if life is not None else 0.0
 
     def tone_at(self, number: int, name: str) -> Tone:
-        """Return the tone of a cell. CUR.TIME shows when the tool life is almost or completely used."""
+        """Return the color tone of a cell.
+
+        The tone of CUR.TIME shows when the tool life is almost or completely used.
+        """
         life = self.mill_lives.read_lives().get(number) if name == CUTTING_TIME_FIELD else None
         return Tone.OFF if life is None else _LIFE_TONES.get(life.state, Tone.OFF)
 
     @property
     def title(self) -> str:
-        """The title of the table, with its units."""
+        """Return the title of the table, with its units."""
         return tr("TOOL TABLE  ·  MM, DEGREES, MINUTES")
 
     def find_active_row(self, snapshot: Snapshot) -> int:
@@ -70,7 +76,10 @@ class MillToolTable(CellTable):
 
     @property
     def footer_text(self) -> str:
-        """The hint below the table: the keys F2 and Esc, or the meaning of a tool life column."""
+        """Return the hint below the table.
+
+        The hint explains the keys F2 and Esc, or a tool life column if one is selected.
+        """
         if self.name in {"life", CUTTING_TIME_FIELD}:
             return tr(
                 "TIME2: tool life limit in minutes at feed, 0 = no limit        CUR.TIME: minutes "
@@ -81,9 +90,9 @@ class MillToolTable(CellTable):
         return tr("F2: set L so that the current tip position becomes the typed height        Esc: exit")
 
     def save_fields(self, values: Mapping[str, FieldValue], reason: str) -> str:
-        """Save CUR.TIME in the tool life counter and other fields in the table.
+        """Save CUR.TIME in the tool life counter, or save other fields in the table.
 
-        Return why this was rejected, or an empty text.
+        Return why this was rejected, or an empty string on success.
         """
         if CUTTING_TIME_FIELD not in values:
             return super().save_fields(values, reason)
@@ -95,16 +104,16 @@ class MillToolTable(CellTable):
         return ""
 
     def find_position_refusal(self) -> str:
-        """Return why the tool length cannot be touched off now. Empty if it can."""
+        """Return why the tool length cannot be touched off now, or an empty string if it can."""
         if self.name != "length":
             return tr("SELECT COLUMN L, THEN PRESS F2 TO TOUCH OFF THE LENGTH")
         nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
         return nose if isinstance(nose, str) else self.find_refusal(self.desk.read_snapshot())
 
     def set_from_position(self) -> None:
-        """Handle F2: calculate the length of a tool whose tip is at the entered height, or at 0.
+        """Handle F2: set the tool length so that the tip is at the entered height, or at 0.
 
-        The height is relative to the preset in force.
+        The height is relative to the active preset.
         """
         nose = MillTouchCalculator.find_for(self.desk).find_nose_height()
         if isinstance(nose, str) or self.find_position_refusal():

@@ -1,4 +1,4 @@
-"""Touch-off on a mill with the machine's kinematics, and tool life for the tool table."""
+"""Calculation of touch-offs with the kinematics of a mill, and tool life for the tool table."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 
 @dataclass(slots=True)
 class MillTouchCalculator:
-    """Calculates positions on a mill. ``machine`` is the kinematics from the machine file, or None."""
+    """A calculator of positions on a mill.
+
+    ``machine`` is the kinematics from the machine file, or None.
+    """
 
     desk: Desk
     machine: Kinematics | None
@@ -31,14 +34,14 @@ class MillTouchCalculator:
 
     @classmethod
     def find_for(cls, desk: Desk) -> MillTouchCalculator:
-        """Return the object attached to TurnDesk, or one without kinematics."""
+        """Return the calculator attached to TurnDesk, or a calculator without kinematics."""
         found = desk.page_registry.find(cls)
         return found if found is not None else cls(desk, None)
 
     def find_tip_position(self, zero_positions: Mapping[str, float]) -> Vector | str:
         """Return the machine position of the tip of the tool in the spindle in mm, or why it is unknown.
 
-        The position is calculated for the rotary axes at ``zeros``.
+        The position is calculated for the rotary axes at ``zero_positions``.
         """
         stands = self._find_stationary_state()
         if isinstance(stands, str):
@@ -72,7 +75,7 @@ class MillTouchCalculator:
 
     @property
     def rotary_axis_names(self) -> tuple[str, ...]:
-        """The names of the rotary axes in alphabetical order."""
+        """Return the names of the rotary axes in alphabetical order."""
         return tuple(sorted(axis.name for axis in self.machine.rotary_axes)) if self.machine else ()
 
     def find_angle(self, axis_name: str) -> float | str:
@@ -81,10 +84,10 @@ class MillTouchCalculator:
         return stands if isinstance(stands, str) else stands[1][axis_name]
 
     def find_nose_height(self) -> float | str:
-        """Return the height of the spindle nose above the zero of the preset in force in mm.
+        """Return the height of the spindle nose above the zero of the active preset in mm.
 
-        A tool whose tip touches this zero has this length L. If the height is unknown, return the reason as
-        text.
+        This height is the length L of a tool whose tip touches this zero. If the height is unknown, return
+        the reason as text.
         """
         stands = self._find_stationary_state()
         if isinstance(stands, str):
@@ -95,9 +98,9 @@ class MillTouchCalculator:
         return machine.make_transform(angles).to_frame_point(slides)[2]
 
     def _find_stationary_state(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
-        """Return the kinematics with the preset in force, the rotary angles and the linear axis positions.
+        """Return the kinematics with the active preset, the rotary angles and the linear axis positions.
 
-        If they are unknown, return the reason as text.
+        If these are unknown, return the reason as text.
         """
         snapshot, book = self.desk.read_snapshot(), self.desk.offset_book
         if self.machine is None:
@@ -128,10 +131,10 @@ def _none() -> Mapping[int, ToolLife]:
 
 @dataclass(slots=True)
 class MillToolLives:
-    """Access to the tool life of a mill's tools.
+    """Functions that read and set the tool life of a mill's tools.
 
-    ``read_lives`` returns the tool life by tool number, and returns the same object while nothing changes.
-    ``set_cutting_time`` sets the cutting seconds of a tool, 0 for a new tool.
+    ``read_lives`` returns the tool life by tool number. It returns the same object until something changes.
+    ``set_cutting_time`` sets the cutting time of a tool in seconds, 0 for a new tool.
     """
 
     read_lives: Callable[[], Mapping[int, ToolLife]] = _none
@@ -142,6 +145,6 @@ class MillToolLives:
 
     @classmethod
     def find_for(cls, desk: Desk) -> MillToolLives:
-        """Return the object attached to TurnDesk, or one without tools."""
+        """Return the object attached to TurnDesk, or an object without tools."""
         found = desk.page_registry.find(cls)
         return found if found is not None else cls()

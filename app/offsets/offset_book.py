@@ -1,4 +1,4 @@
-"""The present offsets of TurnDesk, and changes that are saved without waiting."""
+"""The current offsets of TurnDesk, with changes that are saved in the background."""
 
 from __future__ import annotations
 
@@ -47,7 +47,10 @@ class OffsetRows(NamedTuple):
 
 
 def read_store_rows(store: Store) -> OffsetRows:
-    """Read all offsets. Raises StoreError."""
+    """Read all offsets of a store.
+
+    Raise StoreError on failure.
+    """
     tables = store.offsets
     presets = tables.presets.read_rows()
     return OffsetRows(
@@ -65,8 +68,8 @@ def read_store_rows(store: Store) -> OffsetRows:
 class OffsetBook:
     """Offsets and tool shapes by number, in mm and degrees, with X as a radius.
 
-    A change that the access level permits is posted to the store's writer. It is shown when it is on the
-    disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be changed, and
+    A change that the access level permits is posted to the store's writer. The new value is shown when it
+    is on the disk. ``poll_saving`` is called once a frame. Without ``store``, nothing can be changed, and
     ``lock_reason`` gives the reason.
     """
 
@@ -106,20 +109,26 @@ class OffsetBook:
 
     @property
     def master_number(self) -> int:
-        """The number of the master tool, or 0 without a master."""
+        """Return the number of the master tool, or 0 without a master."""
         return next((number for number, row in self.tools.items() if row.master), 0)
 
     def read_history(self, kind: OffsetKind, limit: int = 200) -> tuple[OffsetChange, ...]:
-        """Return the last changes, newest first. Empty without a store."""
+        """Return the last changes, newest first, or an empty tuple without a store."""
         return () if self.store is None else self.store.offsets.get_table(kind).read_history(limit)
 
     def read_store(self) -> None:
-        """Read the values of the store. This returns at once, even while the store is being written."""
+        """Read the values of the store.
+
+        This does not wait, even while the store is being written.
+        """
         if self.store is not None:
             self.show_rows(read_store_rows(self.store))
 
     def show_rows(self, rows: OffsetRows) -> None:
-        """Use these values. Without a store, they can be shown but not changed."""
+        """Use these values.
+
+        Without a store, the values can be shown but not changed.
+        """
         self.tools, self.secondary, self.zero = dict(rows.tools), dict(rows.secondary), dict(rows.zero)
         self.shapes, self.mill_tools, self.presets = (
             dict(rows.shapes),
@@ -151,7 +160,10 @@ class OffsetBook:
         )
 
     def touch_off(self, number: int, touch: TouchPosition, reason: str) -> str:
-        """Set a tool by a touch-off. If the tool is the master, all other tools follow."""
+        """Set a tool by a touch-off.
+
+        If the tool is the master, all other tools follow.
+        """
         return self._post(
             ProtectedChange.TOOLS,
             lambda store, who: store.offsets.tool_offsets.set_touched_offset(
@@ -160,14 +172,20 @@ class OffsetBook:
         )
 
     def choose_master(self, number: int, reason: str) -> str:
-        """Make this tool the master. 0 means that no tool is the master."""
+        """Make this tool the master.
+
+        With 0, no tool is the master.
+        """
         return self._post(
             ProtectedChange.TOOLS,
             lambda store, who: store.offsets.tool_offsets.set_master_tool(number, reason, author=who),
         )
 
     def activate_preset(self, number: int) -> str:
-        """Activate another preset. 0 is the preset of the machine file."""
+        """Activate another preset.
+
+        Preset 0 is the preset of the machine file.
+        """
         before = self.active_preset
 
         def choose(store: Store, _who: str) -> Future[None]:
@@ -193,21 +211,21 @@ class OffsetBook:
         )
 
     def find_undoable(self, kind: OffsetKind, number: int | None) -> tuple[OffsetChange, ...]:
-        """Return the changes of the last step that undo would reverse. Raises StoreError.
+        """Return the changes of the last step that undo would reverse.
 
-        ``number`` is a row, or None for the last step of the whole table.
+        ``number`` is a row, or None for the last step of the whole table. Raise StoreError on failure.
         """
         return () if self.store is None else self.store.offsets.get_table(kind).find_undoable_changes(number)
 
     def undo_step(self, kind: OffsetKind, number: int | None, step: int) -> str:
-        """Undo exactly this step."""
+        """Undo this step, and no other step."""
         return self._post(
             find_required_right(kind),
             lambda store, who: store.offsets.get_table(kind).undo_step(number, step, author=who),
         )
 
     def barred(self, act: ProtectedChange) -> str:
-        """Return why this change cannot be posted now. Empty if it can."""
+        """Return why this change cannot be posted now, or an empty string if it can."""
         if self.store is None or self.is_saving:
             return self.lock_reason or SAVE_IN_PROGRESS
         return self.access.find_refusal(act)
@@ -225,11 +243,14 @@ class OffsetBook:
 
     @property
     def is_saving(self) -> bool:
-        """Whether a change is being saved."""
+        """Return whether a change is being saved."""
         return self._saving is not None
 
     def poll_saving(self) -> str:
-        """Check whether the change has been saved. Return the error, or an empty text."""
+        """Check whether the change has been saved.
+
+        Return the error, or an empty string.
+        """
         if self._reopened is not None:
             return self._turn_to(*self._reopened)
         saving = self._saving
@@ -242,10 +263,10 @@ class OffsetBook:
         return self._read_or_why() or (str(error) if error is not None else "")
 
     def use_store(self, store: Store | None, error_text: str, rows: OffsetRows | None = None) -> None:
-        """Use another store from the next poll on. Any thread may call this.
+        """Use another store from the next poll on.
 
-        If ``store`` is None, ``trouble`` gives the reason. ``rows`` are the offsets that another TurnDesk,
-        which owns the store, has set.
+        Any thread may call this. If ``store`` is None, ``error_text`` gives the reason. ``rows`` are the
+        offsets set by another TurnDesk that owns the store.
         """
         self._reopened = store, error_text, rows
 

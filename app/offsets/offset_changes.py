@@ -1,7 +1,7 @@
-"""Changes of offsets: confirmation of suspicious changes, history and undo.
+"""Changes of offsets, with confirmation of suspicious changes, history and undo.
 
 Every page changes offsets through these classes. A question shows the old and the new value. Y changes the
-offset, and N and Esc leave it unchanged.
+offset. N and Esc leave it unchanged.
 """
 
 from __future__ import annotations
@@ -57,10 +57,10 @@ NUMBER_PREFIXES = {
 
 
 def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
-    """Return why offsets cannot be changed now. Empty if they can.
+    """Return why offsets cannot be changed now, or an empty string if they can.
 
-    A correction (wear, secondary offset) may be entered while parts run, because the present part uses the
-    offsets that it was proved with. A change of a tip position must wait until no program is running.
+    A correction (wear, secondary offset) may be entered while parts run, because the part being cut uses
+    the offsets with which it was proved. A change of a tip position must wait until no program is running.
     """
     if snapshot.state in {MachineState.JOG, MachineState.HOME}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
@@ -70,7 +70,7 @@ def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
 
 
 def describe_start(snapshot: Snapshot) -> str:
-    """Return from when a change that is entered now applies. Empty between cycles."""
+    """Return when a change entered now takes effect, or an empty string between cycles."""
     if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
@@ -79,7 +79,7 @@ def describe_start(snapshot: Snapshot) -> str:
 
 
 def _describe_applied_next(snapshot: Snapshot) -> str:
-    """Return the text that follows SAVED in a message while parts run."""
+    """Return the text that follows the word SAVED in a message while parts run."""
     if snapshot.state not in ACTIVE_STATES:
         return ""
     if snapshot.cycle_repeat:
@@ -89,7 +89,10 @@ def _describe_applied_next(snapshot: Snapshot) -> str:
 
 @dataclass(slots=True)
 class OffsetHistory:
-    """The history of the table ``kind``. Every page that changes the table calls ``update`` once a frame."""
+    """The history of the table ``kind``.
+
+    Every page that changes the table calls ``update`` once a frame.
+    """
 
     desk: Desk
     kind: OffsetKind
@@ -109,16 +112,19 @@ class OffsetHistory:
 
     @property
     def offset_book(self) -> OffsetBook:
-        """The saved offsets."""
+        """Return the saved offsets."""
         return self.desk.offset_book
 
     def on_open(self) -> None:
-        """Ignore the changes that were made before the page opened."""
+        """Ignore changes that were made before the page opened."""
         self._seen, self.last_changes = self.offset_book.changes, ()
         self._newest = max((change.id for change in self._read(1)), default=0)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and report newly saved changes; called once a frame."""
+        """Update the unit of the control, and report newly saved changes.
+
+        This is called once a frame.
+        """
         self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
         if self.offset_book.changes == self._seen:
             return
@@ -148,8 +154,8 @@ class OffsetHistory:
     def format_change(self, change: OffsetChange) -> tuple[str, str, str, str]:
         """Return the texts of one change.
 
-        They are the local time, the offset, its values from → to in the control's unit, and the reason with
-        the user.
+        The texts are the local time, the name of the offset, its old and new values in the control's unit,
+        and the reason with the user.
         """
         at = format_local_time(change.at)
         who = "" if change.who == "operator" else f" ({change.who})"
@@ -158,7 +164,10 @@ class OffsetHistory:
 
     @property
     def last_change_text(self) -> str:
-        """The last change in one line. Empty if nothing has changed while the page was open."""
+        """Return the last change in one line.
+
+        Return an empty string if nothing has changed since the page opened.
+        """
         if len(self.last_changes) == 1:
             _at, which, change, _why = self.format_change(self.last_changes[0])
             return f"{which}   {change}"
@@ -175,11 +184,14 @@ class OffsetHistory:
         )
 
     def toggle_shown(self) -> None:
-        """Show the history in place of the table, or the table again."""
+        """Switch between the history and the table."""
         self.listed_changes = None if self.listed_changes is not None else self._read()
 
     def can_undo(self, number: int | None) -> bool:
-        """Return whether a change of this row can be undone. The result is cached until the next change."""
+        """Return whether a change of this row can be undone.
+
+        The result is cached until the next change.
+        """
         key = self.offset_book.changes, number
         if self._asked_of != key:
             self._asked_of, self._undoable = key, True
@@ -188,7 +200,7 @@ class OffsetHistory:
         return self._undoable
 
     def show_refusal(self, reason: str) -> None:
-        """Show a reason why something was rejected. An empty text shows nothing."""
+        """Show why something was rejected, or nothing if the reason is empty."""
         if reason:
             self.desk.say(reason)
 
@@ -205,7 +217,10 @@ _MAX_NAMES = 6  # Followers that a question lists by name.
 
 @dataclass(frozen=True, slots=True)
 class OffsetQuestions:
-    """Changes of offsets with confirmation. Each method returns why it was rejected, or an empty text."""
+    """Changes of offsets that the operator confirms if they are suspicious.
+
+    Each method returns why the change was rejected, or an empty string.
+    """
 
     offset_history: OffsetHistory
 
@@ -214,7 +229,7 @@ class OffsetQuestions:
     def change_fields(
         self, kind: OffsetKind, number: int, values: Mapping[str, FieldValue], reason: str
     ) -> str:
-        """Save some fields of an offset. Ask first if a value is suspicious."""
+        """Save some fields of an offset, and ask first if a value is suspicious."""
         book = self.offset_history.offset_book
         table = book.get_rows(kind)
         return self._ask_if_intended(
@@ -226,9 +241,10 @@ class OffsetQuestions:
         )
 
     def touch_off(self, number: int, touch: TouchPosition, reason: str, tip_x_mm: float | None = None) -> str:
-        """Set a tool by a touch-off. Ask first if the result is suspicious.
+        """Set a tool by a touch-off, and ask first if the result is suspicious.
 
-        ``tip`` is X of the tip relative to part zero in mm as a radius, or None if X was not touched.
+        ``tip_x_mm`` is X of the tip relative to part zero as a radius in mm, or None if X was not touched
+        off.
         """
         book = self.offset_history.offset_book
         tools = book.tools
@@ -255,13 +271,16 @@ class OffsetQuestions:
         return found
 
     def _describe_followers(self, number: int, touch: TouchPosition) -> str:
-        """Return the names of the tools that follow this touch-off. Empty if no other tool moves."""
+        """Return the names of the tools that follow this touch-off.
+
+        Return an empty string if no other tool moves.
+        """
         tools = self.offset_history.offset_book.tools
         moves_all = number in tools and tools[number].master and not touch.moves_only_this_tool
         return format_followers(tools, number) if moves_all else ""
 
     def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
-        """Return whether the tool would touch the other side of the part than before."""
+        """Return whether the tool would now cut on the opposite side of the part."""
         book = self.offset_history.offset_book
         old, shape = book.tools.get(number), book.shapes.get(number)
         if old is not None:
@@ -280,9 +299,9 @@ class OffsetQuestions:
         unchanged: Callable[[], bool],
         others: str = "",
     ) -> str:
-        """Save at once, or after Y if there are suspicions.
+        """Save at once, or after the operator confirms with Y if there are suspicions.
 
-        The change is rejected if the offsets have changed since the question.
+        The change is rejected if the offsets have changed since the question was asked.
         """
         history = self.offset_history
         if (why := history.offset_book.barred(act)) or not found:
@@ -300,7 +319,7 @@ class OffsetQuestions:
         return ""
 
     def _describe_field(self, kind: OffsetKind, each: Suspicion) -> str:
-        """Return the text of a change, for example T1 X Ø +0.50000 → −1.20000."""
+        """Return the text of a change, for example "T1 X Ø +0.50000 → −1.20000"."""
         title, shown = self._find_format(kind, each.name)
         old = describe_unset() if each.old_value is None else shown(each.old_value)
         return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new_value)}"
@@ -318,7 +337,10 @@ class OffsetQuestions:
     # --- the master ----------------------------------------------------------------------------------
 
     def ask_master(self, number: int) -> str:
-        """Ask whether this tool becomes the master, or no tool if it is the master. Name the followers."""
+        """Ask whether to make this tool the master, or to have no master if it is the master now.
+
+        The question names the tools that follow.
+        """
         book = self.offset_history.offset_book
         tools, before = book.tools, book.master_number
         if why := book.barred(ProtectedChange.TOOLS):
@@ -356,9 +378,9 @@ class OffsetQuestions:
     # --- undo ----------------------------------------------------------------------------------------
 
     def ask_undo(self, kind: OffsetKind, number: int | None, on_done: str = "") -> str:
-        """Ask whether the last change of this row is undone. None means the last change of the table.
+        """Ask whether to undo the last change of this row, or of the table if ``number`` is None.
 
-        ``done`` is shown after Y by a page that does not watch the table.
+        ``on_done`` is the message after Y, for a page that does not watch the table.
         """
         book = self.offset_history.offset_book
         if why := book.barred(find_required_right(kind)):
@@ -424,6 +446,6 @@ def format_followers(tools: Mapping[int, ToolRow], master: int) -> str:
 
 
 def _shorten_names(names: list[str]) -> list[str]:
-    """Return the first names and the number of the others."""
+    """Return the first names, and the number of the remaining names."""
     more = len(names) - _MAX_NAMES
     return names if more <= 0 else [*names[:_MAX_NAMES], tr(Message("{count} MORE", count=more))]

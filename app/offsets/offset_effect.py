@@ -1,7 +1,7 @@
 """Effect of a change of offsets on the path: the loaded program drawn with the old and new offsets.
 
 A changed tool offset moves the real tip. Both paths are therefore drawn in the frame of the old offsets, so
-that their distance equals the distance that the tip will move.
+their distance equals the distance that the tip will move.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ OffsetRowT = TypeVar("OffsetRowT", ToolRow, SecondaryRow)
 
 @dataclass(frozen=True, slots=True)
 class OffsetTables:
-    """Tool offsets and secondary offsets, as the interpreter uses them."""
+    """Tool offsets and secondary offsets in the form that the interpreter uses."""
 
     tools: Mapping[int, ToolOffset] = field(default_factory=dict)
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
@@ -48,7 +48,7 @@ DrawPaths = Callable[[Job, Mapping[int, ToolOffset], ProgressCallback], "Program
 
 @dataclass(frozen=True, slots=True)
 class ComparedPaths:
-    """Two paths in one frame, with the old and the new offsets."""
+    """The paths with the old and the new offsets, in one frame."""
 
     picture_before: ProgramPicture
     picture_after: ProgramPicture
@@ -57,12 +57,12 @@ class ComparedPaths:
 
     @property
     def is_equal(self) -> bool:
-        """Whether the change has no effect on this program."""
+        """Return whether the change has no effect on this program."""
         return self.largest_distance <= EQUALITY_TOLERANCE_MM
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
-    """Return both paths with their largest distance."""
+    """Return the paths of both pictures with their largest distance in mm."""
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return ComparedPaths(before, after, float("inf"))
     if not len(before.z):
@@ -73,8 +73,9 @@ def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedP
 
 @dataclass(slots=True)
 class OffsetEffect:
-    """Draws the paths on a worker. The screen reads only ``now``, ``part``, ``is_busy`` and
-    ``error_text``.
+    """A worker that draws the paths in the background.
+
+    The screen reads only ``compared_paths``, ``compared_part``, ``is_busy`` and ``error_text``.
     """
 
     draw_path: DrawPaths
@@ -86,12 +87,18 @@ class OffsetEffect:
 
     @property
     def is_busy(self) -> bool:
-        """Whether the worker is still drawing. After an error, ``error_text`` gives the reason."""
+        """Return whether the worker is still drawing.
+
+        After an error, ``error_text`` gives the reason.
+        """
         self.worker.poll()
         return self.worker.is_busy
 
     def request_paths(self, job: Job, before: OffsetTables, after: OffsetTables) -> None:
-        """Draw this program with the old and new offsets. A drawing in progress is canceled."""
+        """Draw this program with the old and new offsets.
+
+        Any drawing in progress is canceled.
+        """
 
         def pair(watch: ProgressCallback) -> ComparedPaths:
             return compare_pictures(
@@ -104,7 +111,10 @@ class OffsetEffect:
     def request_part(
         self, compare_part: ComparePart, job: Job, before: OffsetTables, after: OffsetTables
     ) -> None:
-        """Compare the part with the old and new offsets. Work in progress is canceled."""
+        """Compare the parts that the old and new offsets produce.
+
+        Any work in progress is canceled.
+        """
         self.compared_part, self.error_text = None, ""
         work = partial(compare_part, _with(job, before), _with(job, after))
         self.worker.request(work, self._compared, self._failed)
@@ -138,7 +148,10 @@ def _with(job: Job, tables: OffsetTables) -> Job:
 
 @dataclass(slots=True)
 class EffectDisplay:
-    """The views of the effect: whole path, close-up of the largest change, part features, then the table."""
+    """The views of the effect of a change.
+
+    They follow each other in this order: whole path, close-up of the largest change, part features, table.
+    """
 
     offset_table: OffsetTable
     is_open: bool = False
@@ -148,11 +161,11 @@ class EffectDisplay:
 
     @property
     def offset_effect(self) -> OffsetEffect | None:
-        """The worker that draws, or None if effects cannot be drawn."""
+        """Return the worker that draws, or None if effects cannot be drawn."""
         return self.offset_table.desk.page_registry.find(OffsetEffect)
 
     def show_next_view(self) -> None:
-        """Handle F6: show the next view."""
+        """Handle F6: show the next view of the effect."""
         if not self.is_open:
             self._open()
         elif self.is_part_shown or self.compared_paths is None or self.compared_paths.is_equal:
@@ -174,7 +187,10 @@ class EffectDisplay:
             self.is_part_shown = True
 
     def find_refusal(self) -> str:
-        """Return why no effect can be shown now. Empty if it can be, or is shown."""
+        """Return why no effect can be shown now.
+
+        Return an empty string if an effect can be shown or is already shown.
+        """
         if self.is_open:
             return ""
         if self.offset_effect is None or self.offset_table.desk.program_loader.loaded.job is None:
@@ -199,7 +215,7 @@ class EffectDisplay:
     def _make_tables_pair(self) -> tuple[OffsetTables, OffsetTables] | None:
         """Return the old and new offsets, or None if there is no change to show.
 
-        The change is that of the present entry if it changes a value, else the last change.
+        The change is the current entry if it changes a value, and otherwise the last change.
         """
         book, last = self.offset_table.offset_book, self.offset_table.offset_history.last_changes
         tools, secondary = self.offset_table.make_proposed_offsets()
@@ -214,20 +230,23 @@ class EffectDisplay:
         return _tables(book.tools, _restore_rows(book.secondary, last, SecondaryRow)), now
 
     def close_view(self) -> None:
-        """Show the table again."""
+        """Close the view of the effect, and show the table again."""
         self.is_open = self.is_close_up = self.is_part_shown = False
         if self.offset_effect is not None:
             self.offset_effect.clear()
 
     @property
     def compared_paths(self) -> ComparedPaths | None:
-        """The paths to draw now. None while the worker is drawing."""
+        """Return the paths to draw now, or None while the worker is drawing."""
         effect = self.offset_effect
         return None if not self.is_open or effect is None or effect.is_busy else effect.compared_paths
 
     @property
     def compared_part(self) -> ComparedPart | None:
-        """The part with the old and new offsets. None while the worker is calculating."""
+        """Return the comparison of the parts with the old and new offsets.
+
+        Return None while the worker is calculating.
+        """
         effect = self.offset_effect
         return None if not self.is_part_shown or effect is None or effect.is_busy else effect.compared_part
 
@@ -251,7 +270,7 @@ class EffectDisplay:
 
     @property
     def words(self) -> str:
-        """The text of the prompt line that describes the view."""
+        """Return the text of the prompt line that describes the view."""
         effect = self.offset_effect
         return (
             self._words_of_part(effect)

@@ -1,6 +1,6 @@
-"""Base class of the offset tables that the operator edits, and entry of the fields of a tool.
+"""Base class of the offset tables that the operator edits, and entry of tool fields.
 
-A page shows the table, the entry line below it, the history, and the effect of a change on the path.
+A page shows the table, the entry line below the table, the history, and the effect of a change on the path.
 """
 
 from __future__ import annotations
@@ -34,7 +34,10 @@ ProposedOffsets = tuple[Mapping[int, ToolRow], Mapping[int, SecondaryRow]]
 
 
 class OffsetTable(ABC):
-    """Base class of the models of offset pages. Each subclass has its own entry method."""
+    """Base class of the models of offset pages.
+
+    Each subclass has its own method of entry.
+    """
 
     kind: ClassVar[OffsetKind]
     clear_question: ClassVar[str] = (
@@ -50,59 +53,59 @@ class OffsetTable(ABC):
 
     @property
     def offset_book(self) -> OffsetBook:
-        """The saved offsets."""
+        """Return the saved offsets."""
         return self.desk.offset_book
 
     @property
     def value_mode(self) -> ValueMode:
-        """The control's unit, and whether its X is a diameter."""
+        """Return the control's unit, and whether its X values are diameters."""
         return self.offset_history.value_mode
 
     @property
     def offset_questions(self) -> OffsetQuestions:
-        """The changes that are confirmed before they take effect."""
+        """Return the changes that the operator confirms before they take effect."""
         return OffsetQuestions(self.offset_history)
 
     @property
     def selected_number(self) -> int | None:
-        """The number of the selected row, to which undo applies. None if no row is selected."""
+        """Return the number of the selected row, to which undo applies, or None if no row is selected."""
         return None
 
     # --- members that each table defines -------------------------------------------------------------
 
     @property
     def heading(self) -> str:
-        """The name of the offset that is being entered, if the question does not contain it."""
+        """Return the name of the offset that is being entered, if the question does not contain this name."""
         return ""
 
     @property
     @abstractmethod
     def question_text(self) -> str:
-        """The question that the operator must answer now."""
+        """Return the question that the operator must answer now."""
 
     @property
     def is_editing_text(self) -> bool:
-        """Whether a text that accepts letters is being edited."""
+        """Return whether a text that accepts letters is being edited."""
         return False
 
     @property
     def entered_text(self) -> str:
-        """The entered text, as the entry line shows it."""
+        """Return the entered text, as the entry line shows it."""
         return self.text
 
     @property
     @abstractmethod
     def change_text(self) -> str:
-        """The change that is being entered, or else the last change."""
+        """Return the change that is being entered, or else the last change."""
 
     @property
     @abstractmethod
     def footer_text(self) -> str:
-        """The hint about other keys."""
+        """Return the hint about other keys."""
 
     @abstractmethod
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return how a value is entered, or from when it will apply, for the prompt line."""
+        """Return the hint of the prompt line: how to enter a value, or when it takes effect."""
 
     @abstractmethod
     def accepts_key(self, key: str) -> bool:
@@ -110,15 +113,21 @@ class OffsetTable(ABC):
 
     @abstractmethod
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a key of the entry. Return False if the key has no meaning here."""
+        """Handle a key of the entry.
+
+        Return False if the key has no meaning here.
+        """
 
     @abstractmethod
     def cancel_entry(self) -> bool:
-        """Discard the entry and show this. Return False if nothing was entered."""
+        """Discard the entry, and show that it was discarded.
+
+        Return False if nothing was entered.
+        """
 
     @abstractmethod
     def discard_entry(self) -> None:
-        """Discard the entry."""
+        """Discard the entry without a message."""
 
     def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the tool and secondary offsets as they would be with the present entry."""
@@ -128,21 +137,21 @@ class OffsetTable(ABC):
 
     @property
     def is_correction(self) -> bool:
-        """Whether the entry is a correction, which may be made while parts run."""
+        """Return whether the entry is a correction, which is allowed while parts run."""
         return True
 
     def find_refusal(self, snapshot: Snapshot, *, is_correction: bool) -> str:
-        """Return why the table cannot be changed now. Empty if it can."""
+        """Return why the table cannot be changed now, or an empty string if it can."""
         return self.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=is_correction)
 
     def find_undo_refusal(self) -> str:
-        """Return why the last change cannot be undone now. Empty if it can."""
+        """Return why the last change cannot be undone now, or an empty string if it can."""
         return self.find_refusal(self.desk.read_snapshot(), is_correction=self.kind is OffsetKind.SECONDARY)
 
     # --- the page ------------------------------------------------------------------------------------
 
     def prompt_text(self, snapshot: Snapshot) -> str:
-        """Return the page's prompt."""
+        """Return the prompt of the page, or why the table cannot be changed."""
         if why := self.find_refusal(snapshot, is_correction=self.is_correction):
             return why
         if self.offset_history.listed_changes is not None:
@@ -150,22 +159,31 @@ class OffsetTable(ABC):
         return self.make_hint(snapshot)
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control, and report saved changes; called once a frame."""
+        """Update the unit of the control, and report saved changes.
+
+        This is called once a frame.
+        """
         self.offset_history.update(snapshot)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave the key to the window."""
+        """Handle a key.
+
+        Return False to let the window handle the key.
+        """
         if key in {"c", "C"} and self.clear_question:
             self.clear_table()
             return True
         return self.handle_entry_key(key)
 
     def edit_entry(self, key: str, max_length: int = MAX_LENGTH) -> None:
-        """Edit the entered text by one key."""
+        """Edit the entered text with one key."""
         self.text = edit_text(self.text, key, max_length)
 
     def handle_undo(self) -> None:
-        """Discard the entry, or else ask whether the last change of the selected row is undone."""
+        """Discard the entry, or ask whether to undo the last change if there is no entry.
+
+        The last change is that of the selected row.
+        """
         why = self.find_undo_refusal()
         if why or not self.cancel_entry():
             self.offset_history.show_refusal(
@@ -184,7 +202,10 @@ class OffsetTable(ABC):
         self.offset_history.show_refusal(why or self.offset_book.clear_table(self.kind, self.clear_reason))
 
     def handle_escape(self) -> bool:
-        """Handle Esc: close the history, a question or the entry. Return False if nothing was open."""
+        """Handle Esc: close the history, a question or the entry.
+
+        Return False if nothing was open.
+        """
         if self.offset_history.listed_changes is not None:
             self.offset_history.listed_changes = None
         elif self.desk.confirm_key:
@@ -194,7 +215,7 @@ class OffsetTable(ABC):
         return True
 
     def on_open(self) -> None:
-        """Ignore the changes that were made before the page opened."""
+        """Ignore changes that were made before the page opened."""
         self.offset_history.on_open()
 
     def on_close(self) -> None:
@@ -206,9 +227,10 @@ class OffsetTable(ABC):
 
 @dataclass(slots=True)
 class IncompleteTool:
-    """X or Z of a tool that is not set yet. It is saved only with the other value.
+    """The X or Z value of a new tool that still lacks the other value.
 
-    A tool with half an offset could run into the part.
+    A value is saved only together with the other value, because a tool with only one of them could run into
+    the part.
     """
 
     tool_number: int = 0
@@ -216,7 +238,7 @@ class IncompleteTool:
     tip_x_mm: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
 
     def add_value(self, number: int, name: str, value: FieldValue) -> dict[str, FieldValue]:
-        """Add one of the two values, and return the values that are known."""
+        """Add X or Z, and return the values that are known."""
         if number != self.tool_number:
             self.discard()
         self.known_values = {**self.known_values, name: value}
@@ -224,34 +246,34 @@ class IncompleteTool:
         return self.known_values
 
     def discard(self) -> None:
-        """Discard the values."""
+        """Discard the values that were entered."""
         self.tool_number, self.known_values, self.tip_x_mm = 0, {}, None
 
     @property
     def missing_axis(self) -> str:
-        """The axis whose value is still missing."""
+        """Return the axis that still needs a value."""
         return "x" if "z" in self.known_values else "z"
 
 
 @dataclass(slots=True)
 class ToolFieldEditor:
-    """Saves single fields of tools, for F8 and the Jog page.
+    """An editor that saves single fields of tools, for F8 and the Jog page.
 
-    Each method returns why it was rejected, or an empty text.
+    Each method returns why the change was rejected, or an empty string.
     """
 
     offset_history: OffsetHistory
     incomplete_tool: IncompleteTool = field(default_factory=IncompleteTool)
 
     def describe_unset_tool(self, number: int) -> str:
-        """Return the message that this tool is not set."""
+        """Return the message that this tool has not been set."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
         return tr(Message(text, number=format_edge_suffix(number)))
 
     def save_field(self, number: int, name: str, text: str, *, is_increment: bool = False) -> str:
-        """Set a field to the entered value, or add the value to it.
+        """Set a field to the entered value, or add the entered value to the field.
 
-        Raises EntryError for an invalid value.
+        Raise EntryError for an invalid value.
         """
         mode, row = self.offset_history.value_mode, self.offset_history.offset_book.tools.get(number)
         if row is None:
@@ -295,16 +317,16 @@ class ToolFieldEditor:
         return why
 
     def ask_master(self, number: int) -> str:
-        """Ask whether this tool becomes the master, or whether no tool is if it is the master now."""
+        """Ask whether to make this tool the master, or to have no master if it is the master now."""
         if number not in self.offset_history.offset_book.tools:
             return self.describe_unset_tool(number)
         return OffsetQuestions(self.offset_history).ask_master(number)
 
 
 class ToolFieldTable(OffsetTable):
-    """A tool table with a field under the cursor and its entered text.
+    """A tool table with a field under the cursor and the text entered for this field.
 
-    A text field accepts letters after Enter has opened it.
+    A text field accepts letters after the operator opens it with Enter.
     """
 
     text_hint: ClassVar[str]  # Message for a letter before the text is open.
@@ -312,47 +334,47 @@ class ToolFieldTable(OffsetTable):
 
     @property
     def tool_number(self) -> int:
-        """The tool that the tool pages have selected."""
+        """Return the number of the tool that is selected on the tool pages."""
         return self.offset_book.at
 
     @property
     def selected_number(self) -> int | None:
-        """The selected tool, to which undo applies."""
+        """Return the number of the selected tool, to which undo applies."""
         return self.tool_number
 
     @property
     def tool_row(self) -> ToolRow | None:
-        """The offset of the selected tool. None if the tool was never set."""
+        """Return the offset of the selected tool, or None if the tool was never set."""
         return self.offset_book.tools.get(self.tool_number)
 
     @property
     @abstractmethod
     def name(self) -> str:
-        """The field under the cursor."""
+        """Return the name of the field under the cursor."""
 
     @property
     @abstractmethod
     def stored_value_text(self) -> str:
-        """The saved value of the field as text."""
+        """Return the saved value of the field as text."""
 
     def find_cell_refusal(self) -> str:
-        """Return why the field under the cursor cannot be changed now. Empty if it can."""
+        """Return why the field under the cursor cannot be changed now, or an empty string if it can."""
         return self.find_refusal(self.desk.read_snapshot(), is_correction=self.is_correction)
 
     @property
     def accepts_any_text(self) -> bool:
-        """Whether the field accepts any text, which Enter opens."""
+        """Return whether the field accepts any text after the operator opens it with Enter."""
         field = TOOL_FIELDS[self.name]
         return field.field_type is FieldType.TEXT and not field.choices
 
     @property
     def question_text(self) -> str:
-        """The tool and the field under the cursor."""
+        """Return the prompt with the tool and the field under the cursor."""
         return f"{format_edge_name(self.tool_number)}  {make_heading(self.name, self.value_mode)}?"
 
     @property
     def change_text(self) -> str:
-        """The field's old and entered value, or else the last change."""
+        """Return the field's old and entered values, or the last change if nothing is entered."""
         if not (self.text or self.is_text_open):
             return self.offset_history.last_change_text
         try:
@@ -362,11 +384,17 @@ class ToolFieldTable(OffsetTable):
         return f"{self.stored_value_text}  →  {new}"
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered: number characters, or any character in an open text."""
+        """Return whether a character can be entered.
+
+        Accepted are number characters, and any character while a text is open.
+        """
         return self.is_text_open or key in EXPRESSION_CHARACTERS
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle Enter and text keys. Subclasses handle the keys that move the cursor."""
+        """Handle Enter and text keys.
+
+        Subclasses handle the keys that move the cursor.
+        """
         if key == "Enter":
             self.handle_enter()
         elif key in {"Back", "Delete"}:
@@ -379,7 +407,7 @@ class ToolFieldTable(OffsetTable):
 
     @abstractmethod
     def handle_enter(self) -> None:
-        """Handle Enter on the field."""
+        """Handle Enter for the field under the cursor."""
 
     def _add(self, key: str) -> None:
         if self.accepts_any_text and not self.is_text_open:
@@ -390,13 +418,16 @@ class ToolFieldTable(OffsetTable):
         self.edit_entry(key, int(TOOL_FIELDS[self.name].maximum) if self.is_text_open else MAX_LENGTH)
 
     def is_entry_unfinished(self) -> bool:
-        """Return whether an unfinished entry prevents moving the cursor, and show this."""
+        """Return whether an unfinished entry prevents the cursor from moving, and show a message if so."""
         if self.text or self.is_text_open:
             self.desk.say(tr("ENTER: SET   ESC: CANCEL"))
         return bool(self.text or self.is_text_open)
 
     def save_field(self, save_value: Callable[[], str]) -> bool:
-        """Save the field with ``save``. Show why it was rejected; the text then remains for correction."""
+        """Save the field with ``save_value``, and return whether this succeeded.
+
+        If it is rejected, show the reason and leave the text for correction.
+        """
         barred = self.find_cell_refusal()
         try:
             why = barred or save_value()
@@ -411,11 +442,14 @@ class ToolFieldTable(OffsetTable):
 
     @property
     def has_entry(self) -> bool:
-        """Whether there is an entry that Esc can discard."""
+        """Return whether there is an entry that Esc can discard."""
         return bool(self.text or self.is_text_open)
 
     def cancel_entry(self) -> bool:
-        """Discard the entry or close an open text. Return False if there is neither."""
+        """Discard the entry or close an open text.
+
+        Return False if there is neither.
+        """
         if not self.has_entry:
             return False
         self.discard_entry()
@@ -423,5 +457,5 @@ class ToolFieldTable(OffsetTable):
         return True
 
     def discard_entry(self) -> None:
-        """Discard the entry."""
+        """Discard the entry without a message."""
         self.text, self.is_text_open = "", False

@@ -1,7 +1,7 @@
 """Input and display formats of offsets: unit, diameter, range and sign.
 
-Inches have 5 decimals and mm have 4. Zero offsets have 3 decimals in mm and degrees. Stored values are in mm
-and degrees, with X as a radius.
+Values in inches have 5 decimals, and values in mm have 4. Zero offsets have 3 decimals in mm and degrees.
+Stored values are in mm and degrees, with X as a radius.
 """
 
 from __future__ import annotations
@@ -37,19 +37,19 @@ ZERO_OFFSET_DECIMALS = 3
 
 @dataclass(frozen=True, slots=True)
 class ValueMode:
-    """The control's unit, and whether X is a diameter, from one snapshot."""
+    """The control's unit, and whether X is a diameter, taken from one snapshot."""
 
     is_metric: bool = False
     is_diameter: bool = False
 
     @property
     def unit_mm(self) -> float:
-        """The number of millimeters in one unit of an entry."""
+        """Return the number of millimeters in one unit of an entry."""
         return 1.0 if self.is_metric else MM_PER_INCH
 
     @property
     def name(self) -> str:
-        """The name of the unit in messages."""
+        """Return the name of the unit in messages."""
         return "mm" if self.is_metric else "in"
 
 
@@ -62,7 +62,10 @@ def describe_unset(*, is_unread: bool = False) -> str:
 
 
 def format_signed(mm: float, metric: bool) -> str:
-    """Return a length in mm as text with a sign, also a plus, because an offset differs from a dimension."""
+    """Return a length in mm as text with a plus or minus sign.
+
+    The plus sign distinguishes an offset from a dimension.
+    """
     figure = formats.format_length(mm, metric)
     return figure if figure.startswith(MINUS_SIGN) else f"+{figure}"
 
@@ -74,21 +77,24 @@ def format_zero_offset(value: float) -> str:
 
 
 def convert_to_mm(value: float, metric: bool) -> float:
-    """Return an entered length in mm, rounded in its own unit so that it is displayed as entered."""
+    """Return an entered length in mm.
+
+    The length is first rounded in its own unit, so that it is displayed as it was entered.
+    """
     return round(value, 10) * (1.0 if metric else MM_PER_INCH)
 
 
 def add_correction(mm: float, value: float, metric: bool) -> float:
-    """Return ``mm`` plus an entered correction in mm.
+    """Return ``mm`` plus an entered correction, in mm.
 
-    The sum is rounded in the unit of the entry, so that ten times .0005 is .005.
+    The sum is rounded in the unit of the entry, so that adding .0005 ten times gives .005.
     """
     unit = 1.0 if metric else MM_PER_INCH
     return round(mm / unit + value, 10) * unit
 
 
 def describe_range_error(field: str, value: str, unit: str, low: float, high: float) -> str:
-    """Return the message for a value out of its range, in the unit of the entry."""
+    """Return the message for a value out of range, in the unit of the entry."""
     text = tr("{field} would become {value} {unit}; allowed range is {low}…{high}")
     return tr(Message(text, field=field, value=value, unit=unit, low=f"{low:g}", high=f"{high:g}"))
 
@@ -97,7 +103,10 @@ def describe_range_error(field: str, value: str, unit: str, low: float, high: fl
 
 
 def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
-    """Return an offset in one line. X of a tool follows the control's mode; other X values are radii."""
+    """Return an offset in one line.
+
+    X of a tool follows the control's diameter mode. Other X values are radii.
+    """
     if offset is None:
         return describe_unset()
     if isinstance(offset, ToolRow):
@@ -120,7 +129,7 @@ def format_offset(offset: OffsetRow | None, mode: ValueMode) -> str:
 
 
 def format_set_fields(row: MillRow | PresetRow) -> str:
-    """Return the fields of a mill's tool or preset that have values, with the control's names."""
+    """Return the fields of a mill's tool or preset that have values, with the control's field names."""
     fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
     values: tuple[FieldValue, ...] = tuple(row)
     told = [
@@ -132,7 +141,7 @@ def format_set_fields(row: MillRow | PresetRow) -> str:
 
 
 def format_cell(field: RowField, value: FieldValue) -> str:
-    """Return a value as text in mm, degrees or minutes, for a table of a mill."""
+    """Return a cell value of a mill's table as text in mm, degrees or minutes."""
     if isinstance(value, str):
         return value
     if field.field_type is FieldType.BOOLEAN:
@@ -150,7 +159,7 @@ def _pair(x: float, z: float, metric: bool, diameter: bool) -> str:
 
 
 def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
-    """Return the other values of a tool, if they are set."""
+    """Return the text of a tool's other fields that are set."""
     parts = [f"  R {formats.format_length(tool.nose_radius, mode.is_metric)}"]
     if tool.wear_x or tool.wear_z:
         parts.append(f"  {tr('WEAR')} {_pair(tool.wear_x, tool.wear_z, mode.is_metric, True)}")
@@ -162,7 +171,7 @@ def _format_more_fields(tool: ToolRow, mode: ValueMode) -> str:
 
 
 def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
-    """Return the kind and hand of a tool shape, and its specified values."""
+    """Return the kind and hand of a tool shape and its specified values as text."""
     stated = [
         f"{translate_field(name)} {format_value(name, value, mode)}"
         for name, value in shape._asdict().items()
@@ -172,9 +181,9 @@ def _format_shape(shape: ShapeRow, mode: ValueMode) -> str:
 
 
 def format_change(old: OffsetRow | None, new: OffsetRow | None, mode: ValueMode) -> str:
-    """Return an offset before and after a change.
+    """Return the text of an offset before and after a change.
 
-    For a tool that is set before and after, only the changed fields are included.
+    For a tool that is set before and after, the text contains only the changed fields.
     """
     if not (isinstance(old, ToolRow | ShapeRow) and isinstance(new, ToolRow | ShapeRow)):
         return f"{format_offset(old, mode)}  →  {format_offset(new, mode)}"
@@ -195,7 +204,10 @@ def _in_change(name: str, row: ToolRow | ShapeRow, mode: ValueMode) -> str:
 
 
 def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
-    """Return the field value for an entered text, in mm for lengths. Raises EntryError with the reason."""
+    """Return the field value for an entered text, with lengths in mm.
+
+    Raise EntryError with the reason if the text is invalid.
+    """
     field = TOOL_FIELDS[field_name]
     if field.field_type is FieldType.TEXT:
         value: FieldValue = text.strip()
@@ -210,7 +222,10 @@ def parse_value(field_name: str, text: str, mode: ValueMode) -> FieldValue:
 
 
 def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMode) -> FieldValue:
-    """Return the length in mm after adding an entered text. Raises EntryError with the reason."""
+    """Return the length in mm after an entered value is added to it.
+
+    Raise EntryError with the reason if the text is invalid.
+    """
     field, before = TOOL_FIELDS[field_name], getattr(old_row, field_name)
     if field.field_type is not FieldType.LENGTH:
         raise EntryError(
@@ -242,8 +257,8 @@ def _taken(field: RowField, value: FieldValue, mode: ValueMode) -> FieldValue:
 def _find_factor(name: str, mode: ValueMode) -> float:
     """Return the factor between an entered X and the stored radius.
 
-    Wear is always a diameter, because it is measured on the part. The control's mode may be radius between
-    two parts.
+    Wear is always a diameter, because it is measured on the part. The control's diameter mode can change
+    between two parts.
     """
     return 2.0 if name == "wear_x" or (name == "x" and mode.is_diameter) else 1.0
 
@@ -269,7 +284,7 @@ def format_value(name: str, value: FieldValue, mode: ValueMode) -> str:
 
 
 def find_diameter_mark(name: str, mode: ValueMode) -> str:
-    """Return Ø or R for a field that is an X value, else an empty text."""
+    """Return "Ø" or "R" for a field that is an X value, or an empty string for other fields."""
     if name not in {"x", "wear_x"}:
         return ""
     return "Ø" if _find_factor(name, mode) > 1.0 else "R"

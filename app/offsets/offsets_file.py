@@ -1,9 +1,10 @@
 """The offsets file that users write.
 
-[tool.1] and [secondary.1] are in inches, and [zero.54] is in mm and degrees. The file is part of an export. A
-tools file contains the tool shapes in the same tables [tool.1], which are also allowed in the offsets file.
-Lengths are in inches, angles in degrees, and outlines (holder, profile) are texts in mm. Further cutting
-edges of a tool are [tool.1.d2] to [tool.1.d9]. All mistakes of a file are reported together.
+[tool.1] and [secondary.1] are in inches, and [zero.54] is in mm and degrees. The file is part of an export.
+A tools file contains the tool shapes in the same tables [tool.1], which are also allowed in the offsets
+file. Lengths are in inches, and angles are in degrees. Outlines (holder, profile) are texts in mm.
+Additional cutting edges of a tool are [tool.1.d2] to [tool.1.d9]. All mistakes of a file are reported
+together.
 """
 
 from __future__ import annotations
@@ -62,8 +63,8 @@ KEY_ALIASES = {"tip": "quadrant"}  # Name of the field in tool data sheets.
 def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, SecondaryRow], dict[int, ZeroRow]]:
     """Return the tool, secondary and zero offsets of a file as rows of the store.
 
-    A missing key is 0 or empty. A tool with a shape but without X and Z has no offset, because its tip
-    position is not specified. Raises CommandError with all mistakes.
+    A missing key is read as 0 or empty. A tool that has a shape but no X and Z has no offset, because its
+    tip position is not specified. Raise CommandError with all mistakes of the file.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -104,7 +105,10 @@ def read_offset_rows(path: Path) -> tuple[dict[int, ToolRow], dict[int, Secondar
 
 
 def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
-    """Return the tool shapes of a file as rows of the store. Raises CommandError with all mistakes."""
+    """Return the tool shapes of a file as rows of the store.
+
+    Raise CommandError with all mistakes of the file.
+    """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
     shapes = _tools(data, mistakes).shapes
@@ -115,8 +119,8 @@ def read_shape_rows(path: Path) -> dict[int, ShapeRow]:
 def read_tool_shapes(path: Path) -> dict[int, ToolShape]:
     """Return the tools of a file that have a shape, in mm, with the nose radius and tip of the same table.
 
-    Lengths are in inches in the file. Outlines of holder and profile are texts in mm. Raises CommandError
-    with all mistakes.
+    In the file, lengths are in inches. Outlines of holder and profile are texts in mm. Raise CommandError
+    with all mistakes of the file.
     """
     data = read_toml(path)
     mistakes = _unknown_tables(data)
@@ -136,7 +140,7 @@ def _unknown_tables(data: dict[str, object]) -> list[CodedError]:
 
 
 class _ToolTables(NamedTuple):
-    """The tools of a file: all offsets, the offsets with a specified position, and the shapes."""
+    """The tools of a file: all offsets, the offsets whose position is specified, and the shapes."""
 
     rows: dict[int, ToolRow]
     placed_rows: dict[int, ToolRow]
@@ -243,7 +247,7 @@ def _table(
 
 
 def _read_edges(entry: dict[str, object]) -> dict[str, object]:
-    """Return the further cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by their keys."""
+    """Return the additional cutting edges of a tool, [tool.1.d2] to [tool.1.d9], by key."""
     return {key: value for key, value in entry.items() if key in _EDGE_KEYS}
 
 
@@ -313,9 +317,9 @@ def format_value(value: object) -> str:
 
 
 def find_range_error(name: str, field: RowField, value: FieldValue, entered_value: object) -> str:
-    """Return the message for a value out of its range, or an empty text. Lengths are in mm.
+    """Return the message for a value out of range, or an empty string.
 
-    NaN is always out of range. ``entered_value`` is the value as it is in the file.
+    Lengths are in mm. NaN is always out of range. ``entered_value`` is the value in the file.
     """
     if field.accepts(value):
         return ""

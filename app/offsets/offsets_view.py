@@ -1,7 +1,7 @@
 """Common parts of the pages of tool, secondary and zero offsets.
 
-A page has a table above the entry line, with a number pad for touch at the right. The history or the effect
-of a change on the path replaces the table.
+A page has a table above the entry line, with a number pad for touch on the right. The history or the effect
+of a change on the path can replace the table.
 """
 
 from __future__ import annotations
@@ -36,7 +36,10 @@ CLOSE_UP_SEPARATION = 0.06  # Distance of the two paths in the close-up, as a fr
 
 
 class EffectView(PathView):
-    """Shows the two paths of the loaded program that the model selects."""
+    """A view of the loaded program's paths with the old and new offsets.
+
+    The model selects the paths.
+    """
 
     def __init__(self, theme: ScreenTheme, model: EffectDisplay, parent: QWidget) -> None:
         super().__init__(theme, parent)
@@ -54,7 +57,7 @@ class EffectView(PathView):
         self.draw_slice()
 
     def _zoom_to_difference(self, difference: float) -> None:
-        """Zoom to the largest change, so that both paths are visible side by side."""
+        """Zoom in on the largest change, so that both paths are visible side by side."""
         frame = self.first_projection
         if frame is not None and math.isfinite(difference) and difference > 0.0:
             factor = CLOSE_UP_SEPARATION * self.width() / (difference * frame.scale)
@@ -97,7 +100,7 @@ class ChangeHistoryList(RowPanel):
 
 
 class OffsetPage(ModelPage):
-    """A page with an offset table, its history and the effect of a change. One of them is visible."""
+    """A page that shows an offset table, its history, or the effect of a change."""
 
     model: OffsetTable
     table_panel: Panel
@@ -118,24 +121,27 @@ class OffsetPage(ModelPage):
         self.entry_panel.installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Show the number pad at a touch on the table. A touch on the entry line toggles the pad."""
+        """Show the number pad on a touch of the table, and toggle it on a touch of the entry line."""
         if event.type() == QEvent.Type.MouseButtonPress:
             self.set_pad_shown(watched is not self.entry_panel or self.number_pad.isHidden())
         return super().eventFilter(watched, event)
 
     def set_pad_shown(self, is_shown: bool) -> None:
-        """Show or hide the number pad. Without the pad, the table uses the full width."""
+        """Show or hide the number pad.
+
+        Without the pad, the table uses the full width.
+        """
         if is_shown is self.number_pad.isHidden():
             self.number_pad.setVisible(is_shown)
             self._lay_out()
 
     def on_open(self) -> None:
-        """Inform the model that the page has opened, and let a touch on the table show the number pad."""
+        """Notify the model that the page has opened, and let a touch on the table show the number pad."""
         super().on_open()
         self.table_panel.installEventFilter(self)
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions: undo, history, effect, and the other tables."""
+        """Return the key actions for undo, history, effect and the other tables."""
         around = self.effect_view.make_view_key_actions() if self.effect_display.is_open else {}
         zero = {"F10": partial(self._go, page_table.ZERO)} if self.key_labels()[9] else {}
         return {
@@ -149,16 +155,22 @@ class OffsetPage(ModelPage):
         }
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the keys of the table that are disabled now."""
+        """Return the keys of the page that are disabled now."""
         return frozenset(key for key, why in self.key_refusals().items() if why)
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reason for each disabled key, empty if the key is enabled."""
+        """Return why each key is disabled.
+
+        The reason is empty if the key is enabled.
+        """
         nothing = not self.model.text and not self.model.offset_history.can_undo(self.model.selected_number)
         return {"F4": self.model.find_undo_refusal() or nothing, "F6": self.effect_display.find_refusal()}
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the key labels. If two keys open the same table, only the first has a label."""
+        """Return the key labels.
+
+        If two keys open the same table, only the first key has a label.
+        """
         shown = super().key_labels()
         return shown if shown[8] != shown[9] else (*shown[:9], "")
 
@@ -175,7 +187,10 @@ class OffsetPage(ModelPage):
         self.effect_display.show_next_view()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the entry. While the effect is shown, characters are rejected with a message."""
+        """Handle a key of the entry.
+
+        While the effect is shown, characters are rejected with a message.
+        """
         if self.history_list.isVisible() and key in {"Page up", "Page down"}:
             self.history_list.scroll_by((1 if key == "Page down" else -1) * self.history_list.rows)
             return True
@@ -185,7 +200,10 @@ class OffsetPage(ModelPage):
         return self.model.handle_key(key)
 
     def has_text_field(self) -> bool:
-        """Return whether values can be entered, which is always so except while the effect is shown."""
+        """Return whether values can be entered.
+
+        This is always possible except while the effect is shown.
+        """
         return not self.effect_display.is_open
 
     def prompt_text(self) -> str:
@@ -195,21 +213,21 @@ class OffsetPage(ModelPage):
         return self.model.prompt_text(self.desk.read_snapshot())
 
     def apply_theme(self) -> None:
-        """Redraw the paths in the present colors."""
+        """Redraw the paths in the current colors."""
         self.effect_view.redraw()
 
     def try_leave(self) -> bool:
-        """Discard unfinished entries, and let the page close."""
+        """Discard unfinished entries, and allow the page to close."""
         self.effect_display.close_view()
         self.model.on_close()
         return True
 
     def is_esc_stop_key(self) -> bool:
-        """Return False, because Esc goes one step back even while the machine moves."""
+        """Return False, because Esc goes back one step even while the machine moves."""
         return False
 
     def handle_escape(self) -> bool:
-        """Go one step back, or from the first question to the Automatic page."""
+        """Go back one step, or open the Automatic page if there is no step to go back."""
         if self.effect_display.is_open:
             self.effect_display.close_view()
         elif not self.model.handle_escape():
@@ -217,7 +235,10 @@ class OffsetPage(ModelPage):
         return True
 
     def refresh(self, snapshot: Snapshot, _status: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Show the visible part and the entry line. Subclasses also show their table."""
+        """Update the visible part and the entry line.
+
+        Subclasses also update their table.
+        """
         model, effect = self.model, self.effect_display
         model.update(snapshot)
         changes = model.offset_history.listed_changes
@@ -240,11 +261,11 @@ class OffsetPage(ModelPage):
         self.entry_panel.entry_texts = EntryTexts(*words)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out the table, the entry line, the number pad and the letter keyboard."""
+        """Arrange the table, the entry line, the number pad and the letter keyboard."""
         self._lay_out()
 
     def _show_letters(self, shown: bool) -> None:
-        """Show the letter keyboard while a text is edited by touch, else the number pad."""
+        """Show the letter keyboard while a text is edited by touch, and otherwise the number pad."""
         if shown is self.letter_pad.isHidden():
             self.letter_pad.setVisible(shown)
             self._lay_out()

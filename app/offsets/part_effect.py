@@ -1,4 +1,4 @@
-"""Effect of a change of offsets on the part: each diameter and shoulder before and after."""
+"""Effect of a change of offsets on the part, with each diameter and shoulder before and after."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _NO_VALUE = "–"
 
 
 def make_part_table(part: ComparedPart, value_mode: ValueMode) -> TableContent:
-    """Return a table of the part features, from the face on, with the findings that appear or disappear.
+    """Return a table of the part features, starting at the face.
 
-    A lamp marks features that change.
+    The table also lists the findings that appear or disappear. A lamp marks the features that change.
     """
     unit = tr("MM") if value_mode.is_metric else tr("INCH")
     return TableContent(
@@ -67,7 +67,10 @@ def _figure(feature: PartFeature | None, mode: ValueMode) -> str:
 
 
 def _name_feature(feature: PartFeature, mode: ValueMode) -> str:
-    """Return the name of a feature, for example ``DIAMETER Z 0 … -.5``. A shoulder has its two diameters."""
+    """Return the name of a feature, for example ``DIAMETER Z 0 … -.5``.
+
+    The name of a shoulder contains its two diameters.
+    """
     a, b = feature.extent
     if feature.kind in {FeatureKind.DIAMETER, FeatureKind.BORE}:
         word = tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("BORE")

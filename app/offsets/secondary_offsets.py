@@ -1,7 +1,7 @@
-"""The model of the secondary offsets (F9 SECCMP), which asks for a number and then for X, Z and R.
+"""The model of the secondary offsets (F9 SECCMP), which prompts for a number and then for X, Z and R.
 
-The questions are those of the original control. X is a diameter correction, which is halved and added. Z is
-added. R replaces the value. Enter without a value leaves the present value.
+The prompts are those of the original control. X is a diameter correction, which is halved and added. Z is
+added. R replaces the value. Enter without a value leaves the present value unchanged.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _ENTRY_KEYS = EXPRESSION_CHARACTERS | {"Back", "Delete", "Enter"}
 
 
 class SecondaryOffsetStep(IntEnum):
-    """The steps of the dialogue, in order."""
+    """The steps of the dialog, in order."""
 
     NUMBER = 0
     X = 1
@@ -47,7 +47,10 @@ class SecondaryOffsetStep(IntEnum):
 def correct_value(
     step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: ValueMode
 ) -> float:
-    """Return the new value in mm for an entry: X is halved and added, Z is added, R replaces the value."""
+    """Return the new value in mm for an entry.
+
+    X is halved and added, Z is added, and R replaces the value.
+    """
     if step is SecondaryOffsetStep.R:
         return convert_to_mm(entered_value, mode.is_metric)
     return add_correction(
@@ -56,7 +59,7 @@ def correct_value(
 
 
 class SecondaryOffsetEntry(OffsetTable):
-    """The dialogue with its number, step, entered text and previous answers."""
+    """The entry dialog, with its offset number, step, entered text and previous answers."""
 
     kind = OffsetKind.SECONDARY
     page_key = "C"
@@ -73,29 +76,35 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def heading(self) -> str:
-        """The number of the offset that is being entered."""
+        """Return the number of the offset that is being entered."""
         which = tr("Secondary offset number:")
         return f"{which} {self.offset_number}" if self.offset_number else which
 
     @property
     def question_text(self) -> str:
-        """The prompt of this step. All prompts except R are those of the original control."""
+        """Return the prompt of this step.
+
+        All prompts except R are those of the original control.
+        """
         words = (tr("Offset Number?"), tr("X DIAMETER CORRECTION?"), tr("Z CORRECTION?"), tr("R?"))
         return words[self.entry_step]
 
     @property
     def present_row(self) -> SecondaryRow | None:
-        """The present values of the offset that is being changed. None if it is not set."""
+        """Return the saved values of the offset that is being changed, or None if it is not set."""
         return self.offset_book.secondary.get(self.offset_number) if self.offset_number else None
 
     @property
     def selected_number(self) -> int | None:
-        """The entered number, or None, which means that undo applies to the last change of the table."""
+        """Return the entered number, or None if there is no number.
+
+        With None, undo applies to the last change of the table.
+        """
         return self.offset_number or None
 
     @property
     def preview_row(self) -> SecondaryRow | None:
-        """The offset as it would be with the entered text. None if no number is selected."""
+        """Return the offset as it would be with the entered text, or None if no number is selected."""
         if not self.offset_number:
             return None
         old = self.present_row or SecondaryRow()
@@ -112,7 +121,7 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def change_text(self) -> str:
-        """The change that is being entered, or else the last change."""
+        """Return the change that is being entered, or else the last change."""
         if self.entry_step is SecondaryOffsetStep.NUMBER:
             return self.offset_history.last_change_text
         was, new = (format_offset(side, self.value_mode) for side in (self.present_row, self.preview_row))
@@ -120,12 +129,12 @@ class SecondaryOffsetEntry(OffsetTable):
 
     @property
     def footer_text(self) -> str:
-        """The hint how to exit and how to clear the table, in the words of the original control."""
+        """Return the hint on how to exit and how to clear the table, in the words of the original control."""
         leave = tr("Press Esc to exit offset adjustment screen")
         return f"{leave}        {tr('Press C to clear all offsets')}"
 
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return how to answer the question, or from when a correction applies."""
+        """Return how to answer the question, or when a correction takes effect."""
         if self.entry_step is SecondaryOffsetStep.NUMBER and not describe_start(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
         return describe_start(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
@@ -137,9 +146,10 @@ class SecondaryOffsetEntry(OffsetTable):
         return tools, {**secondary, **({self.offset_number: preview} if preview else {})}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control; called once a frame. A change of the unit discards the entry.
+        """Update the unit of the control, and discard the entry if the unit changes.
 
-        X is always a diameter correction. A change of the control's diameter mode therefore has no effect.
+        This is called once a frame. X is always a diameter correction. A change of the control's diameter
+        mode therefore has no effect.
         """
         before = self.value_mode
         super().update(snapshot)
@@ -153,11 +163,14 @@ class SecondaryOffsetEntry(OffsetTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered: number characters, or C to clear the table."""
+        """Return whether a character can be entered.
+
+        Accepted are number characters, and C to clear the table.
+        """
         return key in EXPRESSION_CHARACTERS or key == "C"
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a text key, or Enter to answer the question."""
+        """Handle a text key, or handle Enter to answer the question."""
         if key not in _ENTRY_KEYS:
             return False
         self.desk.clear_prompt_line()
@@ -168,7 +181,10 @@ class SecondaryOffsetEntry(OffsetTable):
         return True
 
     def select_offset(self, number: int) -> None:
-        """Select an offset by touch. This is rejected while another offset is being entered."""
+        """Select an offset by touch.
+
+        The selection is rejected while another offset is being entered.
+        """
         if self.entry_step is SecondaryOffsetStep.NUMBER:
             self.text = str(number)
             self._enter()
@@ -178,7 +194,7 @@ class SecondaryOffsetEntry(OffsetTable):
             )
 
     def clear_table(self) -> None:
-        """Handle C: clear the table, but not while an offset is being entered."""
+        """Handle C: clear the table, unless an offset is being entered."""
         whole = self.find_refusal(self.desk.read_snapshot(), is_correction=False)
         if not whole and self.entry_step is not SecondaryOffsetStep.NUMBER:
             self.desk.say(tr("C CLEARS ALL OFFSETS ONLY AT THE PROMPT Offset Number? PRESS ESC FIRST"))
@@ -186,7 +202,7 @@ class SecondaryOffsetEntry(OffsetTable):
             super().clear_table()
 
     def handle_undo(self) -> None:
-        """Ask whether the last change of the entered number is undone, if no value has been entered yet."""
+        """Ask whether to undo the last change of the entered number, if no value has been entered yet."""
         if self.entry_step is not SecondaryOffsetStep.X or self.text or self.find_undo_refusal():
             super().handle_undo()
             return
@@ -195,7 +211,10 @@ class SecondaryOffsetEntry(OffsetTable):
         self.offset_history.show_refusal(self.offset_questions.ask_undo(self.kind, number))
 
     def cancel_entry(self) -> bool:
-        """Discard the entry and show this. Return False if nothing was entered."""
+        """Discard the entry, and show that it was discarded.
+
+        Return False if nothing was entered.
+        """
         if self.entry_step is SecondaryOffsetStep.NUMBER and not self.text:
             return False
         number = self.offset_number
@@ -239,7 +258,7 @@ class SecondaryOffsetEntry(OffsetTable):
             self._save(SecondaryRow(self._answers[0], self._answers[1], new), [*self._typed, typed])
 
     def _check_range(self, mm: float) -> None:
-        """Check the range of a value. Raises EntryError."""
+        """Raise EntryError if a value is out of range."""
         low, high = (
             (0.0, MAX_NOSE_RADIUS_MM)
             if self.entry_step is SecondaryOffsetStep.R

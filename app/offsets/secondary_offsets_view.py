@@ -1,4 +1,7 @@
-"""The page of the 32 secondary offsets (F9), in two columns. A touch first enlarges eight of them."""
+"""The page of the 32 secondary offsets (F9), in two columns.
+
+The first touch enlarges eight of the offsets.
+"""
 
 from __future__ import annotations
 
@@ -31,10 +34,11 @@ _NUMBER, _X, _Z = 0.09, 0.42, 0.73
 
 
 class SecondaryOffsetTable(Panel):
-    """The table of the offsets. The row being changed is filled, and the last changed row has a bar.
+    """The table of the secondary offsets.
 
-    A row in the full table has a third of a fingertip's height. The first touch therefore enlarges eight
-    offsets, and the second touch selects one.
+    The row being changed is filled, and the last changed row has a bar. A row of the full table is only a
+    third as high as a fingertip. The first touch therefore enlarges eight offsets, and the second touch
+    selects one of them.
     """
 
     offsets: RedrawingAttribute[Mapping[int, SecondaryRow]] = RedrawingAttribute({})
@@ -55,7 +59,7 @@ class SecondaryOffsetTable(Panel):
         changed_numbers: Collection[int],
         value_mode: ValueMode,
     ) -> None:
-        """Show the offsets, the row being changed (0 for none), the last changed rows and the unit."""
+        """Show the offsets, the number being changed (0 for none), the last changed rows and the unit."""
         if number:
             self.enlarge_rows(0)
         self.offsets, self._number, self._marked, self._mode = (
@@ -75,7 +79,7 @@ class SecondaryOffsetTable(Panel):
             self._draw_all(painter, room)
 
     def enlarge_rows(self, first: int) -> None:
-        """Enlarge eight offsets from this number on, or show all offsets with 0."""
+        """Enlarge the eight offsets that start at this number, or show all offsets if it is 0."""
         self.first_enlarged = first
 
     def _draw_all(self, painter: ThemedPainter, room: QRectF) -> None:
@@ -102,7 +106,10 @@ class SecondaryOffsetTable(Panel):
         self._choose(number)
 
     def _draw_row(self, painter: ThemedPainter, box: QRectF, number: int, size: float) -> None:
-        """Draw one row. ``size`` scales the letters, 1 in the full table."""
+        """Draw one row.
+
+        ``size`` scales the letters. It is 1 in the full table.
+        """
         u = self.theme.u
         here = number == self._number
         if here:
@@ -154,7 +161,7 @@ def _make_boxes(area: QRectF, rows: int, gap: float) -> list[QRectF]:
 
 
 class SecondaryOffsetsPage(OffsetPage):
-    """The page of the secondary offsets, F9."""
+    """The page of the secondary offsets (F9)."""
 
     NAME = page_table.SECCMP
     LABELS = ("MENU", "", "", "UNDO", "HISTORY", "EFFECT", "ALARMS", "TOOLS", "", "ZERO")
@@ -166,19 +173,19 @@ class SecondaryOffsetsPage(OffsetPage):
         self.table_panel = SecondaryOffsetTable(self.theme, self.model.select_offset, self)
 
     def handle_escape(self) -> bool:
-        """Show all offsets again, or go one step back."""
+        """Show all offsets again, or go back one step."""
         if self.table_panel.first_enlarged:
             self.table_panel.enlarge_rows(0)
             return True
         return super().handle_escape()
 
     def try_leave(self) -> bool:
-        """Show all offsets again, discard unfinished entries, and let the page close."""
+        """Show all offsets again, discard unfinished entries, and allow the page to close."""
         self.table_panel.enlarge_rows(0)
         return super().try_leave()
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present state of the table."""
+        """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.offset_history.last_changes}

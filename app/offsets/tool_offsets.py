@@ -25,7 +25,10 @@ _CURSOR_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1)
 
 
 class ToolOffsetTable(ToolFieldTable):
-    """The table with its cursor and the entered text. A remark accepts letters after Enter has opened it."""
+    """The tool offset table with its cursor and the entered text.
+
+    A remark accepts letters after the operator opens it with Enter.
+    """
 
     kind = OffsetKind.TOOL
     text_hint = "PRESS ENTER TO TYPE A REMARK"
@@ -43,7 +46,7 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def tool_numbers(self) -> tuple[int, ...]:
-        """The rows of the table: every tool, followed by its further cutting edges."""
+        """Return the row numbers of the table: every tool, followed by its additional cutting edges."""
         edges = sorted(
             {key for key in (*self.offset_book.tools, self.new_edge) if key not in OFFSET_NUMBERS and key}
         )
@@ -55,17 +58,20 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def row_index(self) -> int:
-        """The index of the cursor's row, counted from 0."""
+        """Return the index of the cursor's row, counted from 0."""
         rows = self.tool_numbers
         return rows.index(self.tool_number if self.tool_number in rows else get_tool_number(self.tool_number))
 
     @property
     def name(self) -> str:
-        """The field under the cursor."""
+        """Return the name of the field under the cursor."""
         return TABLE_COLUMNS[self.column_index]
 
     def format_cell(self, number: int, name: str) -> str:
-        """Return a cell of the table as text. X and Z are relative to the master if this is selected."""
+        """Return a cell of the table as text.
+
+        X and Z are relative to the master if the operator has selected this display.
+        """
         book, mode, new = self.offset_book, self.value_mode, self.tool_fields.incomplete_tool
         row = book.tools.get(number)
         if row is None:
@@ -79,19 +85,19 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def is_editing_text(self) -> bool:
-        """Whether a remark is being edited."""
+        """Return whether a remark is being edited."""
         return self.is_text_open
 
     @property
     def stored_value_text(self) -> str:
-        """The saved value of the cell as text."""
+        """Return the saved value of the cell as text."""
         return self.format_cell(self.tool_number, self.name) or (
             describe_unset(is_unread=self.offset_book.has_read_failed) if self.tool_row is None else ""
         )
 
     @property
     def footer_text(self) -> str:
-        """The hint for the keys F2, F3 and Esc."""
+        """Return the hint about the keys F2, F3 and Esc."""
         if self.page_key:
             return tr(
                 "F2: add typed value   F3: X and Z relative to master   F8: shape   D: other edge   Esc: exit"
@@ -99,7 +105,7 @@ class ToolOffsetTable(ToolFieldTable):
         return tr("F2: add typed value   F3: X and Z relative to master   F8: tool shape   Esc: exit")
 
     def make_hint(self, snapshot: Snapshot) -> str:
-        """Return how to enter a remark or a value, or from when a change applies."""
+        """Return how to enter a remark or a value, or when a change takes effect."""
         if self.is_text_open:
             return tr("TYPE A REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
         return describe_start(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
@@ -117,19 +123,20 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def is_correction(self) -> bool:
-        """Whether the field is wear or remark, which may change while parts run."""
+        """Return whether the field is a wear value or a remark, which may change while parts run."""
         return self.name in CORRECTION_FIELDS[OffsetKind.TOOL]
 
     def find_cell_refusal(self) -> str:
-        """Return why the cell under the cursor cannot be changed now. Empty if it can."""
+        """Return why the cell under the cursor cannot be changed now, or an empty string if it can."""
         if self.is_relative and self.name in {"x", "z"}:
             return tr("X, Z RELATIVE TO MASTER: READ-ONLY. F3: SHOW X, Z FROM HOME")
         return super().find_cell_refusal()
 
     def update(self, snapshot: Snapshot) -> None:
-        """Update the unit of the control; called once a frame. A change of the unit discards the entry.
+        """Update the unit of the control, and discard the entry if the unit changes.
 
-        An entry of X or Z is also discarded if the diameter mode changes. Wear is always a diameter.
+        This is called once a frame. An entry of X or Z is also discarded if the diameter mode changes. Wear
+        is always a diameter.
         """
         before = self.value_mode
         super().update(snapshot)
@@ -142,7 +149,10 @@ class ToolOffsetTable(ToolFieldTable):
     # --- keys ----------------------------------------------------------------------------------------
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a key of the table: arrow keys move the cursor, and Enter saves the entered value."""
+        """Handle a key of the table.
+
+        The arrow keys move the cursor, and Enter saves the entered value.
+        """
         if key in {"Page up", "Page down"}:
             self._step(self.page_rows if key == "Page down" else -self.page_rows, 0)
         elif key in _CURSOR_MOVES:
@@ -154,33 +164,36 @@ class ToolOffsetTable(ToolFieldTable):
         return True
 
     def select_cell(self, number: int, column: int) -> None:
-        """Select a touched cell. A second touch opens a remark or sets the master."""
+        """Select a touched cell.
+
+        A second touch opens a remark or sets the master.
+        """
         again = (number, column) == (self.tool_number, self.column_index)
         self._select_cell(number, column)
         if again and self.name in {"remark", "master"} and not self.is_text_open:
             self.handle_enter()
 
     def add_entered(self) -> None:
-        """Handle F2: add the entered value to the present value."""
+        """Handle F2: add the entered value to the saved value."""
         if why := self.find_add_refusal():
             self.desk.say(why)
             return
         self._save_entry(is_increment=True)
 
     def find_add_refusal(self) -> str:
-        """Return why no value can be added now. Empty if it can."""
+        """Return why no value can be added now, or an empty string if it can."""
         if self.tool_row is None or not self.text.strip():
             return tr("TYPE THE VALUE TO ADD, THEN PRESS F2")
         return ""
 
     def find_relative_refusal(self) -> str:
-        """Return why X and Z cannot be shown relative to the master. Empty if they can."""
+        """Return why X and Z cannot be shown relative to the master, or an empty string if they can."""
         if not self.is_relative and not self.offset_book.master_number:
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
     def toggle_relative(self) -> None:
-        """Handle F3: show X and Z from home, or relative to the master."""
+        """Handle F3: switch X and Z between distances from home and distances from the master."""
         if why := self.find_relative_refusal():
             self.desk.say(why)
             return
@@ -191,7 +204,10 @@ class ToolOffsetTable(ToolFieldTable):
         self._select_cell(rows[max(0, min(len(rows) - 1, self.row_index + down))], self.column_index + right)
 
     def add_cutting_edge(self) -> None:
-        """Handle D: add a row for the next cutting edge of this tool. Entering X and Z sets the edge."""
+        """Handle D: add a row for the next cutting edge of this tool.
+
+        The edge is set when X and Z are entered.
+        """
         tool = get_tool_number(self.tool_number)
         free = (
             make_edge_key(tool, edge)
@@ -211,7 +227,10 @@ class ToolOffsetTable(ToolFieldTable):
             self.desk.say(tr(Message("T{number}: TYPE X AND Z", number=format_edge_suffix(key))))
 
     def _select_cell(self, number: int, column: int) -> None:
-        """Move the cursor, unless there is an unfinished entry. An incomplete new tool is discarded."""
+        """Move the cursor, unless there is an unfinished entry.
+
+        An incomplete new tool is discarded.
+        """
         if self.is_entry_unfinished():
             return
         if self.new_edge not in {0, number} and self.tool_fields.incomplete_tool.tool_number != self.new_edge:
@@ -250,7 +269,10 @@ class ToolOffsetTable(ToolFieldTable):
         self.is_text_open, self.text = True, self.tool_row.remark
 
     def _save_entry(self, *, is_increment: bool) -> None:
-        """Save the cell. For a new tool, move the cursor to the missing value."""
+        """Save the cell.
+
+        For a new tool, move the cursor to the missing value.
+        """
         saved = self.save_field(
             lambda: self.tool_fields.save_field(
                 self.tool_number, self.name, self.text, is_increment=is_increment
@@ -261,7 +283,7 @@ class ToolOffsetTable(ToolFieldTable):
 
     @property
     def has_entry(self) -> bool:
-        """Whether Esc can discard an entry or an incomplete new tool."""
+        """Return whether Esc can discard an entry or an incomplete new tool."""
         return super().has_entry or bool(self.tool_fields.incomplete_tool.tool_number)
 
     def discard_entry(self) -> None:

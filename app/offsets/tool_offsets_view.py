@@ -1,4 +1,4 @@
-"""The pages of tool offsets and of a tool's shape (F8), with a drawing of insert, holder and tip."""
+"""The pages of the tool offsets and of a tool's shape (F8), with a drawing of insert, holder and tip."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ COLUMN_SHARES = {
 
 
 class ToolOffsetPanel(RowPanel):
-    """The table of the tool offsets. It is redrawn when the model has changed."""
+    """The table of the tool offsets, which is redrawn when the model changes."""
 
     scroll_step = 1
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
@@ -53,7 +53,7 @@ class ToolOffsetPanel(RowPanel):
         self._heads: dict[str, str] = {}  # Column heads by field.
 
     def update_rows(self) -> None:
-        """Show the present state of the model."""
+        """Update the rows from the model."""
         model = self._model
         self._shown = (
             model.offset_book.tools,
@@ -63,7 +63,7 @@ class ToolOffsetPanel(RowPanel):
         )
 
     def scroll_by(self, rows: int) -> None:
-        """Move the cursor, which is always visible."""
+        """Move the cursor, and scroll so that it remains visible."""
         key = ("Up", "Down") if abs(rows) == 1 else ("Page up", "Page down")
         self._model.handle_key(key[rows > 0])
 
@@ -174,7 +174,7 @@ class ToolOffsetPanel(RowPanel):
 
 
 class ToolOffsetsPage(OffsetPage):
-    """The page of the tool offsets, F8."""
+    """The page of the tool offsets (F8)."""
 
     NAME = page_table.TOOLS
     LABELS = ("MENU", "ADD", "MASTER", "UNDO", "HISTORY", "EFFECT", "ALARMS", "SHAPE", "SECCMP", "ZERO")
@@ -186,12 +186,12 @@ class ToolOffsetsPage(OffsetPage):
         self.table_panel = ToolOffsetPanel(self.theme, self.model, self)
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reasons why keys are disabled, including F2 for adding and F3 for the master."""
+        """Return why keys are disabled, including F2 (add) and F3 (relative to master)."""
         model = self.model
         return {**super().key_refusals(), "F2": model.find_add_refusal(), "F3": model.find_relative_refusal()}
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions, including F2 for adding, F3 for the master and F8 for the tool's shape."""
+        """Return the key actions, including F2 (add), F3 (relative to master) and F8 (tool shape)."""
         own: KeyActions = {
             "F2": self.model.add_entered,
             "F3": self.model.toggle_relative,
@@ -200,7 +200,7 @@ class ToolOffsetsPage(OffsetPage):
         return {**super().key_actions(), **own}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present state of the table."""
+        """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         self.table_panel.update_rows()
 
@@ -210,7 +210,7 @@ FIELDS_SHARE = 0.6  # Fraction of the width for both columns.
 
 
 class ToolShapePanel(Panel):
-    """Two columns of fields, which are touch targets, with the drawing at their right."""
+    """Two columns of fields that are touch targets, with the drawing on their right."""
 
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
 
@@ -219,7 +219,7 @@ class ToolShapePanel(Panel):
         self._model = model
 
     def update_fields(self) -> None:
-        """Show the present state of the model."""
+        """Update the fields from the model."""
         model = self._model
         last = tuple(change.number for change in model.offset_history.last_changes)
         self._shown = (model.tool_number, model.shape_row, model.tool_row, model.name, model.value_mode, last)
@@ -272,7 +272,7 @@ class ToolShapePanel(Panel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def _draw_picture(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the outline with X down, as in the path view. Below it are the assumed values."""
+        """Draw the outline with X down, as in the path view, and the assumed values below it."""
         u, model = self.theme.u, self._model
         words = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.4 * u)
         painter.fill_rect(area, "panel")
@@ -307,11 +307,14 @@ class ToolShapePage(OffsetPage):
         self.table_panel = ToolShapePanel(self.theme, self.model, self)
 
     def key_refusals(self) -> dict[str, object]:
-        """Return the reasons why keys are disabled, including F3 for deleting the shape."""
+        """Return why keys are disabled, including F3, which deletes the shape."""
         return {**super().key_refusals(), "F3": self.model.find_delete_refusal()}
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions, with F3 for deleting the shape and without the effect on the path."""
+        """Return the key actions, including F3, which deletes the shape.
+
+        This page does not show the effect on the path.
+        """
         shared = {key: act for key, act in super().key_actions().items() if key != "F6"}
         return {**shared, "F3": self.model.delete_shape}
 
@@ -321,12 +324,12 @@ class ToolShapePage(OffsetPage):
         self.model.field_index = 0
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the present state of the fields."""
+        """Update the fields from the model."""
         super().refresh(snapshot, status, loaded)
         self.table_panel.update_fields()
 
     def handle_escape(self) -> bool:
-        """Go one step back, or from the first step to the table of tools."""
+        """Go back one step, or open the tool table if there is no step to go back."""
         if not self.model.handle_escape():
             self.host.open_page(page_table.TOOLS)
         return True

@@ -1,4 +1,4 @@
-"""The model of a tool's shape (F8 on the tool offsets), which the operator edits field by field."""
+"""The model of a tool's shape (F8 on the page of tool offsets), which the operator edits field by field."""
 
 from __future__ import annotations
 
@@ -37,7 +37,10 @@ _CHOICE_STEPS = {"Left": -1, "Right": 1}
 
 
 class ToolShapeTable(ToolFieldTable):
-    """The shape of one tool, with the field under the cursor. Left and Right cycle through the choices."""
+    """The shape of one tool, with the field under the cursor.
+
+    Left and Right cycle through the choices of a field.
+    """
 
     kind = OffsetKind.SHAPE
     text_hint = "PRESS ENTER TO TYPE THE TEXT"
@@ -50,12 +53,12 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def shape_row(self) -> ShapeRow | None:
-        """The shape of the selected tool. None if the tool has no shape."""
+        """Return the shape of the selected tool, or None if the tool has no shape."""
         return self.offset_book.shapes.get(self.tool_number)
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """The fields that apply to a tool of this kind."""
+        """Return the names of the fields that apply to a tool of this kind."""
         row = self.shape_row
         if row is None:
             return ("kind",)
@@ -63,11 +66,14 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def name(self) -> str:
-        """The field under the cursor."""
+        """Return the name of the field under the cursor."""
         return self.field_names[min(self.field_index, len(self.field_names) - 1)]
 
     def read_value(self, name: str) -> FieldValue:
-        """Return the saved value of a field. Nose radius and tip come from the tool's offset."""
+        """Return the saved value of a field.
+
+        Nose radius and tip come from the tool's offset.
+        """
         if name in ToolRow._fields:
             of_offset: FieldValue = getattr(self.tool_row or ToolRow(), name)
             return of_offset
@@ -75,7 +81,7 @@ class ToolShapeTable(ToolFieldTable):
         return of_shape
 
     def format_field(self, name: str) -> str:
-        """Return a field as text. Empty if the field is not specified."""
+        """Return a field as text, or an empty string if the field is not specified."""
         value = self.read_value(name)
         stated = (
             bool(value)
@@ -86,12 +92,12 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def shape_mistakes(self) -> tuple[ShapeMistake, ...]:
-        """The mistakes in this shape."""
+        """Return the mistakes in this shape."""
         return () if self.shape_row is None else find_mistakes(self.shape_row, self.tool_row)
 
     @property
     def tool_outline(self) -> ToolOutline | None:
-        """The outline to draw. None if there is no shape, or if it has mistakes."""
+        """Return the outline to draw, or None if the shape is missing or has mistakes."""
         return (
             None
             if self.shape_row is None or self.shape_mistakes
@@ -100,12 +106,12 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def stored_value_text(self) -> str:
-        """The saved value of the field as text."""
+        """Return the saved value of the field as text."""
         return self.format_field(self.name)
 
     @property
     def entered_text(self) -> str:
-        """The entered text, or the name of the selected choice."""
+        """Return the entered text, or the name of the selected choice."""
         return self._said(self.text) if self.text and self.field_choices else self.text
 
     def _said(self, choice: str) -> str:
@@ -113,7 +119,7 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def footer_text(self) -> str:
-        """The hint for the keys F3, F8 and Esc."""
+        """Return the hint about the keys F3, F8 and Esc."""
         return tr("Page Up, Page Down: other tool   F3: delete shape   F8: tool table   Esc: exit")
 
     def make_hint(self, _snapshot: Snapshot) -> str:
@@ -130,19 +136,22 @@ class ToolShapeTable(ToolFieldTable):
 
     @property
     def is_correction(self) -> bool:
-        """False, because a change of a shape must wait until no program is running."""
+        """Return False, because a change of a shape must wait until no program is running."""
         return False
 
     @property
     def field_choices(self) -> tuple[str, ...]:
-        """The choices of the field under the cursor. Empty for a free value."""
+        """Return the choices of the field under the cursor, or an empty tuple if any value is allowed."""
         field = TOOL_FIELDS[self.name]
         return ("no", "yes") if field.field_type is FieldType.BOOLEAN else field.choices
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def handle_entry_key(self, key: str) -> bool:
-        """Handle a key: Up and Down move the cursor, and Enter saves the entered value or choice."""
+        """Handle a key of the table.
+
+        Up and Down move the cursor, and Enter saves the entered value or choice.
+        """
         if key in _CURSOR_MOVES:
             self.move_cursor(self.field_names.index(self.name) + _CURSOR_MOVES[key])
         elif key in _CHOICE_STEPS:
@@ -156,7 +165,10 @@ class ToolShapeTable(ToolFieldTable):
         return True
 
     def select_field(self, index: int) -> None:
-        """Select a touched field. A second touch opens a text or selects the next choice."""
+        """Select a touched field.
+
+        A second touch opens a text or selects the next choice.
+        """
         again = index == self.field_names.index(self.name)
         if not again:
             self.move_cursor(index)
@@ -171,12 +183,15 @@ class ToolShapeTable(ToolFieldTable):
             self.field_index = max(0, min(len(self.field_names) - 1, index))
 
     def select_tool(self, number: int) -> None:
-        """Select another tool at its first field, unless there is an unfinished entry."""
+        """Select another tool and its first field, unless there is an unfinished entry."""
         if not self.is_entry_unfinished():
             self.offset_book.at, self.field_index = max(OFFSET_NUMBERS[0], min(OFFSET_NUMBERS[-1], number)), 0
 
     def show_choice(self, step: int) -> None:
-        """Show the next or previous choice of the field. Enter saves it."""
+        """Show the next or previous choice of the field.
+
+        Enter saves the choice.
+        """
         choices = self.field_choices
         if not choices:
             return
@@ -187,7 +202,7 @@ class ToolShapeTable(ToolFieldTable):
         self.text = choices[(choices.index(now) + step) % len(choices)] if now in choices else choices[0]
 
     def _find_choice(self) -> str:
-        """Return the value of the field as one of its choices. Empty if it is not specified."""
+        """Return the value of the field as one of its choices, or an empty string if it is not specified."""
         value = self.read_value(self.name)
         return ("yes" if value else "no") if isinstance(value, bool) else str(value)
 
@@ -209,7 +224,10 @@ class ToolShapeTable(ToolFieldTable):
             self.is_text_open, self.text = True, str(self.read_value(self.name))
 
     def _save_field(self, name: str, value: FieldValue) -> str:
-        """Save a field. Raises EntryError if the value is a mistake in this field."""
+        """Save a field.
+
+        Raise EntryError if the value is a mistake in this field.
+        """
         of_offset = name in ToolRow._fields
         if of_offset and self.tool_row is None:
             return ToolFieldEditor(self.offset_history).describe_unset_tool(self.tool_number)
@@ -241,7 +259,7 @@ class ToolShapeTable(ToolFieldTable):
             raise EntryError(wrong[0].message)
 
     def find_delete_refusal(self) -> str:
-        """Return why the shape cannot be deleted now. Empty if it can."""
+        """Return why the shape cannot be deleted now, or an empty string if it can."""
         if self.shape_row is None:
             return tr(
                 Message("T{number}: NO TOOL SHAPE DEFINED", number=format_edge_suffix(self.tool_number))

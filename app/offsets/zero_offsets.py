@@ -22,8 +22,9 @@ _MIN_EDGE_LENGTH_MM = 1.0  # Millimeters: closer points of an edge do not define
 
 
 class PresetTable(CellTable):
-    """The preset table with its selected cell. ``first_edge_point`` is the first touched point for a basic
-    rotation.
+    """The preset table with its selected cell.
+
+    ``first_edge_point`` is the first touched point of the edge that defines a basic rotation.
     """
 
     kind = OffsetKind.PRESET
@@ -35,7 +36,7 @@ class PresetTable(CellTable):
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """The field names of the columns, with the rotary axes of this machine only."""
+        """Return the field names of the columns, which include only the rotary axes of this machine."""
         absent = {
             name
             for name, axis in _ROTARY_AXES.items()
@@ -45,7 +46,7 @@ class PresetTable(CellTable):
 
     @property
     def title(self) -> str:
-        """The title of the table, with its units."""
+        """Return the title of the table, with its units."""
         return tr("PRESETS  ·  WORKPIECE ZERO IN MACHINE COORDINATES, MM AND DEGREES")
 
     def find_active_row(self, _snapshot: Snapshot) -> int:
@@ -54,7 +55,7 @@ class PresetTable(CellTable):
 
     @property
     def footer_text(self) -> str:
-        """The hint for the keys F2, F3 and Esc, with the preset in force."""
+        """Return the hint about the keys F2, F3 and Esc, with the active preset."""
         told = tr("F2: set the current tip position to the typed value")
         if self.name in _ROTARY_AXES:
             told = tr("F2: set the current axis position to the typed value")
@@ -66,7 +67,7 @@ class PresetTable(CellTable):
 
     @property
     def selected_preset(self) -> PresetRow:
-        """The selected row. Empty if it was never set."""
+        """Return the selected row, or an empty row if it was never set."""
         return self.offset_book.presets.get(self.number, PresetRow())
 
     def choose(self, row: int, column: int) -> None:
@@ -75,12 +76,15 @@ class PresetTable(CellTable):
         super().choose(row, column)
 
     def cancel_entry(self) -> bool:
-        """Discard the entry and the first point of an edge. Return False if there is neither."""
+        """Discard the entry and the first point of an edge.
+
+        Return False if there is neither.
+        """
         begun, self.first_edge_point = self.first_edge_point is not None, None
         return super().cancel_entry() or begun
 
     def set_from_position(self) -> None:
-        """Handle F2: set the selected field so that the present position reads the entered value, or 0.
+        """Handle F2: set the selected field so that the current position reads the entered value, or 0.
 
         A basic rotation needs two points of an edge.
         """
@@ -159,9 +163,9 @@ class PresetTable(CellTable):
             self.first_edge_point = None
 
     def _find_rotation(self, first: Vector, last: Vector, reads: float) -> float:
-        """Return the basic rotation in degrees, if the edge must read ``reads`` degrees from X.
+        """Return the basic rotation in degrees that makes the edge read ``reads`` degrees from X.
 
-        An edge has no direction, so a half revolution is ignored. Raises EntryError if the points are too
+        An edge has no direction, so half revolutions are ignored. Raise EntryError if the points are too
         close.
         """
         dx, dy = last[0] - first[0], last[1] - first[1]
@@ -170,7 +174,7 @@ class PresetTable(CellTable):
         return self.check_range(remainder(degrees(atan2(dy, dx)) - reads, 180.0))
 
     def find_activate_refusal(self) -> str:
-        """Return why the selected preset cannot be activated now. Empty if it can."""
+        """Return why the selected preset cannot be activated now, or an empty string if it can."""
         if why := self.find_refusal(self.desk.read_snapshot()):
             return why
         if self.stored_row is None:
@@ -180,7 +184,7 @@ class PresetTable(CellTable):
         return ""
 
     def find_position_refusal(self) -> str:
-        """Return why the workpiece cannot be touched off now. Empty if it can."""
+        """Return why the workpiece cannot be touched off now, or an empty string if it can."""
         if self.name in _ROTARY_AXES:
             place: object = MillTouchCalculator.find_for(self.desk).find_angle(_ROTARY_AXES[self.name])
         elif self.name in {"x", "y", "z", "rotation"}:
@@ -192,7 +196,10 @@ class PresetTable(CellTable):
         return place if isinstance(place, str) else self.find_refusal(self.desk.read_snapshot())
 
     def activate_preset(self) -> None:
-        """Handle F3: activate the selected preset, or that of the machine file if it is already active."""
+        """Handle F3: activate the selected preset.
+
+        If it is already active, activate the preset of the machine file.
+        """
         if why := self.find_activate_refusal():
             self.desk.say(why)
             return
@@ -202,7 +209,7 @@ class PresetTable(CellTable):
 
 
 class ZeroOffsetTable(CellTable):
-    """The table of the zero offsets with its selected cell and the entered text."""
+    """The table of the zero offsets, with its selected cell and the entered text."""
 
     kind = OffsetKind.ZERO
     page_key = "C"
@@ -212,12 +219,12 @@ class ZeroOffsetTable(CellTable):
 
     @property
     def title(self) -> str:
-        """The title of the table, with its units."""
+        """Return the title of the table, with its units."""
         return tr("SETTABLE OFFSETS  ·  X IS A RADIUS  ·  MM AND DEGREES")
 
     @property
     def words(self) -> tuple[str, ...]:
-        """The column heads, which are the axis names."""
+        """Return the column headings, which are the axis names."""
         return tuple(name.upper() for name in self.columns)
 
     def find_active_row(self, snapshot: Snapshot) -> int:
@@ -226,24 +233,27 @@ class ZeroOffsetTable(CellTable):
 
     @property
     def selected_g_code(self) -> int:
-        """The G code of the selected row."""
+        """Return the G code of the selected row."""
         return self.number
 
     @property
     def question_text(self) -> str:
-        """The prompt for the selected cell, with its unit."""
+        """Return the prompt for the selected cell, with its unit."""
         words = {"x": tr("X RADIUS, MM?"), "z": tr("Z, MM?"), "c": tr("C, DEGREES?")}
         return f"G{self.selected_g_code}  {words[self.name]}"
 
     @property
     def footer_text(self) -> str:
-        """The hint for the keys F2, C and Esc."""
+        """Return the hint about the keys F2, C and Esc."""
         return tr(
             "F2: set the current position to the typed value        C: clear G54 to G59        Esc: exit"
         )
 
     def find_refusal(self, snapshot: Snapshot, *, is_correction: bool = False) -> str:
-        """Return why the zero offsets cannot be changed now. They can be changed only between cycles."""
+        """Return why the zero offsets cannot be changed now, or an empty string if they can.
+
+        Changes are allowed only between cycles.
+        """
         if (
             snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOME}
             and not self.offset_book.lock_reason
@@ -252,7 +262,7 @@ class ZeroOffsetTable(CellTable):
         return super().find_refusal(snapshot, is_correction=is_correction)
 
     def find_position_refusal(self) -> str:
-        """Return why the machine position cannot be used now. Empty if it can."""
+        """Return why the machine position cannot be used now, or an empty string if it can."""
         snapshot, axis = self.desk.read_snapshot(), self.name.upper()
         if axis not in snapshot.axes:
             return tr(Message("THIS MACHINE HAS NO {axis} AXIS", axis=axis))
@@ -261,7 +271,7 @@ class ZeroOffsetTable(CellTable):
         return self.find_refusal(snapshot)
 
     def set_from_position(self) -> None:
-        """Handle F2: set the offset so that the present position reads the entered value, or 0."""
+        """Handle F2: set the offset so that the current position reads the entered value, or 0."""
         if why := self.find_position_refusal():
             self.desk.say(why)
             return
@@ -272,7 +282,7 @@ class ZeroOffsetTable(CellTable):
         self.save_cell(lambda: self._find_offset(snapshot.actual[place], evaluate_expression(reads)), words)
 
     def _find_offset(self, at: float, reads: float) -> float:
-        """Return the offset with which machine position ``at`` reads ``reads``.
+        """Return the offset that makes machine position ``at`` read ``reads``.
 
         Full revolutions of C are ignored.
         """

@@ -1,1 +1,1 @@
-"""Page PART: stock and findings of the loaded program."""
+"""The PART page, with the stock and the findings of the loaded program."""

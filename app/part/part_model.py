@@ -1,6 +1,7 @@
-"""Model of the page PART without Qt: findings in the loaded program, and the stock of its proof.
+"""Model of the PART page without Qt: findings in the loaded program, and the stock that its proof uses.
 
-Entries are stored with the program in the store, never in the program text. The program is then proved again.
+Entries are stored with the program in the store, never in the program text. The program is then proved
+again.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _CHOICE_STEPS = {"Left": -1, "Right": 1}
 
 
 class PartSection(StrEnum):
-    """Content of the table."""
+    """The tables that the page can show."""
 
     FINDINGS = "findings"
     STOCK = "stock"
@@ -39,10 +40,10 @@ class PartSection(StrEnum):
 
 @dataclass(slots=True)
 class PartModel:
-    """Model of the page PART.
+    """Model of the PART page.
 
-    ``check_codes`` are the checks that can be turned off, and ``machine_silenced`` those that the machine
-    file turns off. ``show_location`` is called with a finding when the page has to show its location.
+    ``check_codes`` are the checks that can be turned off. ``machine_silenced`` are the checks that the
+    machine file turns off. ``show_location`` is called with a finding whose location the page must show.
     """
 
     desk: Desk
@@ -72,28 +73,31 @@ class PartModel:
 
     @property
     def loaded_program(self) -> LoadedProgram:
-        """Loaded program."""
+        """Return the loaded program."""
         return self.desk.program_loader.loaded
 
     @property
     def program_name(self) -> str:
-        """Name under which the part data is stored."""
+        """Return the name under which the part data is stored."""
         return self.loaded_program.name
 
     @property
     def is_metric(self) -> bool:
-        """Whether the program uses millimeters."""
+        """Return whether the program uses millimeters."""
         picture = self.loaded_program.picture
         return picture is not None and picture.metric
 
     @property
     def findings(self) -> tuple[Diagnostic, ...]:
-        """All findings in the order of lines."""
+        """Return all findings in the order of their lines."""
         return self.loaded_program.diagnostics
 
     @property
     def selected_index(self) -> int:
-        """Index of the selected row; before a selection, the most important finding."""
+        """Return the index of the selected row.
+
+        If no row has been selected, return the index of the most important finding.
+        """
         first = _find_most_important(self.findings) if self.shown_section is PartSection.FINDINGS else 0
         return max(0, min(self.selected_rows.get(self.shown_section, first), self._count - 1))
 
@@ -105,20 +109,23 @@ class PartModel:
 
     @property
     def selected_finding(self) -> Diagnostic | None:
-        """Selected finding, or None."""
+        """Return the selected finding, or None if no finding is selected."""
         if self.shown_section is not PartSection.FINDINGS or not self.findings:
             return None
         return self.findings[self.selected_index]
 
     @property
     def selected_field(self) -> StockField:
-        """Selected field of the stock."""
+        """Return the selected field of the stock."""
         return self.stock_entry.fields[
             min(self.selected_rows.get(PartSection.STOCK, 0), len(self.stock_entry.fields) - 1)
         ]
 
     def poll(self) -> None:
-        """Process finished writes and a change of the loaded program; called once per frame."""
+        """Process finished writes and a change of the loaded program.
+
+        This is called once a frame.
+        """
         self.worker.poll()
         seen = self.program_name, self.desk.program_loader.load_count
         if seen != self._seen:
@@ -154,7 +161,7 @@ class PartModel:
         return {"F2": FunctionKey("STOCK", self.toggle_section), "F4": silenced}
 
     def toggle_section(self) -> None:
-        """Switch to the other table."""
+        """Switch between the tables of findings and stock."""
         self.cancel()
         self.desk.clear_prompt_line()
         self.shown_section = following(PartSection, self.shown_section)
@@ -165,7 +172,7 @@ class PartModel:
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether every typed character is text."""
+        """Return whether every typed character is added to a text."""
         return bool(self.code_to_silence) or self.is_writing
 
     def accepts_key(self, key: str) -> bool:
@@ -179,7 +186,10 @@ class PartModel:
         return bool(self.program_name) and self.selected_field not in {StockField.KIND, StockField.FILE}
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a row, Enter accepts, and other characters edit the entry."""
+        """Handle a key.
+
+        Arrow keys select a row, Enter accepts, and other characters edit the entry.
+        """
         if key == "Enter":
             self._enter()
         elif self.accepts_key(key) or (key in {"Back", "Delete"} and self.has_entry):
@@ -198,11 +208,11 @@ class PartModel:
 
     @property
     def has_entry(self) -> bool:
-        """Whether an entry is active: a reason, a file name or a value of the stock."""
+        """Return whether a reason, a file name or a value of the stock can be entered now."""
         return self.has_keyboard or (self.shown_section is PartSection.STOCK and self._figures)
 
     def select_row(self, row: int) -> None:
-        """Select a row. The location of a selected finding is shown."""
+        """Select a row, and show the location of its finding."""
         self.cancel()
         self.desk.clear_prompt_line()
         self.selected_rows[self.shown_section] = max(0, min(row, self._count - 1))
@@ -249,7 +259,7 @@ class PartModel:
         return True
 
     def cancel(self) -> None:
-        """Cancel the entry."""
+        """Cancel the entry of a reason, a file name or a value."""
         self.entry_text, self.code_to_silence, self.is_writing = "", "", False
 
     def on_open(self) -> None:
@@ -264,7 +274,7 @@ class PartModel:
         self.selected_rows.clear()
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.code_to_silence:
             return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
         if self.is_writing:
@@ -286,7 +296,7 @@ class PartModel:
         return bool(why)
 
     def _find_lock_reason(self) -> str:
-        """Return the reason why changes are not possible now, or an empty string."""
+        """Return why changes are not possible now, or an empty string."""
         if not self.program_name:
             return tr("LOAD A PROGRAM FIRST. STOCK DATA IS SAVED WITH THE PROGRAM")
         if self.desk.machine.machine is not None and self.desk.machine.machine.kind != "lathe":
@@ -340,9 +350,9 @@ class PartModel:
         self._store_entry(entry)
 
     def _find_file_path(self, name: str) -> str:
-        """Return the path of a file in the program's folder or in the program folders.
+        """Return the path of a file in the program's folder or in one of the program folders.
 
-        Raises EntryError if the file does not exist.
+        Raise EntryError if the file does not exist.
         """
         beside = self.loaded_program.path.parent if self.loaded_program.path is not None else Path()
         there = beside / Path(name).expanduser()
@@ -372,7 +382,7 @@ class PartModel:
     # --- checks that are turned off ------------------------------------------------------------------
 
     def _find_silence_refusal(self) -> str:
-        """Return the reason why the check of the finding cannot be turned off, or an empty string."""
+        """Return why the check of the finding cannot be turned off, or an empty string."""
         found = self.selected_finding
         if found is None:
             return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
@@ -388,7 +398,7 @@ class PartModel:
         return ""
 
     def toggle_check(self) -> None:
-        """Ask for the reason to turn the check off, or turn it on again (F4)."""
+        """Handle F4: ask for the reason to turn the check off, or turn the check on again."""
         found = self.selected_finding
         self.cancel()
         why = self._find_silence_refusal()
@@ -457,7 +467,7 @@ class PartModel:
 
 
 def _find_most_important(found: tuple[Diagnostic, ...]) -> int:
-    """Return the index of the first error, or else of the first finding in the part."""
+    """Return the index of the first error, or of the first finding in the part if there is no error."""
     errors = [place for place, each in enumerate(found) if each.severity is Severity.ERROR]
     of_part = [place for place, each in enumerate(found) if each.block_number and not each.downgrade_reason]
     return next(iter((*errors, *of_part)), 0)

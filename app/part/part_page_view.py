@@ -1,4 +1,4 @@
-"""Page PART: findings or stock on the left, and the part after the selected block on the right."""
+"""The PART page, with findings or stock on the left and the part after the selected block on the right."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ SHARE, PAD, LETTERS = 0.5, 28.4, 24.0
 
 
 class PartPathView(PathView):
-    """View of the part after the block of the selected finding, or at the time of the time line."""
+    """View of the part after the block of the selected finding, or at the time of the timeline."""
 
     title = "PART"
 
 
 class PartPage(ListPage):
-    """Page PART: shows its model and passes the keys to it."""
+    """The PART page, which shows its model and passes the keys to the model."""
 
     NAME = page_table.PART
     model: PartModel
@@ -54,21 +54,21 @@ class PartPage(ListPage):
         return self.model.function_keys()
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the displayed table and of the page."""
+        """Return the key labels of the displayed table and of the page."""
         return self.make_labels({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.function_keys())
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the barred keys of the table, and F3 while the editor cannot be opened."""
+        """Return the disabled keys of the table, and F3 while the editor cannot be opened."""
         named = self.desk.program_loader.loaded.path is not None
         closed = find_editor_refusal(self.desk.read_snapshot(), has_name=named)
         return super().disabled_keys() | ({"F3"} if closed else set())
 
     def is_animating(self) -> bool:
-        """Return whether the part is being played."""
+        """Return whether the part view is playing."""
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of the table, the time line and the view."""
+        """Return the key actions of the table, the timeline and the view."""
         path = self.path_view
         return {
             **{name: key.action for name, key in self.function_keys().items()},
@@ -81,11 +81,11 @@ class PartPage(ListPage):
         }
 
     def has_text_field(self) -> bool:
-        """Return whether a reason, a file name or a value of the stock is being typed."""
+        """Return whether a reason, a file name or a value of the stock can be typed."""
         return self.model.has_entry
 
     def apply_theme(self) -> None:
-        """Redraw the path in the present colors."""
+        """Redraw the path in the current colors."""
         self.path_view.redraw()
 
     def _show(self, found: Diagnostic) -> None:
@@ -127,7 +127,7 @@ class PartPage(ListPage):
         self.path_view.draw_slice()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange table, part and pads."""
+        """Arrange the table, the part and the pads."""
         self._lay_out()
 
     def _lay_out(self) -> None:

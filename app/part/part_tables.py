@@ -1,4 +1,4 @@
-"""Tables of the page PART: findings of a program, and its specified and assumed stock."""
+"""Tables of the PART page: findings of a program, and its specified and assumed stock."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def _said(page: PartModel, name: StockField) -> str:
 
 
 def _format_assumed(page: PartModel, name: StockField) -> str:
-    """Return the value that is assumed where no value is specified."""
+    """Return the text of the value that is assumed if no value is specified."""
     if name is StockField.STICK_OUT:
         return format_length(page.stick_out, page.is_metric) if page.stick_out else ""
     part = page.loaded_program.part_proof

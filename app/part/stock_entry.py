@@ -15,7 +15,10 @@ _DECIMALS = 6
 
 
 class StockKind(StrEnum):
-    """Kind of stock. ``UNSPECIFIED`` means not specified."""
+    """The kinds of stock.
+
+    ``UNSPECIFIED`` means that no stock is specified.
+    """
 
     UNSPECIFIED = "none"
     BAR = "bar"
@@ -25,7 +28,10 @@ class StockKind(StrEnum):
 
 
 class StockField(StrEnum):
-    """Entry fields of a stock. All except kind and file are lengths."""
+    """The entry fields of a stock.
+
+    All fields except kind and file are lengths.
+    """
 
     KIND = "kind"
     DIAMETER = "diameter"
@@ -57,9 +63,9 @@ _STICK_LIMITS_MM = (0.0, 40.0 * MM_PER_INCH)
 
 @dataclass(frozen=True, slots=True)
 class StockEntry:
-    """Stock entry with lengths in mm, 0 if not specified.
+    """Stock entry with lengths in mm.
 
-    ``file`` is a profile or the preceding program.
+    A length of 0 is not specified. ``file`` is the file of a profile or of the preceding program.
     """
 
     kind: StockKind = StockKind.UNSPECIFIED
@@ -74,7 +80,7 @@ class StockEntry:
     def of(cls, stored: StoredPart) -> StockEntry:
         """Return the entry for the stored data.
 
-        An invalid stock text is ignored, but the stick-out remains.
+        An invalid stock text is ignored, but the stick-out is used.
         """
         out = stored.stick_out or 0.0
         try:
@@ -87,7 +93,7 @@ class StockEntry:
 
     @property
     def fields(self) -> tuple[StockField, ...]:
-        """Fields that apply to this kind of stock."""
+        """Return the fields that apply to this kind of stock."""
         return (StockField.KIND, *_FIELDS[self.kind], StockField.STICK_OUT)
 
     def format_field(self, field: StockField, metric: bool) -> str:
@@ -100,9 +106,10 @@ class StockEntry:
         return format_length(value, metric) if value else ""
 
     def typed(self, field: StockField, text: str, metric: bool) -> StockEntry:
-        """Return a copy with a typed length, in mm or inches.
+        """Return a copy of the entry with a typed length.
 
-        Raises EntryError if the length is not valid for the field.
+        The length is in mm if ``metric`` is set, and otherwise in inches. Raise EntryError if the length is
+        not valid for the field.
         """
         value = evaluate_expression(text) * (1.0 if metric else MM_PER_INCH)
         if value < 0.0:
@@ -117,7 +124,7 @@ class StockEntry:
 
     @property
     def missing_field(self) -> StockField | None:
-        """First required field without a value, or None if the stock is complete."""
+        """Return the first required field without a value, or None if the stock is complete."""
         wanted = {
             StockKind.BAR: (StockField.DIAMETER,),
             StockKind.TUBE: (StockField.DIAMETER, StockField.BORE),
@@ -128,9 +135,9 @@ class StockEntry:
 
     @property
     def words(self) -> str:
-        """Stock in the syntax of the option ``--stock``, or an empty string if no stock is specified.
+        """Return the stock in the syntax of the option ``--stock``.
 
-        Raises StockError if the stock is not possible.
+        Return an empty string if no stock is specified. Raise StockError if the stock is not possible.
         """
         if self.kind is StockKind.UNSPECIFIED:
             return ""
@@ -146,7 +153,10 @@ class StockEntry:
 
 
 def _format_length(mm: float) -> str:
-    """Return a length in inches if that text is shorter, and otherwise in mm."""
+    """Return a length as text.
+
+    The text is in inches if that is shorter, and otherwise in mm.
+    """
     inches, metric = (f"{value:.6f}".rstrip("0").rstrip(".") for value in (mm / MM_PER_INCH, mm))
     exact = abs(float(inches) * MM_PER_INCH - mm) < 1e-6
     return inches if exact and len(inches) <= len(metric) + 2 else f"{metric}mm"

@@ -1,1 +1,1 @@
-"""Path view: the path of a program as polylines, with drawing, panning, zooming and measuring."""
+"""The path view, which draws, pans, zooms and measures the path of a program as polylines."""

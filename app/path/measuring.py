@@ -20,7 +20,7 @@ from core.message import Message
 
 
 class PointKind(IntEnum):
-    """Kind of a snap point, in order of priority where several points coincide."""
+    """The kinds of snap point, in order of priority where several points coincide."""
 
     END = 0
     CENTER = 1
@@ -58,7 +58,10 @@ MAX_SLOPE = 1.2
 
 
 class SnapPoints:
-    """Snap points of one path. ``update`` refreshes the intersections for the visible area."""
+    """Snap points of one path.
+
+    ``update_intersections`` finds the intersections in the visible area.
+    """
 
     def __init__(self, polyline: Polyline) -> None:
         self._polyline = polyline
@@ -67,7 +70,10 @@ class SnapPoints:
         self._crossings = np.zeros((0, 2))
 
     def update_intersections(self, bounds: Bounds) -> None:
-        """Find the intersections in the visible area (minimum z, maximum z, minimum x, maximum x)."""
+        """Find the intersections in the visible area.
+
+        The area is given as minimum z, maximum z, minimum x and maximum x.
+        """
         if bounds != self._box:
             self._box, self._crossings = bounds, find_crossings(self._polyline, bounds)
 
@@ -83,10 +89,10 @@ class SnapPoints:
         return best[1] if best else None
 
     def find_in_direction(self, z: float, x: float, direction: tuple[int, int]) -> SnapPoint | None:
-        """Return the next snap point in a direction: (1, 0) is Z+, (0, 1) is X+.
+        """Return the next snap point in a direction, or None if no point is in that direction.
 
-        Points that are close to the direction line are preferred. Returns None if no point is in that
-        direction.
+        The direction (1, 0) is Z+, and (0, 1) is X+. Points close to the line in this direction are
+        preferred.
         """
         best: tuple[float, SnapPoint] | None = None
         for kind, table in self._tables():
@@ -107,7 +113,8 @@ class SnapPoints:
     def find_following(self, z: float, x: float, steps: int) -> SnapPoint | None:
         """Return the end point that is ``steps`` points further along the path.
 
-        After the last end point, the search continues with the first. Returns None if the path has no points.
+        After the last end point, the search continues with the first. Return None if the path has no
+        points.
         """
         ends = self._ends
         if not len(ends):
@@ -128,7 +135,7 @@ class SnapPoints:
 
 
 def _find_end_points(polyline: Polyline) -> FloatArray:
-    """Return the ends of blocks and the starts after jumps, in path order, shape (n, 2)."""
+    """Return the ends of blocks and the starts after jumps in path order, as an array of shape (n, 2)."""
     told = polyline.stroke == Stroke.JUMP
     told[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
     index = np.flatnonzero(told)
@@ -136,7 +143,7 @@ def _find_end_points(polyline: Polyline) -> FloatArray:
 
 
 def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
-    """Return the intersections of the chords within a box, shape (n, 2).
+    """Return the intersections of the chords within a box, as an array of shape (n, 2).
 
     The result is empty if more than ``MAX_CROSSING_CHORDS`` chords are in the box.
     """
@@ -161,7 +168,7 @@ def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
 def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance: float) -> int | None:
     """Return the index of the end point of the chord nearest to a position.
 
-    Returns None if no chord is within ``max_distance`` millimeters.
+    Return None if no chord is within ``max_distance`` millimeters.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     near = polyline.stroke[1:] != Stroke.JUMP
@@ -185,9 +192,10 @@ MeasurementRow = tuple[str, str]
 
 
 def measure_on_path(start: SnapPoint, end: SnapPoint, metric: bool) -> list[MeasurementRow]:
-    """Return the rows for two points on the path seen from above.
+    """Return the table rows for the distance between two points on the path seen from above.
 
-    The rows are X as a diameter and as a radius, Z, the distance and the angle to the axis (0 to 90 degrees).
+    The rows are X as a diameter and as a radius, Z, the distance, and the angle to the axis (0 to 90
+    degrees).
     """
     dz, dx = end.z - start.z, end.x - start.x
     return [
@@ -199,7 +207,10 @@ def measure_on_path(start: SnapPoint, end: SnapPoint, metric: bool) -> list[Meas
 
 
 def measure_on_face(start: SnapPoint, end: SnapPoint, metric: bool) -> list[MeasurementRow]:
-    """Return the rows for two points on the face of the part, in face X and Y, with Y up."""
+    """Return the table rows for the distance between two points on the face of the part.
+
+    The rows are in face X and Y, with Y up.
+    """
     dx, dy = end.z - start.z, start.x - end.x
     return [
         ("ΔX", formats.format_length(dx, metric)),
@@ -209,7 +220,7 @@ def measure_on_face(start: SnapPoint, end: SnapPoint, metric: bool) -> list[Meas
 
 
 def measure_on_side(start: SnapPoint, end: SnapPoint, metric: bool, scale: float) -> list[MeasurementRow]:
-    """Return the rows for two points on the unrolled side.
+    """Return the table rows for the distance between two points on the unrolled side.
 
     ``scale`` is the circumferential length per degree of C, in millimeters.
     """
@@ -223,7 +234,7 @@ def measure_on_side(start: SnapPoint, end: SnapPoint, metric: bool, scale: float
 
 
 def locate_on_path(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
-    """Return the rows for the position of a point: X as a diameter, and Z."""
+    """Return the table rows for the position of a point, with X as a diameter and Z."""
     return [
         ("X Ø", formats.format_length(2 * point.x, metric)),
         ("Z", formats.format_length(point.z, metric)),
@@ -231,7 +242,10 @@ def locate_on_path(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
 
 
 def locate_on_face(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
-    """Return the rows for the position of a point on the face: X, Y and the distance from the axis."""
+    """Return the table rows for the position of a point on the face.
+
+    The rows are X, Y and the distance from the axis.
+    """
     radius = math.hypot(point.z, point.x)
     return [
         ("X", formats.format_length(point.z, metric)),
@@ -241,7 +255,7 @@ def locate_on_face(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
 
 
 def locate_on_side(point: SnapPoint, metric: bool, scale: float) -> list[MeasurementRow]:
-    """Return the rows for the position of a point on the unrolled side: Z, and C in degrees."""
+    """Return the table rows for the position of a point on the unrolled side, with Z, and C in degrees."""
     return [
         ("Z", formats.format_length(point.z, metric)),
         ("C", f"{formats.format_angle(-point.x / scale)}°"),
@@ -270,7 +284,7 @@ class LargestDistance(NamedTuple):
 def find_largest_distance(before: Polyline, after: Polyline) -> LargestDistance | None:
     """Return the largest distance between corresponding cutting points of two pictures.
 
-    Returns None if the pictures do not consist of the same strokes, or if nothing is cut.
+    Return None if the pictures do not consist of the same strokes, or if nothing is cut.
     """
     if len(before.z) != len(after.z) or not np.array_equal(before.stroke, after.stroke):
         return None

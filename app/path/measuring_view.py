@@ -2,7 +2,7 @@
 
 Arrow keys move the cursor to the next end, center or intersection in that direction. Tab moves the cursor
 along the path, and Shift with an arrow key moves it by one pixel. Enter sets the first point, then the
-second, then a new first point. The pointer does the same.
+second, then a new first point. Clicking with the pointer also sets the points.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TABLE_SIZE = (22.0, 2.5)  # units: width of the table, height of a row
 
 
 class Measurement:
-    """Measurement in one pane, with the ``cursor`` and the two measured points."""
+    """Measurement in one pane, with the cursor and the two measured points."""
 
     def __init__(self, pane: PathPane) -> None:
         self.pane = pane
@@ -40,7 +40,7 @@ class Measurement:
     # --- keys and pointer ----------------------------------------------------------------------------
 
     def key(self, event: QKeyEvent) -> bool:
-        """Handle a key press and return whether the key was used for measuring."""
+        """Handle a key press, and return whether the key was used for measuring."""
         key, held = Key(event.key()), event.modifiers()
         if held & (Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier):
             return False
@@ -85,12 +85,15 @@ class Measurement:
         self.first_point = self.second_point = None
 
     def find_block(self) -> int:
-        """Return the number of the block that is drawn at the cursor, or 0 without a block."""
+        """Return the number of the block that is drawn at the cursor, or 0 if there is no block."""
         pane = self.pane
         return pane.find_block(pane.area.topLeft() + pane.map_to_pane(*self.cursor[:2]))
 
     def rebuild_snap_points(self) -> None:
-        """Rebuild the snap points for the pane's new path. The measured points remain."""
+        """Rebuild the snap points for the pane's new path.
+
+        The measured points are retained.
+        """
         self._features = SnapPoints(self.pane.polyline)
 
     def _jump(self, way: tuple[int, int]) -> None:
@@ -112,7 +115,7 @@ class Measurement:
     # --- displayed values ----------------------------------------------------------------------------
 
     def make_rows(self, metric: bool) -> list[measuring.MeasurementRow]:
-        """Return the rows to display: the cursor position and the differences from the first point."""
+        """Return the rows to display, with the cursor position and the differences from the first point."""
         start, end = self.first_point, self.second_point or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.mm_per_degree
         if aspect in {PathAspect.PATH, PathAspect.SECTION}:
@@ -127,7 +130,10 @@ class Measurement:
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: QPainter) -> None:
-        """Draw the measured points and the cursor. The painter's origin is the corner of the pane."""
+        """Draw the measured points and the cursor.
+
+        The origin of the painter is the corner of the pane.
+        """
         look, pane = self.pane.theme, self.pane
         if self.first_point is not None:
             start, end = (
@@ -184,6 +190,6 @@ class Measurement:
 
 
 def _find_distance(pane: PathPane, spot: SnapPoint, z: float, x: float) -> float:
-    """Return the distance between a point and a position, in pixels."""
+    """Return the distance in pixels between a point and a position."""
     way = pane.map_to_pane(spot.z, spot.x) - pane.map_to_pane(z, x)
     return float((way.x() ** 2 + way.y() ** 2) ** 0.5)

@@ -1,4 +1,7 @@
-"""Time line below the part: play, pause, fast playback and single steps, with the errors marked in red."""
+"""Timeline below the part, with play, pause, fast playback and single steps.
+
+Errors are marked in red.
+"""
 
 from __future__ import annotations
 
@@ -23,18 +26,21 @@ AddTouchTarget = Callable[[QRectF, OnPress], None]
 
 
 class PartTimeline:
-    """Time line of the part view, with its buttons and its touch handling."""
+    """Timeline of the part view, with its buttons and its touch handling."""
 
     def __init__(self, theme: ScreenTheme, player: PartPlayer, open_stock: OnPress | None = None) -> None:
-        """Create the time line. ``open_stock`` opens the entry of the stock."""
+        """Create the timeline.
+
+        ``open_stock`` opens the entry of the stock.
+        """
         self.theme, self.part_player, self._stock = theme, player, open_stock
         self._track = QRectF()
         self._at = 0.0  # touch position in pixels
 
     def handle_touch(self, position: QPointF) -> bool:
-        """Return whether a touch is on the active time line, and seek to its time.
+        """Seek to the touched time, and return whether the touch was on the active timeline.
 
-        Returns False while the player follows the run.
+        Return False while the player follows the run.
         """
         u = self.theme.u
         if self.part_player.follows_run or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(position):
@@ -45,7 +51,7 @@ class PartTimeline:
         return True
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Seek by a horizontal drag, in pixels."""
+        """Seek by the horizontal distance of a drag in pixels."""
         self._at += pixels.x()
         self._seek()
 
@@ -54,7 +60,7 @@ class PartTimeline:
         self.part_player.seek_time(min(max(share, 0.0), 1.0) * self.part_player.duration_s)
 
     def draw(self, painter: QPainter, area: QRectF, place: AddTouchTarget) -> None:
-        """Draw the buttons and the time line within ``area``.
+        """Draw the buttons and the timeline within ``area``.
 
         ``place`` registers the touch targets.
         """
@@ -93,7 +99,7 @@ class PartTimeline:
             draw_text(painter, words.translated(0, area.height() / 2 - 0.4 * u), ALIGN_LEFT, text)
 
     def _draw_line(self, painter: QPainter) -> None:
-        """Draw the track, the elapsed part, the error marks and the current position."""
+        """Draw the track, the elapsed time, the error marks and the current position."""
         look, u, track, player = self.theme, self.theme.u, self._track, self.part_player
         length = max(player.duration_s, 1e-9)
         at = track.x() + track.width() * min(player.time_s / length, 1.0)

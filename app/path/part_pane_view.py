@@ -1,4 +1,4 @@
-"""Panes of the part: a section drawing with collisions in red, and the solid part."""
+"""Panes of the part, which show a section with collisions in red, or the solid part."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ _TICK_STEPS_MM = (
 
 
 class PartPane(PathPane):
-    """Pane that shows the part from a ``PartPlayer``, redrawn when the part, the tool or the view changes."""
+    """Pane that shows the part from a ``PartPlayer``.
+
+    The pane is redrawn when the part, the tool or the view changes.
+    """
 
     part_player: PartPlayer
 
@@ -75,7 +78,7 @@ class PartPane(PathPane):
 
     @property
     def is_metric(self) -> bool:
-        """Whether the program uses millimeters."""
+        """Return whether the program uses millimeters."""
         return isinstance(self.polyline, ProgramPicture) and self.polyline.metric
 
     # --- projection ----------------------------------------------------------------------------------
@@ -97,12 +100,15 @@ class PartPane(PathPane):
 
     @staticmethod
     def _left_of(shown: PlayedInstant, stock: Stock) -> float:
-        """Return the Z of the left edge of the visible stock. Most of the stock in a chuck is not shown."""
+        """Return the Z of the left edge of the visible stock.
+
+        Most of the stock inside a chuck is not shown.
+        """
         chuck = Blank(stock, stock, shown.part_instant.clamping).chuck_from
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection, and ask the player for the section only."""
+        """Set the projection, and request only the section from the player."""
         self.projection = projection
         self.part_player.set_solid_request(None)
 
@@ -111,8 +117,8 @@ class PartPane(PathPane):
     ) -> None:
         """Let the player follow the run while a block is active.
 
-        ``tip_position`` is the position of the tool, and ``stop_position`` is the position where an
-        interrupted block stopped.
+        ``tip_position`` is the position of the tool. ``stop_position`` is the position where an interrupted
+        block stopped.
         """
         if (
             active_block
@@ -125,7 +131,7 @@ class PartPane(PathPane):
         self._block, self._place = active_block, tip_position
 
     def draw_slice(self) -> bool:
-        """Update the player and return whether the pane needs to be redrawn."""
+        """Update the player, and return whether the pane needs to be redrawn."""
         new = self.part_player.update()
         if self.part_player.result is not None and not self._fitted:
             self._fitted = True
@@ -140,13 +146,16 @@ class PartPane(PathPane):
 
     @property
     def is_complete(self) -> bool:
-        """Whether the player shows the requested part."""
+        """Return whether the player shows the requested part."""
         return not self.part_player.is_outdated
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """Draw the section. The painter's origin is the corner of the pane."""
+        """Draw the section.
+
+        The origin of the painter is the corner of the pane.
+        """
         shown, projection = self.part_player.result, self.projection
         if shown is None or projection is None:
             return
@@ -173,7 +182,7 @@ class PartPane(PathPane):
                 painter.drawPolyline(edge)
 
     def draw_run(self, painter: QPainter) -> None:
-        """Draw the tool, the scales, the travel limits and the outlines of collisions on top."""
+        """Draw the tool, the scales, the travel limits and the outlines of collisions over the section."""
         shown, projection = self.part_player.result, self.projection
         if shown is None or projection is None:
             return
@@ -216,7 +225,7 @@ class PartPane(PathPane):
             painter.drawPolygon(area)
 
     def _draw_reach(self, painter: QPainter, shown: PlayedInstant) -> None:
-        """Draw the limits of travel for the tool tip."""
+        """Draw the travel limits of the tool tip."""
         if shown.part_instant.tip_range is None:
             return
         (z0, x0), (z1, x1) = shown.part_instant.tip_range
@@ -297,7 +306,7 @@ def _ticks(middle: float, length: float, step: float) -> range:
 
 
 def _format_tick(value: float) -> str:
-    """Return a value with three decimals at most and no zero before the point, as shops write it."""
+    """Return a value as text, with three decimals at most and no zero before the decimal point."""
     text = f"{value:.3f}".rstrip("0").rstrip(".")
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
@@ -319,7 +328,7 @@ _VIEW_RADIUS_RATIO = 1.25  # ratio to the radius of the stock
 
 
 class SolidPane(PartPane):
-    """Pane that shows the latest 3D image of the part in the size of the pane."""
+    """Pane that shows the latest 3D image of the part, in the size of the pane."""
 
     def __init__(
         self, theme: ScreenTheme, aspect: PathAspect, polyline: Polyline, player: PartPlayer
@@ -342,7 +351,7 @@ class SolidPane(PartPane):
         return Projection(centre, 0.0, scale, flat.width, flat.height)
 
     def set_projection(self, projection: Projection) -> None:
-        """Set the projection and request an image for it."""
+        """Set the projection, and request an image for it."""
         self.projection = projection
         self._want()
 
@@ -356,7 +365,7 @@ class SolidPane(PartPane):
         self.part_player.set_solid_request(SolidRequest(view, projection.width, projection.height))
 
     def find_tip_position(self, tip: TipPosition) -> Position | None:
-        """Return the position of the tool, and turn the part with a locked C axis."""
+        """Return the position of the tool, and turn the part to the position of a locked C axis."""
         if tip.c is not None and tip.c != self._roll:
             self._roll = tip.c
             self._want()
@@ -365,11 +374,11 @@ class SolidPane(PartPane):
     # --- navigation ----------------------------------------------------------------------------------
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Turn the part by a drag, in pixels."""
+        """Turn the part by a drag in pixels."""
         self._turn(pixels.x() * _DEGREES_PER_PIXEL, pixels.y() * _DEGREES_PER_PIXEL)
 
     def pan_view(self, across: int, down: int) -> None:
-        """Turn the part by steps, for the pan keys."""
+        """Turn the part by a number of steps of the pan keys."""
         self._turn(-across * _DEGREES_PER_KEY, -down * _DEGREES_PER_KEY)
 
     def pan_to_point(self, z: float, x: float) -> None:
@@ -381,7 +390,10 @@ class SolidPane(PartPane):
         self._want()
 
     def magnify(self, factor: float, position: QPointF) -> None:
-        """Magnify the view by a factor around a column. The axis remains in the middle."""
+        """Magnify the view around the column of ``position``.
+
+        The axis remains in the middle.
+        """
         if self.projection is not None:
             self.is_adjusted = True
             across = (position - self.area.topLeft()).x()
@@ -390,7 +402,10 @@ class SolidPane(PartPane):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """Draw the latest image. The painter's origin is the corner of the pane."""
+        """Draw the latest image.
+
+        The origin of the painter is the corner of the pane.
+        """
         shown = self.part_player.result
         if shown is not None and shown.image is not None:
             image = shown.image
@@ -400,7 +415,10 @@ class SolidPane(PartPane):
             )
 
     def draw_run(self, painter: QPainter) -> None:
-        """Draw the travel limits of the machine in the turning plane. The image includes the tool."""
+        """Draw the travel limits of the machine in the turning plane.
+
+        The tool is part of the image.
+        """
         shown, view, projection = self.part_player.result, self._view, self.projection
         if shown is None or shown.part_instant.tip_range is None or view is None or projection is None:
             return
@@ -417,10 +435,10 @@ class SolidPane(PartPane):
 
 
 def find_removed_quarter(tilt: float) -> tuple[float, float]:
-    """Return the start and end angle of the removed quarter, in degrees from the viewer towards the top.
+    """Return the start and end angles of the removed quarter.
 
-    One edge is in the turning plane on the operator's side, where the tool is. The other edge is
-    perpendicular to it, on the visible side.
+    The angles are in degrees from the viewer towards the top. One edge is in the turning plane on the
+    operator's side, where the tool is. The other edge is perpendicular to the first, on the visible side.
     """
     first = -tilt if tilt >= 0.0 else -tilt - 90.0
     return first, first + 90.0

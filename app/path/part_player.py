@@ -1,6 +1,7 @@
-"""Player of the part view: shows the part at a moment of the program, during a run or along a time line.
+"""Player of the part view, which shows the part at a moment of the program.
 
-A worker thread removes the material. The screen polls the result once per frame and never waits.
+The moment follows the run or a timeline. A worker thread removes the material. The screen polls the result
+once a frame and never waits.
 """
 
 from __future__ import annotations
@@ -35,7 +36,10 @@ Place = tuple[float, float]
 
 
 class SolidRequest(NamedTuple):
-    """3D view of the part and the image size in pixels. ``quick`` selects a coarser image."""
+    """3D view of the part and the image size in pixels.
+
+    ``is_coarse`` selects a coarser image.
+    """
 
     view: SolidView
     width: int
@@ -44,10 +48,10 @@ class SolidRequest(NamedTuple):
 
 
 class ProgramMoment(NamedTuple):
-    """Position in the program: ``block`` finished blocks and the ``share`` of the next block.
+    """Position in the program: the number of finished blocks and the finished fraction of the next block.
 
-    If ``behind_end`` is set, it replaces ``share``: the offset of the tool from the end of the block as (Z,
-    radius), in millimeters.
+    If ``position_after_end`` is set, it replaces ``block_fraction``. It is the offset of the tool from the
+    end of the block as (Z, radius), in millimeters.
     """
 
     finished_count: int = 0
@@ -57,7 +61,7 @@ class ProgramMoment(NamedTuple):
 
 
 class PlayedInstant(NamedTuple):
-    """Result of the worker: the part at one instant and the findings of the whole program."""
+    """Result of the worker, with the part at one instant and the findings of the whole program."""
 
     part_instant: PartInstant
     findings: tuple[Diagnostic, ...] = ()
@@ -68,7 +72,7 @@ class PlayedInstant(NamedTuple):
 class PartPlayer:
     """Player of one view.
 
-    While ``follows_run`` is set, the run leads and the time line keys do nothing.
+    While ``follows_run`` is set, the run determines the moment, and the timeline keys do nothing.
     """
 
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("part"))
@@ -94,7 +98,10 @@ class PartPlayer:
     # --- selection of the program --------------------------------------------------------------------
 
     def load_picture(self, picture: ProgramPicture | None) -> None:
-        """Load a picture. The part is shown at the end of the program until the operator plays it."""
+        """Load a picture.
+
+        The part is shown at the end of the program until the operator plays the program.
+        """
         if picture is self._picture:
             return
         self.worker.cancel()
@@ -115,23 +122,23 @@ class PartPlayer:
 
     @property
     def duration_s(self) -> float:
-        """Duration of the program in seconds."""
+        """Return the duration of the program in seconds."""
         return float(self._picture.ends[-1]) if self._picture is not None else 0.0
 
     @property
     def result(self) -> PlayedInstant | None:
-        """Latest result of the worker, or None before the first result."""
+        """Return the latest result of the worker, or None before the first result."""
         return self._played
 
     @property
     def is_outdated(self) -> bool:
-        """Whether the requested part differs from the displayed part."""
+        """Return whether the requested part differs from the displayed part."""
         return self.worker.is_busy or (self._picture is not None and self._asked != self._wanted)
 
     # --- update once per frame -----------------------------------------------------------------------
 
     def update(self) -> bool:
-        """Fetch the result of the worker, request the next one, and return whether the view changed."""
+        """Fetch the result of the worker, request the next result, and return whether the view changed."""
         shown, now = self._played, self.clock()
         gone, self._looked = now - self._looked, now
         self.worker.poll()
@@ -143,7 +150,10 @@ class PartPlayer:
         return self._played is not shown or self.is_playing
 
     def wait_for_result(self, timeout_s: float) -> None:
-        """Wait for the requested part; for scripts and tests only, because the call blocks."""
+        """Wait for the requested part.
+
+        This call blocks. Use it only in scripts and tests.
+        """
         self._ask()
         self.worker.wait_for_results(timeout_s)
 
@@ -155,12 +165,12 @@ class PartPlayer:
     # --- 3D view -------------------------------------------------------------------------------------
 
     def set_solid_request(self, solid: SolidRequest | None) -> None:
-        """Set the 3D view to render. None turns off 3D rendering."""
+        """Set the 3D view to render, or turn off 3D rendering with None."""
         self._wanted = self._wanted._replace(solid_request=solid)
         self._turned = self.clock()
 
     def _request_image(self) -> None:
-        """Request a coarse image while the view moves, and a fine image when it rests."""
+        """Request a coarse image while the view moves, and a fine image when the view is at rest."""
         solid = self._wanted.solid_request
         if solid is not None:
             moving = self.is_playing or self.follows_run or self.clock() - self._turned < _REST_TIME_S
@@ -172,7 +182,7 @@ class PartPlayer:
     def follow_run(self, block: int, end_offset_mm: Place) -> None:
         """Follow the run in a block.
 
-        The offset (Z, radius) of the tool from the block's end is in mm.
+        ``end_offset_mm`` is the offset (Z, radius) of the tool from the end of the block, in mm.
         """
         self.is_playing = False
         self._wanted = ProgramMoment(block - 1, 0.0, end_offset_mm, self._wanted.solid_request)
@@ -188,7 +198,10 @@ class PartPlayer:
             self._ask()
 
     def toggle_playback(self) -> None:
-        """Start or pause playback. Playback starts at the beginning if the end is shown."""
+        """Start or pause playback.
+
+        If the end is shown, playback starts at the beginning.
+        """
         if self.follows_run or self._picture is None:
             return
         self.is_playing, self._looked = not self.is_playing, self.clock()
@@ -200,7 +213,7 @@ class PartPlayer:
         self.is_fast = not self.is_fast
 
     def step_blocks(self, blocks: int) -> None:
-        """Move to the end of the next block with motion (1) or of the previous one (-1)."""
+        """Move to the end of the next block with motion (1) or of the previous block with motion (-1)."""
         if self.follows_run or self._picture is None:
             return
         self.is_playing = False
@@ -215,7 +228,7 @@ class PartPlayer:
             self.seek_time(float(there[at]) if at >= 0 else 0.0)
 
     def seek_line(self, line: int) -> None:
-        """Move to the end of the first pass through a source line."""
+        """Move to the end of the first execution of a source line."""
         if not self.follows_run and self._picture is not None:
             self.is_playing = False
             self.seek_time(float(self._picture.ends[self._picture.find_block_for_line(line)]))
@@ -235,7 +248,10 @@ class PartPlayer:
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
     def request_time(self, t: float) -> None:
-        """Request the part at a program time in seconds. The next ``look`` starts the work."""
+        """Request the part at a program time in seconds.
+
+        The next call of ``update`` starts the work.
+        """
         self.time_s = min(max(t, 0.0), self.duration_s)
         if self._picture is None:
             return
@@ -260,7 +276,7 @@ class PartPlayer:
     def _make_result(
         self, picture: ProgramPicture, wanted: ProgramMoment, request: WorkRequest
     ) -> PlayedInstant:
-        """Calculate the requested instant, on the worker.
+        """Calculate the requested instant on the worker.
 
         A new program is first simulated to its end, so that all findings are known.
         """
@@ -280,7 +296,7 @@ class PartPlayer:
     def _find_instant(
         self, history: PartHistory, block: int, share: float, watch: Callable[[], None]
     ) -> PartInstant:
-        """Return the instant, reusing the last one if only the view has turned."""
+        """Return the instant, and reuse the previous instant if only the view has turned."""
         if self._solid is not None:
             last = self._solid[0]
             if (last.block_count, last.next_block_fraction) == (block, share) and history.is_current(last):
@@ -290,7 +306,10 @@ class PartPlayer:
     def _render_image(
         self, history: PartHistory, instant: PartInstant, look: SolidRequest
     ) -> ImageArray | None:
-        """Return the 3D image of the part, on the worker, or None without a solid."""
+        """Return the 3D image of the part, or None without a solid.
+
+        This runs on the worker.
+        """
         from core.part.solid_picture import SolidPicture
 
         if self._painter is None:
@@ -347,7 +366,10 @@ class PartPlayer:
 
 
 class PartPlayers(list[PartPlayer]):
-    """All part players of one operator screen, closed together with the screen."""
+    """All part players of one operator screen.
+
+    They are closed together with the screen.
+    """
 
     def close(self) -> None:
         """Stop all workers."""

@@ -1,4 +1,4 @@
-"""Aspects of the path view, the position of the tool tip, and the legs of an approach."""
+"""Aspects of the path view, the position of the tool tip, and the moves of an approach."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
 
 class PathAspect(Enum):
-    """Direction from which a program is viewed.
+    """The directions from which a program can be viewed.
 
-    ``PATH`` is from above (X+ down, Z+ right). ``FACE`` is onto the end of the part, and ``SIDE`` is its
-    unrolled side (Z+ right, C+ up). ``SECTION`` is the part cut along its axis, ``SOLID`` is the part in 3D,
-    and ``OPEN_SOLID`` is the solid part without one quarter.
+    ``PATH`` is from above (X+ down, Z+ right). ``FACE`` looks at the end of the part, and ``SIDE`` is its
+    unrolled side (Z+ right, C+ up). ``SECTION`` is the part cut along its axis, ``SOLID`` is the part in
+    3D, and ``OPEN_SOLID`` is the solid part with one quarter removed.
     """
 
     PATH = "PATH"
@@ -34,10 +34,10 @@ PART_ASPECTS = SPATIAL_ASPECTS | {PathAspect.SECTION}
 
 
 class TipPosition(NamedTuple):
-    """Active block (0 for none) and the position of the tool tip in the frame of the part, in millimeters.
+    """Active block (0 for none), and the position of the tool tip relative to the part in millimeters.
 
     ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``h`` is the height
-    of the center line of a mill.
+    of the center line of a mill. ``stop_position`` is the position at which an interrupted block stopped.
     """
 
     block: int = 0
@@ -54,9 +54,9 @@ AspectView = tuple[PathAspect, ...]
 
 
 def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition:
-    """Return the present tip position.
+    """Return the current tip position.
 
-    If ``job`` was interrupted, the tip also contains the block and position of the interruption.
+    If ``job`` was interrupted, the result also contains the block and position of the interruption.
     """
     modal = snapshot.modal
     x, z, *rotary = snapshot.actual
@@ -80,10 +80,10 @@ def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyl
 
 
 def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectView]:
-    """Return the views that the view key steps through.
+    """Return the views through which the view key steps.
 
-    The first views show the path together with a face or side that is machined at C, then each of them alone.
-    If ``part`` is set, the views of the part follow.
+    The first views show the path together with a face or side that is machined with the C axis. The face
+    and side follow, each of them alone. If ``part`` is set, the views of the part follow.
     """
     more = [
         aspect
@@ -106,8 +106,8 @@ def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectVie
 class DrawnLeg:
     """One straight move of an approach to (z, x) in the frame of the part, in mm, with X as a radius.
 
-    The position is the machine position minus the tool offset. ``label`` is the number and axis, for example
-    ``1 X``. The first leg is the present tool position, and its ``rapid`` has no meaning.
+    The position is the machine position minus the tool offset. ``label`` is the number and the axis, for
+    example ``1 X``. The first leg is the current tool position, and its ``rapid`` has no meaning.
     """
 
     z: float

@@ -1,8 +1,9 @@
 """Two cached images of a pane: the whole path, and a copy with the finished blocks drawn over it.
 
-Only new strokes are drawn. A changed projection (zoom, pan or size) starts the images again in time slices,
-so that a path with a million strokes never delays a key press. Qt draws each change of pen with a separate
-call. Long paths are therefore set pixel by pixel with numpy, and later chords overwrite earlier ones.
+Only new strokes are drawn. After a change of the projection (zoom, pan or size), the images are drawn again
+in time slices, so that a path with a million strokes never delays a key press. Qt draws each change of pen
+with a separate call. Long paths are therefore drawn pixel by pixel with numpy, and later chords overwrite
+earlier chords.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ _map_memory = cast("Callable[[object, int, bool], bytes]", shiboken6.VoidPtr)
 
 
 class LineStyle(Enum):
-    """Style of a polyline: color of cuts, width in units, and line style."""
+    """The styles of a polyline, each with a color for cuts, a line width in screen units, and a pen style."""
 
     REMAINING = ("todo", 0.15, PenStyle.SolidLine)
     FINISHED = ("done", 0.26, PenStyle.SolidLine)
@@ -58,7 +59,10 @@ class LineStyle(Enum):
     MARKED = ("lit", 1.2, PenStyle.SolidLine)  # a band along the blocks of the line under the cursor
 
     def make_pens(self, theme: ScreenTheme) -> dict[int, QPen]:
-        """Return the pen of each stroke. A comparison of two programs has pens for cuts only."""
+        """Return the pen of each stroke.
+
+        A comparison of two programs has pens only for cuts.
+        """
         colour, width, style = self.value
         cut = _round(theme.make_pen(colour, width), style)
         if self is LineStyle.MARKED:
@@ -74,7 +78,7 @@ class LineStyle(Enum):
         return {Stroke.RAPID: cut if self is LineStyle.MARKED else rapid, Stroke.TURN: cut, Stroke.MILL: cut}
 
     def make_colors(self, theme: ScreenTheme) -> dict[int, QColor]:
-        """Return the color of each stroke, for lines that are one pixel wide."""
+        """Return the color of each stroke, for lines with a width of one pixel."""
         return {stroke: pen.color() for stroke, pen in self.make_pens(theme).items()}
 
 
@@ -88,8 +92,8 @@ def _round(pen: QPen, style: Qt.PenStyle) -> QPen:
 class PathLayers:
     """Images of one path in one projection.
 
-    ``polyline_before`` is the path before a change, drawn below it. ``ground`` draws the background of the
-    path.
+    ``polyline_before`` is the path before a change, which is drawn below the path. ``ground`` draws the
+    background of the path.
     """
 
     def __init__(
@@ -124,13 +128,13 @@ class PathLayers:
 
     @property
     def is_complete(self) -> bool:
-        """Whether everything requested is drawn."""
+        """Return whether everything that was requested is drawn."""
         return self._stage >= len(self._under) and self._done >= self._wanted
 
     def request_blocks(self, blocks: int) -> None:
         """Request that the first ``blocks`` blocks are drawn as finished.
 
-        A smaller number than before starts a new cycle from the image of the whole path.
+        If this is fewer than before, drawing starts again from the image of the whole path.
         """
         wanted = self.polyline.count_finished_points(blocks)
         if wanted < self._wanted:
@@ -139,7 +143,7 @@ class PathLayers:
         self._wanted = wanted
 
     def draw_slice(self) -> bool:
-        """Draw for a part of the frame time, and return whether anything was drawn."""
+        """Draw during part of the frame time, and return whether anything was drawn."""
         if self.is_complete:
             return False
         until = time.perf_counter() + FRAME_BUDGET_S
@@ -168,7 +172,7 @@ class PathLayers:
     def _find_slice_end(self, polyline: Polyline, begin: int, maximum: int) -> int:
         """Return the end of the next slice.
 
-        Pixels limit slices of long chords, and points limit slices of short chords.
+        A slice of long chords is limited by its pixels, and a slice of short chords by its points.
         """
         end = min(begin + self._slice, maximum)
         if self._smooth or end - begin < 2:
@@ -204,7 +208,10 @@ class PathLayers:
 
     @property
     def _mirror_sum(self) -> float:
-        """Twice the row of X0. A row is mirrored by subtracting it from this value."""
+        """Return twice the row of X0.
+
+        A row is mirrored by subtracting the row from this value.
+        """
         return 2 * float(self.projection.find_row(0.0))
 
 
@@ -220,12 +227,12 @@ def make_polygon(columns: FloatArray, rows: FloatArray) -> QPolygonF:
 
 
 def draw_run(painter: QPainter, run: StrokeRun) -> None:
-    """Draw a run with the painter's current pen."""
+    """Draw a run of strokes with the current pen of the painter."""
     painter.drawPolyline(make_polygon(run.columns, run.rows))
 
 
 def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dict[int, QColor]) -> None:
-    """Draw the chords of a shape, each in the color of its stroke.
+    """Draw the chords of a shape in the colors of their strokes.
 
     Strokes without a color are skipped.
     """

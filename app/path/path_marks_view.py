@@ -30,7 +30,10 @@ BUTTON_SIZE = (6.6, 6.6, 0.4)  # units: width, height and gap; the size is at le
 
 
 class ViewButton(NamedTuple):
-    """Button of the view. ``is_lit`` is set while the function of the button is on."""
+    """Button of the view.
+
+    ``is_lit`` is set while the button's function is active.
+    """
 
     symbol: str
     action: OnPress
@@ -41,14 +44,17 @@ LegendItem = tuple[str, QPen]
 
 
 def count_button_columns(theme: ScreenTheme, area: QRectF, count: int) -> int:
-    """Return the number of button columns. A low room needs several columns."""
+    """Return the number of button columns.
+
+    Several columns are needed if the area is low.
+    """
     _, high, gap = _button(theme)
     rows = max(1, int((area.height() - 3.2 * theme.u + gap) / (high + gap)))
     return math.ceil(count / rows)
 
 
 def find_columns_width(columns: int, theme: ScreenTheme) -> float:
-    """Return the width of the button columns at the right of a view, in pixels."""
+    """Return the width in pixels of the button columns on the right of a view."""
     wide, _, gap = _button(theme)
     return columns * (wide + gap)
 
@@ -65,7 +71,7 @@ def draw_buttons(
     buttons: Sequence[ViewButton],
     add_target: Callable[[QRectF, OnPress], None],
 ) -> None:
-    """Draw the buttons at the right of the room, column by column."""
+    """Draw the buttons on the right of the area, column by column."""
     wide, high, gap = _button(theme)
     columns = count_button_columns(theme, area, len(buttons))
     rows = math.ceil(len(buttons) / columns)
@@ -84,7 +90,7 @@ def draw_buttons(
 
 
 def make_run_legend(theme: ScreenTheme) -> list[LegendItem]:
-    """Return the legend entries for a path that runs or is ready to run."""
+    """Return the legend entries for a path that is running or ready to run."""
     todo, done = LineStyle.REMAINING.make_pens(theme), LineStyle.FINISHED.make_pens(theme)
     return [(tr("done"), done[2]), (tr("remaining"), todo[2]), (tr("rapid"), todo[1])]
 
@@ -105,7 +111,7 @@ def draw_foot(
     legend: Sequence[LegendItem],
     metric: bool,
 ) -> None:
-    """Draw the row below the panes: the legend, and the scale of each pane below its right edge."""
+    """Draw the row below the panes, with the legend, and the scale of each pane below its right edge."""
     painter.fillRect(foot, look.color("panel"))
     painter.setFont(look.make_font(1.5))
     for room, projection in panes:
@@ -118,7 +124,7 @@ def draw_foot(
 
 
 def _draw_legend(painter: QPainter, look: ScreenTheme, box: QRectF, entries: Sequence[LegendItem]) -> None:
-    """Draw as many entries of the legend as fit, from the left."""
+    """Draw as many entries of the legend as fit, starting at the left."""
     u, x = look.u, box.x() + 1.2 * look.u
     metrics = QFontMetricsF(painter.font())
     for word, pen in entries:
@@ -135,7 +141,10 @@ def _draw_legend(painter: QPainter, look: ScreenTheme, box: QRectF, entries: Seq
 def _draw_scale(
     painter: QPainter, look: ScreenTheme, box: QRectF, projection: Projection, metric: bool
 ) -> float:
-    """Draw a scale bar with a round length in the unit in force, and return its left edge with its text."""
+    """Draw a scale bar with a round length in the current unit.
+
+    Return the left edge of the bar and its text.
+    """
     u = look.u
     mm, text = find_scale_length(min(14 * u, 0.2 * box.width()) / projection.scale, metric)
     wide = mm * projection.scale
@@ -156,7 +165,7 @@ def draw_border(painter: QPainter, theme: ScreenTheme, area: QRectF) -> None:
 
 
 def draw_title(painter: QPainter, theme: ScreenTheme, area: QRectF, text: str, color: str = "soft") -> None:
-    """Draw the title or status of a pane at its upper left."""
+    """Draw the title or status of a pane in its upper left corner."""
     u = theme.u
     painter.setFont(theme.fit_font(text, 1.6, area.width() - 2 * u, is_bold=True))
     box = QRectF(area.x() + 1.2 * u, area.y() + 0.9 * u, area.width() - 2 * u, 2 * u)
@@ -175,9 +184,9 @@ def draw_no_path(painter: QPainter, theme: ScreenTheme, area: QRectF, reason: st
 
 
 def draw_approach(painter: QPainter, theme: ScreenTheme, pane: PathPane, legs: Sequence[DrawnLeg]) -> None:
-    """Draw the visible parts of all legs from the present tool position.
+    """Draw the visible parts of all legs, starting at the current tool position.
 
-    The painter's origin is the corner of the pane.
+    The origin of the painter is the corner of the pane.
     """
     u = theme.u
     spots = [pane.map_to_pane(leg.z, leg.x) for leg in legs]
@@ -214,14 +223,14 @@ def visible_part(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, Q
 
 
 def inside_room(box: QRectF, room: QRectF) -> QRectF:
-    """Return the box, moved as far as necessary to be inside the room."""
+    """Return the box, moved only as far as necessary to be inside the room."""
     across = max(room.x() - box.x(), 0.0) + min(room.right() - box.right(), 0.0)
     down = max(room.y() - box.y(), 0.0) + min(room.bottom() - box.bottom(), 0.0)
     return box.translated(across, down)
 
 
 def _draw_arrow(painter: QPainter, theme: ScreenTheme, start: QPointF, end: QPointF) -> None:
-    """Draw an arrow head at the end of a leg that is long enough."""
+    """Draw an arrowhead at the end of a leg if the leg is long enough."""
     way, u = end - start, theme.u
     length = math.hypot(way.x(), way.y())
     if length < 2.5 * u:
@@ -292,7 +301,10 @@ def find_pane_errors(pane: PathPane) -> list[Diagnostic]:
 
 
 def make_part_title(pane: PathPane) -> str:
-    """Return the title of a part pane: its latest error, or else the tool that cuts."""
+    """Return the title of a part pane.
+
+    The title is the latest error, or the tool that is cutting if there is no error.
+    """
     shown = pane.part_player.result if pane.part_player is not None else None
     if pane.part_player is None or shown is None:
         trouble = pane.part_player.error_text if pane.part_player is not None else ""
@@ -327,9 +339,9 @@ MIN_C_LINE_DISTANCE = 9.0  # units: minimum distance between the C lines of the 
 def draw_center_lines(
     painter: QPainter, theme: ScreenTheme, aspect: PathAspect, projection: Projection, polyline: Polyline
 ) -> None:
-    """Draw the center lines, the C circle of a face, and the C lines of a side below all moving marks.
+    """Draw the center lines, the C circle of a face, and the C lines of a side.
 
-    The painter's origin is the corner of the pane.
+    They are below all moving marks. The origin of the painter is the corner of the pane.
     """
     if aspect in SPATIAL_ASPECTS:
         return
@@ -377,7 +389,7 @@ def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection
 
 
 def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection, polyline: Polyline) -> None:
-    """Draw lines along Z at equal angles with their C.
+    """Draw lines along Z at equal angles, with their C values.
 
     Full revolutions are drawn like center lines.
     """

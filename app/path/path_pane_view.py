@@ -39,10 +39,10 @@ MAX_MARKED_POINTS = 20_000  # maximum number of points of a line that are drawn 
 
 
 class PathPane:
-    """One pane of the path view. Positions are widget pixels, and drawings are relative to the pane.
+    """One pane of the path view.
 
-    z and x are the coordinates of the viewed plane. ``part_player`` is the player of the part, where the
-    part is shown.
+    Positions are in widget pixels, and drawings are relative to the pane. z and x are the coordinates of
+    the viewed plane. ``part_player`` is the player of the part, in panes that show the part.
     """
 
     part_player: PartPlayer | None = None
@@ -69,7 +69,10 @@ class PathPane:
     # --- projection and path -------------------------------------------------------------------------
 
     def show_polyline(self, polyline: Polyline, before: Polyline | None) -> None:
-        """Show another path. The projection remains if the user adjusted it."""
+        """Show another path.
+
+        The projection is retained if the user has adjusted it.
+        """
         self.polyline, self.polyline_before, self._block, self.marked_point_ranges = polyline, before, 0, []
         self._blank = self._blank_below()
         self.largest_distance = find_largest_distance(before, polyline) if before is not None else None
@@ -79,7 +82,7 @@ class PathPane:
             self.fit_view()
 
     def _blank_below(self) -> Blank | None:
-        """Return the stock and clamping that are drawn below the path, or None."""
+        """Return the stock and clamping that are drawn below the path, or None if there are none."""
         picture = self.polyline
         wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
         return blank_of(picture) if wanted and isinstance(picture, ProgramPicture) else None
@@ -87,7 +90,7 @@ class PathPane:
     def make_full_projection(self) -> Projection:
         """Return the projection that shows the part, all cuts near it, and the path before a change.
 
-        The chuck uses the width that remains.
+        The chuck is shown as far as the remaining width allows.
         """
         fit = fit_bounds if self.aspect is PathAspect.SIDE else fit_mirrored
         bounds, blank = self.polyline.bounds, self._blank
@@ -106,7 +109,7 @@ class PathPane:
         return whole.shift(max(0.0, min(free, wanted)) / 2, 0.0)
 
     def redraw(self) -> None:
-        """Draw the same view again, with new colors."""
+        """Draw the same view again in new colors."""
         if self.projection is not None:
             self.set_projection(self.projection)
 
@@ -122,7 +125,7 @@ class PathPane:
         self._layers.draw_slice()
 
     def find_block(self, position: QPointF) -> int:
-        """Return the block that is drawn at or near a widget position, or 0 without a block."""
+        """Return the number of the block drawn at or near a widget position, or 0 if there is no block."""
         z, x = self.map_to_plane(position)
         point = find_nearest_chord(self.polyline, z, x, PICK_DISTANCE * self.theme.u * self.pixel_size_mm)
         return 0 if point is None else self.polyline.find_block(point)
@@ -130,7 +133,7 @@ class PathPane:
     # --- navigation ----------------------------------------------------------------------------------
 
     def set_area(self, area: QRectF) -> None:
-        """Set the room of the pane. A changed size shows the whole path again."""
+        """Set the area of the pane, and show the whole path again if its size has changed."""
         if area != self.area:
             self.area = area
             self.fit_view()
@@ -148,7 +151,10 @@ class PathPane:
                 self.fit_view()
 
     def zoom_view(self, steps: int, position: QPointF | None = None) -> None:
-        """Zoom in (positive steps) or out, around a widget position, the largest difference or the middle."""
+        """Zoom in (positive steps) or out (negative steps).
+
+        The center of the zoom is a widget position, the largest difference, or the middle of the pane.
+        """
         self.magnify(ZOOM_STEP**steps, position if position is not None else self._middle())
 
     def _middle(self) -> QPointF:
@@ -159,19 +165,22 @@ class PathPane:
         return self.area.center()
 
     def magnify(self, factor: float, position: QPointF) -> None:
-        """Magnify by a factor. The path under the position ``at`` stays in place."""
+        """Magnify the view by a factor.
+
+        The path under ``position`` does not move.
+        """
         if self.projection is not None:
             self.is_adjusted = True
             position = position - self.area.topLeft()
             self.set_projection(self.projection.zoom(factor, position.x(), position.y()))
 
     def pan_view(self, across: int, down: int) -> None:
-        """Move the visible area to the right and down by a number of steps."""
+        """Move the visible area by a number of steps to the right and down."""
         step = PAN_STEP_SHARE * self.area.width()
         self.handle_drag(QPointF(-across * step, -down * step))
 
     def handle_drag(self, pixels: QPointF) -> None:
-        """Move the picture by a drag, in pixels."""
+        """Move the picture by a drag in pixels."""
         if self.projection is not None:
             self.is_adjusted = True
             self.set_projection(self.projection.shift(pixels.x(), pixels.y()))
@@ -180,23 +189,23 @@ class PathPane:
 
     @property
     def pixel_size_mm(self) -> float:
-        """Size of one pixel in millimeters."""
+        """Return the size of one pixel in millimeters."""
         return 1.0 / self.projection.scale if self.projection is not None else 1.0
 
     def map_to_pane(self, z: float, x: float) -> QPointF:
-        """Return the pane position of a point of the plane, in pixels from the corner of the pane."""
+        """Return the position of a point of the plane in pixels from the corner of the pane."""
         assert self.projection is not None
         return QPointF(float(self.projection.find_column(z)), float(self.projection.find_row(x)))
 
     def map_to_plane(self, position: QPointF) -> Position:
-        """Return the z and x of the plane at a widget position."""
+        """Return the coordinates z and x of the plane at a widget position."""
         projection, room = self.projection, self.area
         assert projection is not None
         z = projection.z + (position.x() - room.x() - projection.width / 2) / projection.scale
         return z, projection.x + (position.y() - room.y() - projection.height / 2) / projection.scale
 
     def find_visible_area(self) -> Bounds:
-        """Return the visible area: minimum z, maximum z, minimum x, maximum x."""
+        """Return the visible area as minimum z, maximum z, minimum x and maximum x."""
         (z0, x0), (z1, x1) = (
             self.map_to_plane(self.area.topLeft()),
             self.map_to_plane(self.area.bottomRight()),
@@ -204,7 +213,7 @@ class PathPane:
         return z0, z1, x0, x1
 
     def pan_to_point(self, z: float, x: float) -> None:
-        """Pan as far as necessary to make a point visible."""
+        """Pan only as far as necessary to make a point visible."""
         at, room = self.map_to_pane(z, x), self.area
         edge = FIT_MARGIN * self.theme.u
         over = QPointF(
@@ -236,9 +245,9 @@ class PathPane:
         )
 
     def find_tip_position(self, tip: TipPosition) -> Position | None:
-        """Return the position of the machine's tip in this pane.
+        """Return the position of the machine's tool tip in this pane.
 
-        A face retains its last position while C turns as the spindle.
+        In a face, the last position is retained while C turns as the spindle.
         """
         if self.aspect is PathAspect.PATH or self.aspect in PART_ASPECTS:
             return tip.z, tip.x
@@ -249,7 +258,10 @@ class PathPane:
         return tip.z, -tip.c * self.polyline.mm_per_degree
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
-        """Draw blocks as thick lines. Each range is (first, last), inclusive, counted from 1."""
+        """Draw blocks as thick lines.
+
+        Each range is (first, last), inclusive and counted from 1.
+        """
         first = self.polyline.first
         ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
         self.marked_point_ranges = [(a, min(b, a + MAX_MARKED_POINTS)) for a, b in ranges if b > a]
@@ -260,18 +272,24 @@ class PathPane:
 
     @property
     def is_complete(self) -> bool:
-        """Whether everything requested is drawn."""
+        """Return whether everything that was requested is drawn."""
         return self._layers is not None and self._layers.is_complete
 
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw_path(self, painter: QPainter) -> None:
-        """Draw the cached image of the path. The painter's origin is the corner of the pane."""
+        """Draw the cached image of the path.
+
+        The origin of the painter is the corner of the pane.
+        """
         if self._layers is not None:
             painter.drawImage(QPointF(0, 0), self._layers.image)
 
     def draw_run(self, painter: QPainter) -> None:
-        """Draw the marked line, the active block and the tip, or the largest difference of two pictures."""
+        """Draw the marked line, the active block and the tip.
+
+        In a comparison, draw the largest difference between the two pictures instead.
+        """
         if self.projection is None:
             return
         self._draw_marked(painter, self.projection)
@@ -323,7 +341,7 @@ class PathPane:
 
 
 def _unite_bounds(one: Bounds, other: Bounds) -> Bounds:
-    """Return the bounding box of two boxes."""
+    """Return the smallest box that contains two boxes."""
     low, high = tuple(map(min, one, other)), tuple(map(max, one, other))
     return low[0], high[1], low[2], high[3]
 
@@ -333,7 +351,7 @@ MIN_LAYOUT_WIDTH_PX = 40  # pixels: minimum width of a layout
 
 
 class PaneSet:
-    """Panes of ``picture`` and, for a comparison, of the picture ``before`` the change.
+    """Panes of the shown picture and, in a comparison, of the picture before the change.
 
     ``keeps_view`` retains adjusted projections when the picture changes. ``make_pane`` creates a pane.
     """
@@ -348,7 +366,10 @@ class PaneSet:
         self._room = QRectF()
 
     def set_pictures(self, picture: ProgramPicture | None, before: ProgramPicture | None) -> None:
-        """Set the pictures. The present view remains if it still exists."""
+        """Set the pictures.
+
+        The current view is retained if it still exists.
+        """
         self.picture, self.picture_before = picture, before
         with_part = self._with_part and before is None
         views = find_views(picture, part=with_part) if picture is not None else []
@@ -358,12 +379,12 @@ class PaneSet:
 
     @property
     def has_several_views(self) -> bool:
-        """Whether more than one view exists."""
+        """Return whether more than one view exists."""
         return len(self._views) > 1
 
     @property
     def view_count(self) -> int:
-        """Number of views."""
+        """Return the number of views."""
         return len(self._views)
 
     def select_next_view(self) -> None:
@@ -372,7 +393,7 @@ class PaneSet:
         self._fill()
 
     def set_area(self, area: QRectF) -> None:
-        """Divide the room among the panes."""
+        """Divide the area among the panes."""
         self._room = area
         if area.width() <= MIN_LAYOUT_WIDTH_PX or not self.visible_panes:
             return
@@ -382,7 +403,7 @@ class PaneSet:
             pane.set_area(box.toRect().toRectF())
 
     def at(self, position: QPointF) -> PathPane | None:
-        """Return the pane at a widget position, or None."""
+        """Return the pane at a widget position, or None if there is no pane."""
         return next((pane for pane in self.visible_panes if pane.area.contains(position)), None)
 
     def draw_slice(self) -> bool:

@@ -1,7 +1,8 @@
-"""Path of a program as polylines, including face and side with C locked; built once on a worker thread.
+"""Path of a program as polylines, including face and side with C locked.
 
-Coordinates are relative to the part: machine position minus the offset of the active tool. Work shifts (G10)
-and presets (G92) therefore appear where they are cut. All values are in mm, with X as a radius.
+The polylines are built once, on a worker thread. Coordinates are relative to the part: machine position
+minus the offset of the active tool. Work shifts (G10) and presets (G92) therefore appear where the cuts are
+made. All values are in mm, with X as a radius.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ MIN_UNROLL_RADIUS_MM = 1.0  # mm: radius for unrolling a side whose radius is un
 
 
 def map_to_face(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
-    """Return the position on the face (right, down) of a tip at lathe X (a radius).
+    """Return the position (right, down) on the face for a tool tip at lathe X (a radius).
 
     C is turned by ``c`` degrees, and ``h`` is the height of the center line.
     """
@@ -51,14 +52,17 @@ def map_to_face(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
 
 
 class FaceBuilder:
-    """Collects the moves that are visible on the face."""
+    """Builder that collects the moves that are visible on the face."""
 
     def __init__(self, blocks: int) -> None:
         self.polyline_builder = PolylineBuilder(blocks)
         self.is_needed = False
 
     def add_mill_move(self, move: PlaneMove, frame: FacePlane, points: list[MillPoint], stroke: int) -> None:
-        """Add a move of plane switching, in a frame that was turned by ``frame.c0`` on entry."""
+        """Add a move in a milling plane to the face.
+
+        The frame was turned by ``frame.heading_deg`` when it was entered.
+        """
         self.is_needed = True
         turn = -math.radians(frame.heading_deg)
         cos, sin = math.cos(turn), math.sin(turn)
@@ -90,7 +94,7 @@ class FaceBuilder:
 
 
 class SideBuilder:
-    """Collects the moves that are visible on the side.
+    """Builder that collects the moves that are visible on the side.
 
     ``x`` is minus C in degrees until the radius is known.
     """
@@ -104,7 +108,10 @@ class SideBuilder:
     def add_mill_move(
         self, move: PlaneMove, frame: SidePlane, points: list[MillPoint], stroke: int, dz: float
     ) -> None:
-        """Add a move of plane switching. ``dz`` converts program Z to the Z of the part."""
+        """Add a move in a milling plane to the side.
+
+        ``dz`` converts Z of the program to Z of the part.
+        """
         self.is_needed = True
         self._diameter = self._diameter or frame.diameter
         degrees = 360.0 / (math.pi * frame.diameter)
@@ -131,7 +138,7 @@ class SideBuilder:
     def build_polyline(self) -> Polyline:
         """Return the collected moves, unrolled at a diameter.
 
-        The diameter is that of the first plane, or else the largest cut diameter.
+        The diameter is that of the first plane, or the largest cut diameter if there is no plane.
         """
         z, x, stroke, first = self.polyline_builder.make_arrays()
         scale = math.pi * (self._diameter or 2 * max(self._reach, MIN_UNROLL_RADIUS_MM)) / 360.0
@@ -142,7 +149,7 @@ class SideBuilder:
 
 
 class FaceAndSideBuilder:
-    """Builds the face and side views of all moves with C locked."""
+    """Builder of the face and side views of all moves with C locked."""
 
     def __init__(self, blocks: int) -> None:
         self._face, self._side = FaceBuilder(blocks), SideBuilder(blocks)
@@ -150,7 +157,7 @@ class FaceAndSideBuilder:
     def add_move(self, block: Block, stroke: int, points: list[MillPoint]) -> None:
         """Add one move with C locked.
 
-        ``points`` contains the mill's points after the start of a move in a plane.
+        ``points`` contains the points of the mill after the start of a move in a plane.
         """
         modal, plane = block.modal, block.plane
         dz = block.offset_z - modal.drawing_zero_z
@@ -164,12 +171,12 @@ class FaceAndSideBuilder:
             self._face.add_mill_move(plane, plane.frame, points, stroke)
 
     def end_block(self) -> None:
-        """Mark the end of a block, whether or not the block is visible."""
+        """End a block, whether or not the block is visible."""
         self._face.polyline_builder.end_block()
         self._side.polyline_builder.end_block()
 
     def build_polylines(self) -> tuple[Polyline | None, Polyline | None]:
-        """Return face and side, each None if nothing is visible there.
+        """Return the face and the side, each of them None if it shows no moves.
 
         A program that uses C only for indexing is shown on the face.
         """
@@ -182,7 +189,7 @@ class FaceAndSideBuilder:
 
 
 def find_mill_points(block: Block) -> list[MillPoint]:
-    """Return the mill's points after the start of a move in a plane."""
+    """Return the points of the mill after the start of a move in a plane."""
     return [] if block.plane is None else sample_mill_move(block.plane, block.c - block.c0)
 
 
@@ -193,11 +200,12 @@ TimedBlocks = tuple[Block, float, float]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProgramPicture(Polyline):
-    """Path seen from above, with X+ down. ``face`` and ``side`` show the cuts with C locked.
+    """Path seen from above, with X+ down.
 
-    ``ends`` (blocks + 1,) is the program time in seconds at the end of each block, starting with 0. ``chord``
-    (blocks,) is the distance from start to end of a block in mm. ``line`` (blocks,) is the source line of
-    each block. ``metric`` is set if the program ends in G71.
+    ``face`` and ``side`` show the cuts with C locked. ``ends`` (blocks + 1,) is the program time in seconds
+    at the end of each block, starting with 0. ``chord`` (blocks,) is the distance from start to end of a
+    block in mm. ``line`` (blocks,) is the source line of each block. ``metric`` is set if the program ends
+    in G71.
     """
 
     ends: npt.NDArray[np.float64]
@@ -211,10 +219,10 @@ class ProgramPicture(Polyline):
     no_part: str = ""  # reason why the part is not calculated
 
     def find_block_for_line(self, line: int) -> int:
-        """Return the block that ends the first pass through a source line.
+        """Return the block that ends the first execution of a source line.
 
-        If the line has no blocks, the nearest earlier line with blocks is used. Returns 0 if no such line
-        exists. Numbers count from 1.
+        If the line has no blocks, the nearest earlier line with blocks is used. Return 0 if no such line
+        exists. Numbers are counted from 1.
         """
         before = self.line[self.line <= line]
         if not len(before):
@@ -229,17 +237,23 @@ class ProgramPicture(Polyline):
         return int(there[0]) if len(there) else self.find_block_for_line(line)
 
     def find_blocks_for_line(self, line: int) -> list[tuple[int, int]]:
-        """Return all blocks of a source line as inclusive ranges (first, last), counted from 1."""
+        """Return all blocks of a source line as ranges (first, last).
+
+        The ranges are inclusive and counted from 1.
+        """
         there = np.flatnonzero(self.line == line) + 1
         parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
         return [(int(part[0]), int(part[-1])) for part in parts]
 
     def find_source_line(self, block: int) -> int:
-        """Return the source line of a block, both counted from 1, or 0 for no block."""
+        """Return the source line of a block, or 0 if there is no such block.
+
+        Both numbers are counted from 1.
+        """
         return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
 
     def time_left(self, block: int, remaining_mm: float) -> float:
-        """Return the remaining program time in seconds, at 100 % override.
+        """Return the remaining program time in seconds at 100 % override.
 
         ``remaining_mm`` is the distance in mm that remains in block number ``block``.
         """
@@ -253,7 +267,10 @@ class ProgramPicture(Polyline):
 
 
 class PictureBuilder:
-    """Collects blocks into a picture. ``metric`` is the unit of a picture without blocks."""
+    """Builder that collects blocks into a picture.
+
+    ``is_metric`` is the unit of a picture without blocks.
+    """
 
     def __init__(self, is_metric: bool = False) -> None:
         self._pencil = PolylineBuilder()
@@ -263,7 +280,7 @@ class PictureBuilder:
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
     def add_block(self, block: Block, end_time: float) -> None:
-        """Append one block that ends ``end`` seconds after the start of the program."""
+        """Append one block that ends ``end_time`` seconds after the start of the program."""
         if block.swivel is not None:
             self._scene.add_block(
                 block, block.swivel
@@ -282,7 +299,7 @@ class PictureBuilder:
         self._chord.append(_find_chord(block) if block.moves else 0.0)
 
     def add_series(self, series: StraightMoveSeries, end_times: FloatArray) -> None:
-        """Append straight moves that end ``ends`` (m,) seconds after the start of the program."""
+        """Append straight moves that end ``end_times`` (m,) seconds after the start of the program."""
         like = series.pattern
         if self._turned is not None or like.modal.c_locked:
             for block, end in zip(series, end_times.tolist(), strict=True):
@@ -297,7 +314,7 @@ class PictureBuilder:
         self._metric = like.modal.metric
 
     def add_timed(self, each: TimedBlocks | TimedSeries) -> int:
-        """Append a timed block or series of moves, and return the number of blocks."""
+        """Append a timed block or series of moves, and return the number of appended blocks."""
         if isinstance(each, TimedSeries):
             self.add_series(each.series, each.end_times_s)
             return len(each.series)
@@ -375,7 +392,7 @@ def build_picture(
 ) -> ProgramPicture:
     """Return the picture of all blocks.
 
-    ``watch`` is called with the block count at intervals and may raise an exception to cancel.
+    ``watch`` is called with the block count at intervals. It may raise an exception to cancel.
     """
     sketch, count, told = PictureBuilder(), 0, 0
     for each in blocks:
@@ -387,7 +404,7 @@ def build_picture(
 
 
 def _find_chord(block: Block) -> float:
-    """Return the distance from start to end in the first two axes, in mm, as used for the distance to go."""
+    """Return the distance from start to end in the first two axes in mm, as used for the distance to go."""
     if block.travel is not None:
         return math.dist(block.travel.start[:2], block.travel.end[:2])
     return math.hypot(block.x - block.x0, block.z - block.z0)

@@ -1,4 +1,4 @@
-"""Mouse and touch input of the path view: dragging, pinch zoom and touching a line or a point."""
+"""Mouse and touch input of the path view, with dragging, pinch zoom, and touching a line or a point."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ MIN_PINCH_PX = 8.0  # pixels: smaller finger distances are treated as this dista
 
 @dataclass(slots=True, eq=False)
 class PathPointer:
-    """Distinguishes drags from touches.
+    """Input handler that distinguishes drags from touches.
 
-    ``find_target`` returns the pressed pane or time line, or None.
+    ``find_target`` returns the pressed pane or timeline, or None.
     """
 
     theme: ScreenTheme
@@ -47,7 +47,10 @@ class PathPointer:
         self._dragging = False
 
     def move_pointer(self, position: QPointF) -> None:
-        """Handle motion of the pointer. A pressed pointer drags the picture."""
+        """Handle motion of the pointer.
+
+        The picture is dragged while the pointer is pressed.
+        """
         if self._pane is None:
             self.on_hover(position)
             return
@@ -58,7 +61,10 @@ class PathPointer:
         self._last = position
 
     def end_press(self, position: QPointF) -> None:
-        """End a press. A press without motion is a touch."""
+        """End a press.
+
+        A press without motion is a touch.
+        """
         pane, self._pane = self._pane, None
         if pane is not None and not self._dragging:
             self.on_touch(pane, position)
@@ -82,7 +88,10 @@ class PathPointer:
         return True
 
     def _handle_one_touch(self, kind: QEvent.Type, at: QPointF) -> None:
-        """Handle one finger like the mouse. A finger that remains after a pinch does nothing."""
+        """Handle a single touch like the mouse.
+
+        A touch that remains after a pinch has no effect.
+        """
         if self._spread is not None:
             return
         if kind == QEvent.Type.TouchBegin:
@@ -93,7 +102,7 @@ class PathPointer:
             self.end_press(at)
 
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
-        """Magnify by the change of the finger distance, around the middle of the fingers."""
+        """Magnify by the change in the distance between two touches, around their midpoint."""
         self._pane = None
         way = one - other
         spread, before = max(MIN_PINCH_PX, math.hypot(way.x(), way.y())), self._spread

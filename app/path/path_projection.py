@@ -1,6 +1,7 @@
-"""Projection of a path and of the section of a part onto pixels, reduced to the visible points.
+"""Projection of a path and of the section of a part onto pixels.
 
-All functions process whole arrays without a Python loop over the points.
+The result is reduced to the visible points. All functions process whole arrays without a Python loop over
+the points.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Visible area: the point (z, x) in the middle, the size in pixels, and ``scale`` in pixels per mm."""
+    """Visible area, given by its middle (z, x), its size in pixels, and ``scale`` in pixels per mm."""
 
     z: float
     x: float
@@ -43,7 +44,7 @@ class Projection:
     def zoom(self, factor: float, column: float, row: float) -> Projection:
         """Return a projection magnified by ``factor``.
 
-        The point at (column, row) remains in place.
+        The point at (column, row) does not move.
         """
         scale = min(max(self.scale * factor, 0.02), 5000.0)
         z = self.z + (column - self.width / 2) * (1 / self.scale - 1 / scale)
@@ -59,7 +60,7 @@ class Projection:
 def fit_mirrored(
     bounds: tuple[float, float, float, float], width: int, height: int, margin: float
 ) -> Projection:
-    """Return a projection of all cuts and their mirror image across X0, with a margin in pixels."""
+    """Return a projection that shows all cuts and their mirror image across X0, with a margin in pixels."""
     z0, z1, x0, x1 = bounds
     reach = max(abs(x0), abs(x1), 0.5)
     across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
@@ -70,7 +71,7 @@ def fit_mirrored(
 def fit_bounds(
     bounds: tuple[float, float, float, float], width: int, height: int, margin: float
 ) -> Projection:
-    """Return a projection of the bounds only, with a margin in pixels."""
+    """Return a projection that shows only the bounds, with a margin in pixels."""
     z0, z1, x0, x1 = bounds
     across, down = max(width - 2 * margin, 10.0), max(height - 2 * margin, 10.0)
     scale = min(across / max(z1 - z0, 1.0), down / max(x1 - x0, 1.0))
@@ -107,7 +108,7 @@ def project_points(polyline: Polyline, projection: Projection, start: int, end: 
 
 
 def project_runs(polyline: Polyline, projection: Projection, start: int, end: int) -> Iterator[StrokeRun]:
-    """Yield the strokes that end in points ``start`` to ``end - 1``, reduced to pixels and clipped."""
+    """Yield the strokes that end at points ``start`` to ``end - 1``, reduced to pixels and clipped."""
     columns, rows, stroke = project_points(polyline, projection, start, end)
     stroke[1:][_find_outside(columns, rows, projection)] = 0
     edges = np.flatnonzero(np.diff(stroke)) + 1
@@ -120,7 +121,10 @@ def project_runs(polyline: Polyline, projection: Projection, start: int, end: in
 def _find_visible_points(
     columns: FloatArray, rows: FloatArray, stroke: npt.NDArray[np.uint8]
 ) -> npt.NDArray[np.bool_]:
-    """Return a mask of points that are on another pixel than the preceding point or change the stroke."""
+    """Return a mask of the points to draw.
+
+    These points are on another pixel than the preceding point, or the stroke changes there.
+    """
     c, r = np.rint(columns * 2), np.rint(rows * 2)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (c[1:-1] != c[:-2]) | (r[1:-1] != r[:-2]) | (stroke[1:-1] != stroke[2:])
@@ -140,7 +144,7 @@ def project_progress(
 ) -> StrokeRun | None:
     """Return the finished part of a block, or None if nothing is drawn.
 
-    The part consists of the points of the block up to the tip at (z, x).
+    The finished part consists of the points of the block up to the tip at (z, x).
     """
     if not 1 <= block <= polyline.blocks:
         return None
@@ -166,7 +170,7 @@ def _find_nearest_chord(zs: FloatArray, xs: FloatArray, z: float, x: float) -> i
 
 
 def find_scale_length(maximum_mm: float, metric: bool) -> tuple[float, str]:
-    """Return the longest round length up to ``maximum_mm`` mm, and its text in the unit in force."""
+    """Return the longest round length up to ``maximum_mm`` mm, with its text in the current unit."""
     unit, name = (1.0, "mm") if metric else (25.4, "in")
     decade = 10.0 ** np.floor(np.log10(max(maximum_mm / unit, 1e-9)))
     step = max((k for k in (1.0, 2.0, 5.0) if k * decade <= maximum_mm / unit * (1 + 1e-9)), default=1.0)
@@ -174,7 +178,7 @@ def find_scale_length(maximum_mm: float, metric: bool) -> tuple[float, str]:
 
 
 class ChordEnds(NamedTuple):
-    """Starts and ends of chords as columns and rows, in pixels."""
+    """Start and end points of chords as columns and rows, in pixels."""
 
     start_columns: FloatArray
     start_rows: FloatArray
@@ -183,7 +187,7 @@ class ChordEnds(NamedTuple):
 
 
 def clip_chords(chords: ChordEnds, right: int, bottom: int) -> tuple[ChordEnds, npt.NDArray[np.bool_]]:
-    """Return the parts of chords within (0, 0) to (right, bottom), and a mask of the visible chords.
+    """Return the parts of the chords within (0, 0) to (right, bottom), and a mask of the visible chords.
 
     The method is Liang–Barsky line clipping.
     """
@@ -209,7 +213,7 @@ def clip_chords(chords: ChordEnds, right: int, bottom: int) -> tuple[ChordEnds, 
 
 
 def rasterize_chords(chords: ChordEnds) -> tuple[IndexArray, IndexArray, IndexArray]:
-    """Return column, row and chord index of every pixel of all chords, in chord order."""
+    """Return the column, row and chord index of every pixel of all chords, in chord order."""
     dc, dr = chords.end_columns - chords.start_columns, chords.end_rows - chords.start_rows
     steps = np.ceil(np.maximum(np.abs(dc), np.abs(dr))).astype(np.int64)
     count = steps + 1
@@ -243,7 +247,7 @@ class SectionArea(NamedTuple):
 def project_section(half: SectionHalf, projection: Projection, *, is_upper: bool) -> list[SectionArea]:
     """Return the material of one half of the section.
 
-    ``is_upper`` selects the upper half, beyond the axis.
+    ``is_upper`` selects the upper half, on the far side of the axis.
     """
     first, last = _find_visible_range(half.column_edges, projection)
     found = []
@@ -332,7 +336,7 @@ def _piece(
 
 
 def _widen_mask(wanted: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
-    """Return the mask extended by one element on both sides."""
+    """Return the mask extended by one element on each side of its true elements."""
     wider = wanted.copy()
     wider[1:] |= wanted[:-1]
     wider[:-1] |= wanted[1:]
@@ -352,7 +356,7 @@ def _ring(there: PixelLine, back: PixelLine) -> PixelLine:
 
 
 def _thin_line(line: PixelLine) -> PixelLine:
-    """Return the line without points on straight level runs and without points on the same pixel."""
+    """Return the line without the inner points of level runs and without repeated points on a pixel."""
     c, r = np.rint(line.columns * 2.0), np.rint(line.rows * _ROWS_PER_PIXEL)
     keep = np.ones(len(c), dtype=np.bool_)
     keep[1:-1] = (r[1:-1] != r[:-2]) | (r[1:-1] != r[2:])
@@ -369,7 +373,7 @@ def _padded(r: FloatArray) -> FloatArray:
 
 
 def _find_visible_range(edges: FloatArray, projection: Projection) -> tuple[int, int]:
-    """Return the range of visible columns: the first, and the last plus one."""
+    """Return the first visible column, and the last visible column plus one."""
     half = (projection.width / 2 + _OVERDRAW_PX) / projection.scale
     first = int(np.searchsorted(edges, projection.z - half)) - 1
     last = int(np.searchsorted(edges, projection.z + half))

@@ -1,4 +1,4 @@
-"""Stock and clamping below the path: the visible area that they need, and their drawing."""
+"""Stock and clamping below the path, with the visible area that they need."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ _FILLED = 0.28  # opacity of the stock
 class Blank:
     """The specified stock and the clamping of a program, in millimeters.
 
-    ``clamped`` is the material in the chuck. It is the stock, or a bar that the cuts need.
+    ``clamped`` is the material in the chuck. It is the specified stock, or a bar that is large enough for
+    the cuts.
     """
 
     stock: Stock | None
@@ -34,7 +35,7 @@ class Blank:
     clamping: Clamping | None
 
     def cuts_seen(self, cuts: Bounds) -> Bounds:
-        """Return the area of the stock outside the chuck, and of all cuts near the stock.
+        """Return the visible area, which contains the stock outside the chuck and all cuts near the stock.
 
         Without a specified stock, this is the area of the cuts.
         """
@@ -51,7 +52,7 @@ class Blank:
 
     @property
     def chuck_from(self) -> float | None:
-        """The Z of the left edge of the chuck as far as it is worth showing, or None without a chuck."""
+        """Return the Z of the left edge of the visible part of the chuck, or None without a chuck."""
         face = self._face
         return None if face is None else face - _CHUCK_SHOWN * 2.0 * self.clamped.max_radius_mm
 
@@ -79,7 +80,7 @@ def blank_of(picture: ProgramPicture) -> Blank | None:
 
 
 def draw_blank(painter: QPainter, look: ScreenTheme, blank: Blank, projection: Projection) -> None:
-    """Draw the stock as a filled section, and the chuck or collet and tailstock hatched."""
+    """Draw the stock as a filled section, and the chuck or collet and the tailstock as hatched areas."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     if blank.stock is not None:
         ground = look.color("frame")

@@ -1,8 +1,8 @@
-"""Path of a program as shown on the run, editor, list and offset pages.
+"""View of a program's path, as shown on the run, editor, list and offset pages.
 
-The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown next
-to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or
-``show_compared``, set the machine position with ``show_tip``, and call ``draw_slice`` once per frame. This
+The view from above has X+ down and Z+ to the right, with both sides of X0. Cuts with C locked are shown
+next to it, on the face or the unrolled side of the part. Set the content with ``show_picture`` or
+``show_compared``, set the machine position with ``show_tip``, and call ``draw_slice`` once a frame. This
 module calculates only screen positions.
 """
 
@@ -39,10 +39,11 @@ OnBlockPicked = Callable[[int], None]
 
 
 class PathView(Panel):
-    """Panes side by side, each with its own zoom. Keys act on the first pane, touches on the touched pane.
+    """View with several panes side by side, each with its own zoom.
 
-    ``on_picked`` is called with the number of the touched block, counted from 1. While measuring, the view
-    has the keyboard focus and passes unused keys to the window.
+    Keys act on the first pane, and touches act on the touched pane. ``on_picked`` is called with the number
+    of the touched block, counted from 1. While measuring, the view has the keyboard focus and passes unused
+    keys to the window.
     """
 
     accessible_name = "PATH"
@@ -74,42 +75,42 @@ class PathView(Panel):
 
     @property
     def panes(self) -> Sequence[PathPane]:
-        """Visible panes, from left to right."""
+        """Return the visible panes, from left to right."""
         return self._set.visible_panes if self._set is not None else ()
 
     @property
     def first_projection(self) -> Projection | None:
-        """Projection of the first pane, or None without a pane."""
+        """Return the projection of the first pane, or None without a pane."""
         return self.panes[0].projection if self.panes else None
 
     @property
     def has_several_views(self) -> bool:
-        """Whether more than one view exists."""
+        """Return whether more than one view exists."""
         return self._set is not None and self._set.has_several_views
 
     @property
     def is_comparing(self) -> bool:
-        """Whether two pictures are compared."""
+        """Return whether two pictures are compared."""
         return self._set is not None and self._set.picture_before is not None
 
     @property
     def picture(self) -> ProgramPicture | None:
-        """Displayed picture, or None if nothing is displayed."""
+        """Return the displayed picture, or None if nothing is displayed."""
         return self._set.picture if self._set is not None else None
 
     @property
     def is_part_shown(self) -> bool:
-        """Whether a view of the part is displayed."""
+        """Return whether a view of the part is displayed."""
         return any(pane.aspect in PART_ASPECTS for pane in self.panes)
 
     @property
     def has_path(self) -> bool:
-        """Whether the picture contains any path."""
+        """Return whether the picture contains any path."""
         return self.picture is not None and len(self.picture.z) > 0
 
     @property
     def is_metric(self) -> bool:
-        """Whether the program uses millimeters."""
+        """Return whether the program uses millimeters."""
         return self.picture is not None and self.picture.metric
 
     # --- content -------------------------------------------------------------------------------------
@@ -119,14 +120,18 @@ class PathView(Panel):
         self._show(picture, None)
 
     def show_compared(self, before: ProgramPicture | None, after: ProgramPicture | None) -> None:
-        """Show one program before and after a change in one view with a legend, without tip and progress.
+        """Show one program before and after a change, with a legend.
 
-        If ``after`` is None, nothing is shown. If ``before`` is None, only ``after`` is shown.
+        The tool tip and the progress are not shown. If ``after`` is None, nothing is shown. If ``before``
+        is None, only ``after`` is shown.
         """
         self._show(after, before)
 
     def show_approach(self, legs: Sequence[DrawnLeg] | None) -> None:
-        """Show the approach over the path. The first leg is the present tool position."""
+        """Show the approach over the path.
+
+        The first leg is the current tool position.
+        """
         if tuple(legs or ()) != self.drawn_legs:
             self.drawn_legs = tuple(legs or ())
             self._include_points()
@@ -140,13 +145,19 @@ class PathView(Panel):
             self.update()
 
     def mark(self, blocks: list[tuple[int, int]]) -> None:
-        """Draw blocks as thick lines. Each range is (first, last), inclusive, counted from 1."""
+        """Draw blocks as thick lines.
+
+        Each range is (first, last), inclusive and counted from 1.
+        """
         for pane in self.panes:
             pane.mark(blocks)
         self.update()
 
     def draw_slice(self) -> None:
-        """Draw the missing parts for a few milliseconds at most; called once per frame."""
+        """Draw the missing parts for a few milliseconds at most.
+
+        This is called once a frame.
+        """
         if self._set is not None and self._set.draw_slice():
             self.update()
 
@@ -190,7 +201,7 @@ class PathView(Panel):
         self.update()
 
     def _include_points(self) -> None:
-        """Include the whole approach in the visible area, if the view shows it."""
+        """Include the whole approach in the visible area if the view shows the approach."""
         for pane in self.panes:
             if pane.aspect is PathAspect.PATH and self.shows_whole_approach:
                 pane.include_points([(leg.z, leg.x) for leg in self.drawn_legs])
@@ -207,13 +218,13 @@ class PathView(Panel):
         return pane.find_tip_position(tip)
 
     def fit_all(self) -> None:
-        """Show the whole path in every pane."""
+        """Show the whole path in each pane."""
         for pane in self.panes:
             pane.fit_view()
         self.update()
 
     def redraw(self) -> None:
-        """Draw the same view again, with new colors."""
+        """Draw the same view again in new colors."""
         for pane in self.panes:
             pane.redraw()
         self.update()
@@ -223,7 +234,10 @@ class PathView(Panel):
         self._lay_out()
 
     def find_panes_area(self) -> QRectF:
-        """Return the area inside the frame. The panes use the area that the buttons leave free."""
+        """Return the area inside the frame.
+
+        The panes use the area that the buttons do not cover.
+        """
         u = self.theme.u
         bar = TIMELINE_HEIGHT if self.is_part_shown else FOOT
         return self.find_full_area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
@@ -246,21 +260,21 @@ class PathView(Panel):
                 self.select_next_view()
 
     def zoom_view(self, steps: int, position: QPointF | None = None) -> None:
-        """Zoom in (positive steps) or out, around a widget position or the middle."""
+        """Zoom in (positive steps) or out (negative steps), around a widget position or the middle."""
         pane = self.find_pane(position)
         if pane is not None:
             pane.zoom_view(steps, position)
             self.update()
 
     def magnify(self, factor: float, position: QPointF) -> None:
-        """Magnify by a factor around a widget position."""
+        """Magnify the view by a factor, around a widget position."""
         pane = self.find_pane(position)
         if pane is not None:
             pane.magnify(factor, position)
             self.update()
 
     def pan_view(self, across: int, down: int) -> None:
-        """Move the visible area to the right and down by a number of steps."""
+        """Move the visible area by a number of steps to the right and down."""
         pane = self.find_pane(None)
         if pane is not None:
             pane.pan_view(across, down)
@@ -278,7 +292,7 @@ class PathView(Panel):
         }
 
     def make_playback_key_actions(self) -> KeyActions:
-        """Return the actions of the time line keys; empty without a player."""
+        """Return the actions of the timeline keys, or no actions without a player."""
         player = self.part_player
         if player is None:
             return {}
@@ -290,7 +304,10 @@ class PathView(Panel):
         }
 
     def find_pane(self, position: QPointF | None) -> PathPane | None:
-        """Return the pane at a position, or else the pane of the measurement, or the first pane."""
+        """Return the pane at a position.
+
+        If there is none, return the pane of the measurement, or the first pane.
+        """
         found = self._set.at(position) if self._set is not None and position is not None else None
         if found is None:
             found = self.measurement.pane if self.measurement is not None else next(iter(self.panes), None)
@@ -299,7 +316,10 @@ class PathView(Panel):
     # --- measuring and picking -----------------------------------------------------------------------
 
     def set_measuring(self, *, is_on: bool | None = None) -> None:
-        """Start or stop measuring in the last pane. None toggles."""
+        """Start or stop measuring in the last pane.
+
+        None toggles between the two.
+        """
         if is_on is None:
             is_on = self.measurement is None
         if is_on and self.has_path and self.first_projection is not None:
@@ -321,7 +341,7 @@ class PathView(Panel):
         return ruler
 
     def _find_touch_target(self, at: QPointF) -> PathPane | PartTimeline | None:
-        """Return the time line or pane at a position, or None if the press was on a button."""
+        """Return the timeline or pane at a position, or None if the press was on a button."""
         if self.press_at(at):
             return None
         if self._bar is not None and self.is_part_shown and self._bar.handle_touch(at):
@@ -363,7 +383,7 @@ class PathView(Panel):
             event.ignore()
 
     def focusNextPrevChild(self, _next: bool) -> bool:
-        """Disable focus changes with Tab, because Tab is a key of measuring."""
+        """Prevent Tab from moving the focus, because Tab is a key of measuring."""
         return False
 
     def focusOutEvent(self, event: QFocusEvent) -> None:
@@ -376,7 +396,7 @@ class PathView(Panel):
         return self._pointer.handle_touch_event(event) or super().event(event)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom around the pointer with the wheel."""
+        """Zoom with the wheel around the pointer."""
         self.zoom_view(1 if event.angleDelta().y() > 0 else -1, event.position())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -394,7 +414,7 @@ class PathView(Panel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: QPainter) -> None:
-        """Draw panes, title, buttons and legend, or a sentence without a picture."""
+        """Draw the panes, title, buttons and legend, or a message if there is no picture."""
         from app.path import path_marks_view as marks
 
         look, panes = self.theme, self.panes
@@ -427,7 +447,7 @@ class PathView(Panel):
             marks.draw_title(painter, look, panes[0].area, marks.describe_difference(apart, self.is_metric))
 
     def _draw_bar(self, painter: QPainter) -> None:
-        """Draw the time line of the part."""
+        """Draw the timeline of the part."""
         from app.path.part_bar_view import PartTimeline
 
         assert self.part_player is not None

@@ -1,4 +1,4 @@
-"""One view of a program as a polyline, and the builder that collects its points."""
+"""One view of a program as a polyline, with the builder that collects its points."""
 
 from __future__ import annotations
 
@@ -21,7 +21,10 @@ SAME_POINT_MM = 1e-7  # mm
 
 
 class Stroke(IntEnum):
-    """Kind of the chord that ends in a point. ``TURN`` strokes cut on both sides of X0."""
+    """The kinds of chord that end at a point.
+
+    ``TURN`` strokes cut on both sides of X0.
+    """
 
     JUMP = 0  # change to the tip of another tool, not drawn
     RAPID = 1
@@ -31,13 +34,14 @@ class Stroke(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Polyline:
-    """Points ``z``, ``x`` (p,) with the stroke that ends in each. Block n ends with point ``first[n] - 1``.
+    """Points ``z``, ``x`` (p,), with the stroke that ends at each point.
 
-    ``z`` is to the right and ``x`` is down, in mm. Seen from above, they are Z and X. On the face they are
-    face X and minus face Y. On the unrolled side they are Z and minus the circumferential length. ``first``
-    has the shape (blocks + 1,). ``bounds`` is (minimum z, maximum z, minimum x, maximum x) of all cuts, or of
-    all points without cuts. ``centers`` (arcs, 2) contains z and x of arc centers. ``mm_per_degree`` is the
-    length of ``x`` in mm per degree of C, or 0 if ``x`` is not a circumferential length.
+    Block n ends with point ``first[n] - 1``. ``z`` is to the right and ``x`` is down, in mm. Seen from
+    above, they are Z and X. On the face they are face X and minus face Y. On the unrolled side they are Z
+    and minus the circumferential length. ``first`` has the shape (blocks + 1,). ``bounds`` is (minimum z,
+    maximum z, minimum x, maximum x) of all cuts, or of all points if there are no cuts. ``centers`` (arcs,
+    2) contains z and x of arc centers. ``mm_per_degree`` is the length of ``x`` in mm per degree of C, or 0
+    if ``x`` is not a circumferential length.
     """
 
     z: FloatArray
@@ -50,7 +54,7 @@ class Polyline:
 
     @property
     def blocks(self) -> int:
-        """Number of elementary blocks."""
+        """Return the number of elementary blocks."""
         return len(self.first) - 1
 
     def count_finished_points(self, blocks: int) -> int:
@@ -58,12 +62,15 @@ class Polyline:
         return int(self.first[max(0, min(blocks, self.blocks))])
 
     def find_block(self, point: int) -> int:
-        """Return the number of the block, from 1, that contains the chord ending in a point (from 0)."""
+        """Return the number of the block (from 1) with the chord that ends at a point (from 0)."""
         return int(np.searchsorted(self.first, point, side="right"))
 
 
 class PolylineBuilder:
-    """Builds a polyline: call ``add_point`` for each point of a block, then ``end_block``."""
+    """Builder of a polyline.
+
+    For each block, call ``add_point`` for each of its points, then ``end_block``.
+    """
 
     def __init__(self, blocks: int = 0) -> None:
         self.z, self.x, self.stroke = array("d"), array("d"), array("B")
@@ -71,7 +78,7 @@ class PolylineBuilder:
         self.centers = array("d")
 
     def start_at(self, z: float, x: float) -> None:
-        """Set the start point, with a jump if the last point differs."""
+        """Set the start point, and add a jump if the last point differs."""
         if self.z and abs(self.z[-1] - z) < SAME_POINT_MM and abs(self.x[-1] - x) < SAME_POINT_MM:
             return
         self.add_point(z, x, Stroke.JUMP)
@@ -91,11 +98,11 @@ class PolylineBuilder:
         self.first_points.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
 
     def end_block(self) -> None:
-        """End a block that contains all points since the last call."""
+        """End a block that contains all points added since the previous call."""
         self.first_points.append(len(self.z))
 
     def make_arrays(self) -> tuple[FloatArray, FloatArray, npt.NDArray[np.uint8], npt.NDArray[np.int64]]:
-        """Return ``z``, ``x``, ``stroke`` and ``first`` of the polyline."""
+        """Return the arrays ``z``, ``x``, ``stroke`` and ``first`` of a polyline."""
         return (
             np.array(self.z),
             np.array(self.x),
@@ -105,7 +112,7 @@ class PolylineBuilder:
 
 
 def find_bounds(z: FloatArray, x: FloatArray, stroke: npt.NDArray[np.uint8]) -> Bounds:
-    """Return the bounding box of all cuts, or of all points without cuts."""
+    """Return the bounding box of all cuts, or of all points if there are no cuts."""
     if not len(z):
         return 0.0, 0.0, 0.0, 0.0
     cut = np.flatnonzero(stroke >= Stroke.TURN)
@@ -125,7 +132,10 @@ MAX_TURN_POINTS = 720  # maximum number of points of one turning move
 
 
 def count_arc_chords(radius: float, sweep: float) -> int:
-    """Return the number of chords of an arc that deviate from it by ``MAX_CHORD_ERROR_MM`` at most."""
+    """Return the number of chords for an arc.
+
+    The chords deviate from the arc by at most ``MAX_CHORD_ERROR_MM``.
+    """
     if radius <= MAX_CHORD_ERROR_MM:
         return 4
     step = 2 * math.acos(1 - MAX_CHORD_ERROR_MM / radius)
@@ -138,7 +148,7 @@ def count_turn_chords(degrees: float) -> int:
 
 
 def sample_mill_move(move: PlaneMove, degrees: float) -> list[MillPoint]:
-    """Return the points of a mill move in the plane's frame, after the start up to the end.
+    """Return the points of a mill move in the frame of the plane, from after the start to the end.
 
     ``degrees`` is the rotation of C during the move.
     """

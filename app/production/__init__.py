@@ -1,1 +1,1 @@
-"""Production data: tool life, cycles and stops."""
+"""Production data, which consists of tool life, cycles and stops."""

@@ -1,4 +1,4 @@
-"""Recorder of cycle times and stops from the executor's events, one row per part and per stop."""
+"""Recorder of cycle times and stops from the executor's events, with one row per part and per stop."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _FAULT_STATES = frozenset({MachineState.FAULT.value, MachineState.ESTOP.value})
 
 @dataclass(slots=True)
 class _Cycle:
-    """Cycle of the present part: its row, its start time and its stopped time in seconds."""
+    """Cycle of the current part, with its row, its start time, and its stopped time in seconds."""
 
     row: CycleRow
     start_time: float
@@ -37,10 +37,11 @@ class _Stop:
 
 
 class CycleRecorder:
-    """Recorder of cycles. ``hear`` receives every event in order and posts to the store without waiting.
+    """Recorder of cycles.
 
-    Times of day are those of the call, and durations are those of the events. The reason that ends a cycle
-    counts as a stop until the next cycle starts.
+    ``hear`` receives every event in order, and posts the rows to the store without waiting. The time of day
+    of a row is the time of the call. Durations are calculated from the event times. The reason that ends a
+    cycle counts as a stop until the next cycle starts.
     """
 
     def __init__(self, read_clock: Callable[[], str] = get_utc_now_text) -> None:
@@ -52,7 +53,7 @@ class CycleRecorder:
         self._numbered = 0
 
     def hear(self, event: LogEvent, cycles: CycleRecords) -> None:
-        """Update the present cycle and stop with one event of the executor."""
+        """Update the current cycle and stop with one event of the executor."""
         if event.kind == "load":
             self._program = Path(event.text).name
         elif event.kind in {"start", "repeat"}:
@@ -73,7 +74,10 @@ class CycleRecorder:
                 self._begin_stop(event, BETWEEN_CYCLES, named=True)
 
     def resume_part(self, program: str, time_s: float, cycles: CycleRecords) -> None:
-        """Record the rest of a part that was started before this process. It counts as restarted."""
+        """Record the remainder of a part that was started before this process.
+
+        The part counts as restarted.
+        """
         self._program = Path(program).name
         self._begin(LogEvent(time_s, "start", program), cycles)
         assert self._cycle is not None
@@ -130,7 +134,10 @@ class CycleRecorder:
             self._end_stop(event, cycles)
 
     def _interrupt_cycle(self, event: LogEvent, cycles: CycleRecords) -> None:
-        """End the cycle after an alarm or E-stop. Production is stopped until the next start."""
+        """End the cycle after an alarm or E-stop.
+
+        Production is stopped until the next start.
+        """
         self._end(event, cycles, event.text)
         if self._stop is not None and self._stop.row.reason == BETWEEN_CYCLES:
             self._end_stop(event, cycles)
@@ -153,7 +160,7 @@ class CycleRecorder:
         cycles.record_stop(row)
 
     def _name_reason(self, reason: str) -> None:
-        """Set the reason for the present stop, or for the next stop if the machine runs."""
+        """Set the reason for the current stop, or for the next stop if the machine is running."""
         stop = self._stop
         if stop is None:
             self._reason = reason

@@ -1,4 +1,4 @@
-"""Production data as the pages see them: tool life, stops and data of optional features, with changes."""
+"""Production data as the pages see it: tool life, stops and data of optional features, with changes."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MAX_ROWS = 1000  # maximum number of readings, cycles and stops
 
 @dataclass(frozen=True, slots=True)
 class ProductionData:
-    """Production data: tool life of all tools, the latest stops, and data of optional features."""
+    """Production data, with tool life of all tools, the latest stops, and data of optional features."""
 
     program: str = ""
     tool_lives: dict[int, ToolLifeRow] = field(default_factory=dict)
@@ -42,9 +42,10 @@ class ProductionData:
 def read_production(
     store: Store, program: str, tools: OffsetKind, readers: Mapping[str, ReadFeature]
 ) -> ProductionData:
-    """Return the stored production data. ``tools`` is the tool table of the machine.
+    """Return the stored production data.
 
-    The call reads the store and can take a while. Raises StoreError.
+    ``tools`` is the tool table of the machine. The call reads the store and can take a while. Raise
+    StoreError on failure.
     """
     more = {name: read(store, program) for name, read in readers.items()}
     with store.read() as connection:
@@ -62,11 +63,11 @@ def find_tool_table_kind(machine_kind: str) -> OffsetKind:
 
 @dataclass(slots=True)
 class PartsBook:
-    """Access to stored production data. ``update`` is called once per frame, and ``current`` is the latest
-    data.
+    """Access to stored production data.
 
-    A worker reads, and the store writes. Without ``store`` nothing is stored. ``no_store_reason`` is the
-    reason, and ``lock_reason`` is the message on the pages of measured parts.
+    ``update`` is called once a frame, and ``current`` is the latest data. A worker reads the data, and the
+    store writes it. Without ``store``, nothing is stored. ``no_store_reason`` is the reason, and
+    ``lock_reason`` is the message on the pages of measured parts.
     """
 
     store: Store | None = None
@@ -88,7 +89,7 @@ class PartsBook:
 
     @property
     def lock_reason(self) -> str:
-        """Reason why measured parts are not stored, or an empty string."""
+        """Return the reason why measured parts are not stored, or an empty string."""
         if self.store is not None:
             return ""
         return (
@@ -98,7 +99,7 @@ class PartsBook:
         )
 
     def update(self, program: str) -> None:
-        """Process finished reading and writing, and read changed data again."""
+        """Process finished reads and writes, and read changed data again."""
         if self._reopened is not None:
             self.store, self.no_store_reason = self._reopened
             self._reopened, self._behind, self._stale = None, None, True
@@ -116,7 +117,7 @@ class PartsBook:
             self.worker.request(lambda _watch: work(), self._read, self._failed)
 
     def _is_reload_due(self, store: Store) -> bool:
-        """Return whether data must be read again and all earlier changes are written."""
+        """Return whether data must be read again and all earlier changes have been written."""
         if self._stale and self._behind is None:
             self._stale = False
             try:
@@ -138,7 +139,7 @@ class PartsBook:
         self._call_done()
 
     def _call_done(self) -> None:
-        """Call the callbacks for changes that are on the disk and read again."""
+        """Call the callbacks of changes that have been written to the disk and read again."""
         told, self._kept = self._kept, []
         for done in told:
             done()
@@ -157,17 +158,17 @@ class PartsBook:
                 failed(str(error))
 
     def request_reload(self) -> None:
-        """Request a new reading because data was stored elsewhere."""
+        """Request that the data is read again because other data was stored elsewhere."""
         self._stale = True
 
     @property
     def is_busy(self) -> bool:
-        """Whether changes are still being written."""
+        """Return whether changes are still being written."""
         return bool(self._saving or self._kept)
 
     @property
     def is_settled(self) -> bool:
-        """Whether ``current`` equals the stored data, with nothing left to write or read."""
+        """Return whether ``current`` equals the stored data, with nothing left to write or read."""
         return not (self.is_busy or self._stale or self._behind is not None or self._reading)
 
     def write_change(
@@ -180,8 +181,8 @@ class PartsBook:
     ) -> None:
         """Store a change.
 
-        A later ``update`` calls ``on_done`` once the change is on the disk, or ``on_failed`` with a reason.
-        ``description`` is the text for the change log, or empty for no entry.
+        A later ``update`` calls ``on_done`` when the change is on the disk, or ``on_failed`` with a reason.
+        ``description`` is the text for the change log. If it is empty, there is no log entry.
         """
         why = (
             (self.no_store_reason or PARTS_NOT_STORED)
@@ -203,7 +204,7 @@ class PartsBook:
             on_failed(str(error))
 
     def save_tool_use(self, lives: Iterable[ToolLifeRow], totals: ToolTotals | None = None) -> None:
-        """Store the use of tools, and the totals of the control that it includes, in one transaction."""
+        """Store the use of tools in one transaction with the totals of the control that include this use."""
         store, tools = self.store, self.tool_kind
         if store is None:
             return
@@ -221,11 +222,14 @@ class PartsBook:
         store.keep(keeping)
 
     def use_store(self, store: Store | None, error_text: str) -> None:
-        """Replace the store; callable from any thread."""
+        """Replace the store.
+
+        Any thread may call this.
+        """
         self._reopened = store, error_text
 
     def close(self) -> None:
-        """Stop the worker."""
+        """Stop the worker that reads the data."""
         self.worker.close()
 
 

@@ -1,4 +1,4 @@
-"""Watch of tools and parts, updated each frame: tool life, due measurements and blocked parts."""
+"""Watch of tools and parts, which updates tool life, due measurements and blocked parts in each frame."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ class ProductionPlan(Protocol):
     """Plan of an optional feature for the next parts."""
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
-        """Return the reason why the next part must not start, or an empty string."""
+        """Return why the next part must not start, or an empty string."""
 
     def due_reminder(self) -> str:
-        """Return the text for the prompt line, or an empty string."""
+        """Return the reminder for the prompt line, or an empty string."""
 
 
 @dataclass(slots=True)
 class PartsWatch:
     """Watch of production.
 
-    ``observe`` is called once per frame, and ``due_reminder`` by the prompt line, without waiting.
+    ``observe`` is called once a frame. The prompt line calls ``due_reminder``, which does not wait.
     """
 
     desk: Desk
@@ -44,11 +44,14 @@ class PartsWatch:
 
     @property
     def program_name(self) -> str:
-        """Name of the loaded program."""
+        """Return the name of the loaded program."""
         return Path(self.desk.program_loader.loaded.name).name
 
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Update production data, tool life and the lock of the next part. Called once per frame."""
+        """Update production data, tool life and the lock of the next part.
+
+        This is called once a frame.
+        """
         if snapshot.ends != self._ends or self.desk.offset_book.changes != self._changes:
             self._ends, self._changes = snapshot.ends, self.desk.offset_book.changes
             self.parts_book.request_reload()
@@ -85,10 +88,10 @@ class PartsWatch:
         )
 
     def report_refusal(self, reason: str) -> None:
-        """Report the reason why data was not stored."""
+        """Report why data was not stored."""
         self.desk.say(tr(Message("NOT SAVED: {why}", why=reason)))
 
     def close(self) -> None:
-        """Store the remaining tool use and stop the worker."""
+        """Store the remaining tool use, and stop the worker."""
         self.tool_life_watch.save_all()
         self.parts_book.close()

@@ -1,4 +1,4 @@
-"""Tool life during production: counts the use of each tool, reports it and can block the next part."""
+"""Tool life during production: the use of each tool is counted and reported, and can block the next part."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ def make_tool_life(row: ToolLifeRow) -> ToolLife:
 
 @dataclass(slots=True)
 class ToolLifeWatch:
-    """Watch of tool life. Counts are maintained here after the store was read, and limits are in the store.
+    """Watch of tool life.
 
-    On a mill, the counts apply to a whole tool instead of an insert.
+    After the store has been read, the counts are maintained in this object. The limits are in the store. On
+    a mill, the counts apply to a whole tool instead of an insert.
     """
 
     parts_book: PartsBook
@@ -50,9 +51,9 @@ class ToolLifeWatch:
     _seen: object = None
 
     def read_lives(self) -> dict[int, ToolLife]:
-        """Return the tool life of all tools with a limit or use.
+        """Return the tool life of all tools that have a limit or were used.
 
-        The same object is returned while nothing changes.
+        The same object is returned until something changes.
         """
         of = (self.parts_book.load_count, self._changes)
         if self._lives[0] != of:
@@ -69,7 +70,10 @@ class ToolLifeWatch:
         return found
 
     def observe(self, snapshot: Snapshot, show_message: Callable[[str], None]) -> None:
-        """Update the use of tools from a snapshot, and report tool life. Called once per frame."""
+        """Update the use of tools from a snapshot, and report tool life.
+
+        This is called once a frame.
+        """
         if self._control != self.control():
             self._begin(snapshot, self.control())
         if not self.parts_book.load_count and self.parts_book.store is not None:
@@ -93,7 +97,10 @@ class ToolLifeWatch:
         self._report(show_message)
 
     def _begin(self, snapshot: Snapshot, control: str) -> None:
-        """Continue from the stored totals of this control, or else from those of the snapshot."""
+        """Continue from the stored totals of this control.
+
+        If none are stored, continue from the totals of the snapshot.
+        """
         self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
         stored = (
             ToolTotals.of_plain(self.parts_book.access.persistence.read_setting(TOTALS)) if control else None
@@ -145,7 +152,10 @@ class ToolLifeWatch:
     # --- inserts -------------------------------------------------------------------------------------
 
     def change_insert(self, number: int, reason: str, on_done: Callable[[str], None]) -> None:
-        """Reset the use of a tool after a change of insert. ``on_done`` is called with the result."""
+        """Reset the use of a tool after a change of insert.
+
+        ``on_done`` is called with the result.
+        """
         parts, seconds = self.counted_use.get(number, (0, 0.0))
         known, who = number in self.counted_use, self.parts_book.access.persistence.who()
 
@@ -167,7 +177,10 @@ class ToolLifeWatch:
         self.parts_book.write_change(ProtectedChange.INSERTS, operation, done, on_done)
 
     def set_cutting_time(self, number: int, cutting_time_s: float, on_done: Callable[[str], None]) -> None:
-        """Set the cutting time of the tool in the spindle in seconds. 0 means a new tool."""
+        """Set the cutting time of the tool in the spindle in seconds.
+
+        A value of 0 means a new tool.
+        """
         life = self.read_lives().get(number)
         if cutting_time_s <= 0.0:
             self.change_insert(number, life.words if life is not None else "", on_done)
@@ -194,14 +207,14 @@ class ToolLifeWatch:
         )
 
     def discard_counts(self) -> None:
-        """Discard the counts, because another store replaces the present one."""
+        """Discard the counts, because another store replaces the current store."""
         self.counted_use, self._kept = {}, {}
         self._changes += 1
 
     # --- messages and lock -------------------------------------------------------------------------------
 
     def due_reminder(self) -> str:
-        """Return the message about the tool nearest its end of life, or an empty string."""
+        """Return the message about the tool that is nearest to the end of its life, or an empty string."""
         lives = self.read_lives()
         if self._due[0] is not lives:
             told = [life for life in lives.values() if life.state in _REPORTED_STATES]
@@ -209,7 +222,10 @@ class ToolLifeWatch:
         return self._due[1]
 
     def find_block_reason(self, snapshot: Snapshot, tools: Collection[int]) -> str:
-        """Return the reason why no part with these tools may start, including the use by the present part."""
+        """Return why no part with these tools may start.
+
+        The use by the current part is included.
+        """
         for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is ToolLifeState.USED_UP:
@@ -224,14 +240,14 @@ _REPORTED_STATES = frozenset({ToolLifeState.WARNING, ToolLifeState.USED_UP})
 
 
 def make_life_notice(life: ToolLife) -> str:
-    """Return the message about a tool life that is ending."""
+    """Return the message about a tool whose life is ending."""
     if life.state is ToolLifeState.USED_UP:
         return tr(Message("TOOL {number} LIFE USED UP: {words}", number=life.number, words=tr(life.words)))
     return tr(Message("TOOL {number} LIFE: {words} USED", number=life.number, words=tr(life.words)))
 
 
 def find_spent_reason(life: ToolLife, tools: OffsetKind) -> str:
-    """Return the reason why no part may start with this tool."""
+    """Return why no part may start with this tool."""
     if tools is OffsetKind.MILL_TOOL:
         how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
         return Message(

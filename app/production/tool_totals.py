@@ -1,4 +1,4 @@
-"""Totals of a control whose use of tools is stored, so that the next screen adds only the difference."""
+"""Totals of a control whose tool use is stored, so that the next screen adds only the difference."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ TOTALS = "tool_totals"  # key of the setting
 
 @dataclass(frozen=True, slots=True)
 class ToolTotals:
-    """Finished parts and cutting seconds by tool of a control, and the tools of its present part."""
+    """Number of finished parts, cutting seconds by tool, and tools of the current part of a control."""
 
     control: str
     ends: int = 0
@@ -19,13 +19,13 @@ class ToolTotals:
 
     @property
     def plain(self) -> dict[str, object]:
-        """The totals as a setting."""
+        """Return the totals as the value of a setting."""
         cut = {str(number): seconds for number, seconds in self.cut.items()}
         return {"control": self.control, "ends": self.ends, "cut": cut, "in_part": sorted(self.in_part)}
 
     @classmethod
     def of_plain(cls, value: object) -> ToolTotals | None:
-        """Return the totals of a setting, or None if it is not set or damaged."""
+        """Return the totals of a setting value, or None if the value is missing or damaged."""
         match value:
             case {
                 "control": str() as control,

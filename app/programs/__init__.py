@@ -1,1 +1,4 @@
-"""Page PROGRAMS: list, preview, copy, rename, delete, import and export; model and view."""
+"""Model and view of the PROGRAMS page.
+
+The page lists, previews, copies, renames, deletes, imports and exports programs.
+"""

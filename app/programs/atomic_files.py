@@ -1,4 +1,7 @@
-"""Atomic writing of program files: written next to the target, flushed to the disk, then renamed."""
+"""Atomic writing of program files.
+
+A file is written next to the target, flushed to the disk, and then renamed.
+"""
 
 from __future__ import annotations
 
@@ -16,13 +19,17 @@ from core.message import CodedError, Message, get_error_code
 
 
 class FileOperationError(CodedError):
-    """Failed file operation that left the file unchanged. The message states the reason."""
+    """Failed file operation that did not change the file.
+
+    The message states the reason.
+    """
 
 
 def write_program_file(path: Path, data: bytes) -> None:
     """Replace a file atomically with ``data``, which must be valid program text.
 
-    The draft is read back as a program first and receives the permissions of the old file. Raises FileError.
+    The draft is first read back as a program. It receives the permissions of the old file. Raise
+    FileOperationError on failure.
     """
     target = path.resolve()  # the target of a link is replaced instead of the link
     with ExitStack() as stack:
@@ -55,7 +62,10 @@ def write_program_file(path: Path, data: bytes) -> None:
 
 
 def copy_to_medium(target: Path, data: bytes) -> None:
-    """Copy a file to a removable medium atomically, and verify it. Raises FileError."""
+    """Copy a file to a removable medium atomically, and verify the copy.
+
+    Raise FileOperationError on failure.
+    """
     try:
         with _make_temporary(target) as draft:
             _fill(draft, data)
@@ -76,7 +86,10 @@ def copy_to_medium(target: Path, data: bytes) -> None:
 
 
 def write_new_file(target: Path, data: bytes) -> None:
-    """Write a new file without ever replacing an existing one. Raises FileError if the name exists."""
+    """Write a new file, and never replace an existing file.
+
+    Raise FileOperationError if the name exists.
+    """
     try:
         create_synced_folder(target.parent)
     except OSError as error:
@@ -101,7 +114,10 @@ def write_new_file(target: Path, data: bytes) -> None:
 
 
 def flush_folder(folder: Path) -> None:
-    """Wait until all files of the folder are written to the medium. Raises FileError."""
+    """Wait until all files of the folder are written to the medium.
+
+    Raise FileOperationError on failure.
+    """
     try:
         sync_folder(folder)
     except OSError as error:
@@ -115,9 +131,9 @@ def flush_folder(folder: Path) -> None:
 
 
 def read_if_exists(path: Path) -> bytes | None:
-    """Return the content of a file, or None if it does not exist.
+    """Return the content of a file, or None if the file does not exist.
 
-    Raises FileError if it cannot be read.
+    Raise FileOperationError if the file cannot be read.
     """
     try:
         return read_input_bytes(path, MAX_FILE_SIZE)

@@ -1,4 +1,4 @@
-"""Prompt ``FILE TO BE PROCESSED``: a name is typed, or selected in the list by keys or touch."""
+"""Prompt ``FILE TO BE PROCESSED``, where a name is typed, or selected in the list by keys or touch."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ ROW_HEIGHT = 6.6  # units: a fingertip
 class FilePrompt(RowPanel):
     """Prompt for a program.
 
-    Typing filters the list, and Enter uses the exact name or the selected row.
+    Typing filters the list. Enter opens the program with exactly this name, or the selected row.
     """
 
     title = ASK_FILE
@@ -53,18 +53,24 @@ class FilePrompt(RowPanel):
 
     @property
     def message_text(self) -> str:
-        """Message about the name, or an empty string."""
+        """Return the message about the name, or an empty string."""
         return FILE_NOT_FOUND if self.is_not_found else ""
 
     @property
     def wanted_name(self) -> str:
-        """Program for F3: the row that the user selected, or the typed name, or an empty string."""
+        """Return the program for F3.
+
+        This is the row that the user selected, the typed name, or an empty string.
+        """
         if self._moved and self._entries:
             return str(self._entries[self._row].path)
         return self.name_edit.text().strip()
 
     def prompt_text(self) -> str:
-        """Return the prompt. Cycle Start is not mentioned, because its keys are text here."""
+        """Return the prompt.
+
+        The prompt does not mention Cycle Start, because its keys are text here.
+        """
         return FILE_NOT_FOUND if self.is_not_found else CHOOSE_FILE
 
     def show_prompt(self) -> None:
@@ -77,13 +83,19 @@ class FilePrompt(RowPanel):
         self.name_edit.setFocus()
 
     def close_prompt(self) -> None:
-        """Close the prompt. The loaded program remains."""
+        """Close the prompt.
+
+        The loaded program does not change.
+        """
         if self.isVisible():
             self.hide()
             self._closed()
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Handle keys of the list, Enter and Esc. All other keys are text."""
+        """Handle keys of the list, Enter and Esc.
+
+        All other keys are text.
+        """
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             return self._key(event)
         return False
@@ -156,7 +168,7 @@ class FilePrompt(RowPanel):
         style_line_edit(self.name_edit, self.theme, 2.6, 1.0)
 
     def scroll_by(self, rows: int) -> None:
-        """Move the selection."""
+        """Move the selection by a number of rows."""
         self._mark(self._row + rows)
 
     def draw(self, painter: ThemedPainter) -> None:

@@ -1,7 +1,7 @@
 """Import and export of programs by folder and USB stick.
 
-An existing program is replaced only with permission, and its text is archived as a version first. A copy is
-reported as done after it was written to the disk and verified.
+An existing program is replaced only with permission, and its text is first archived as a version. A copy is
+reported as done only after it has been written to the disk and verified.
 """
 
 from __future__ import annotations
@@ -45,7 +45,10 @@ OPEN_LOCATION_FIRST = "OPEN A LOCATION FIRST   ARROWS: SELECT   ENTER: OPEN"
 
 @dataclass(frozen=True, slots=True)
 class TransferResult:
-    """Result of a transfer: copied names, existing names with different content, and errors of the proof."""
+    """Result of a transfer.
+
+    It contains the copied names, the existing names with different content, and the errors of the proof.
+    """
 
     copied_names: tuple[str, ...] = ()
     different_names: tuple[str, ...] = ()
@@ -62,10 +65,10 @@ def import_programs(
     is_drawing: AcceptsName = lambda _name: False,
     report_progress: ReportProgress = lambda _done, _of: None,
 ) -> TransferResult:
-    """Copy programs into the operator's folder and prove each of them. Drawings are only copied.
+    """Copy programs into the operator's folder, and prove each of them.
 
-    Nothing is written while a program with the same name and other content exists, unless ``replace`` is set.
-    Raises FileError.
+    Drawings are copied but not proved. Nothing is written while a program with the same name and other
+    content exists, unless ``may_overwrite`` is set. Raise FileOperationError on failure.
     """
     texts = {
         check_name(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
@@ -95,10 +98,11 @@ def export_programs(
     medium: TargetMedium | None = None,
     report_progress: ReportProgress = lambda _done, _of: None,
 ) -> TransferResult:
-    """Copy programs to a folder or stick, and return after they are written to the medium.
+    """Copy programs to a folder or stick, and return after they have been written to the medium.
 
-    ``medium`` is the medium at the time when the folder was opened. Another medium is rejected. Nothing is
-    written while a different program with the same name exists, unless ``replace`` is set. Raises FileError.
+    ``medium`` is the medium that was present when the folder was opened. Another medium is rejected.
+    Nothing is written while a different program with the same name exists, unless ``may_overwrite`` is set.
+    Raise FileOperationError on failure.
     """
     texts = {path.name: _bytes(path) for path in sources}
     medium = medium or TargetMedium.from_folder(folder)
@@ -120,7 +124,7 @@ def export_programs(
 
 @contextmanager
 def _copy_context(medium: TargetMedium, count: int, total: int) -> Iterator[None]:
-    """Convert an error on a stick into a message for the operator, with the number of copied programs."""
+    """Convert an error of a stick into a message for the operator, with the number of copied programs."""
     try:
         yield
     except FileOperationError as error:
@@ -131,7 +135,10 @@ def _copy_context(medium: TargetMedium, count: int, total: int) -> Iterator[None
 
 
 def _read_program(path: Path) -> bytes:
-    """Return the bytes of a file that is a valid program text. Raises FileError otherwise."""
+    """Return the bytes of a file if it is a valid program text.
+
+    Raise FileOperationError otherwise.
+    """
     data = _bytes(path)
     try:
         load_source(path)
@@ -160,7 +167,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _find_different(texts: dict[str, bytes], folder: Path) -> tuple[str, ...]:
-    """Return the names of programs that exist in the folder with another text."""
+    """Return the names of programs that exist in the folder with different text."""
     found = []
     for name, text in texts.items():
         other = find_same_name(folder, name)
@@ -191,7 +198,8 @@ def _keep_old(target: Path, persistence: Persistence, text: bytes) -> None:
 class ImportExport:
     """Import and export through a folder chooser.
 
-    ``check`` proves an imported program, and ``on_finished`` is called when the list must be read again.
+    ``check_program`` proves an imported program. ``on_finished`` is called when the list must be read
+    again.
     """
 
     desk: Desk
@@ -212,7 +220,7 @@ class ImportExport:
     def open_chooser(
         self, listed_paths: tuple[Path, ...], selected_path: Path | None, is_export: bool
     ) -> None:
-        """Open the chooser at the list of places."""
+        """Open the chooser at the list of locations."""
         if not is_export and self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
         self.is_open, self.is_export, self.listed_paths, self.selected_path = (
@@ -227,7 +235,7 @@ class ImportExport:
         self._look()
 
     def close_chooser(self) -> None:
-        """Close the chooser."""
+        """Close the chooser, and discard an open question."""
         self.is_open, self._asked = False, ()
 
     def _look(self) -> None:
@@ -259,7 +267,10 @@ class ImportExport:
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a line, and Enter opens a folder or imports a program."""
+        """Handle a key.
+
+        Arrow keys select a line, and Enter opens a folder or imports a program.
+        """
         if key in ROW_STEPS:
             self.select_line(self.folder_chooser.selected_row + ROW_STEPS[key])
         elif key == "Enter":
@@ -269,13 +280,16 @@ class ImportExport:
         return True
 
     def select_line(self, row: int) -> None:
-        """Select a line."""
+        """Select a line of the chooser."""
         self._asked = ()
         self.desk.clear_prompt_line()
         self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.lines) - 1, row))
 
     def touch_line(self, row: int) -> None:
-        """Select the touched line. A touch on the selected line acts like Enter."""
+        """Select the touched line.
+
+        A touch on the line that is already selected acts like Enter.
+        """
         if row == self.folder_chooser.selected_row:
             self._enter()
         else:
@@ -300,7 +314,7 @@ class ImportExport:
             self._send((self.selected_path,))
 
     def handle_escape(self) -> None:
-        """Go back to the list of places, or close the chooser."""
+        """Go back to the list of locations, or close the chooser."""
         if self.folder_chooser.current_folder is None:
             self.close_chooser()
         else:
@@ -354,14 +368,17 @@ class ImportExport:
         )
 
     def _update_progress(self, done: int, total: int) -> None:
-        """Store the progress for the prompt line; called by the worker."""
+        """Store the progress for the prompt line.
+
+        The worker calls this.
+        """
         self._done_of = (done, total)
 
     @staticmethod
     def _run_transfer(work: Callable[[], TransferResult], medium: TargetMedium | None) -> TransferResult:
-        """Run a transfer on the worker. A missing stick is reported as the cause of a failure.
+        """Run a transfer on the worker, and report a missing stick as the cause of a failure.
 
-        Raises FileError.
+        Raise FileOperationError on failure.
         """
         try:
             return work()

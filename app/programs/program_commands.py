@@ -1,6 +1,6 @@
 """Copying, renaming and deleting programs, with a name entry or a confirmation.
 
-A worker changes the files, and no file is ever overwritten.
+A worker changes the files. Files are never overwritten.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
 def check_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
-    """Return ``name``, with the extension of ``reference_name`` if it has none.
+    """Return ``name``, and add the extension of ``reference_name`` if it has no extension.
 
-    Raises FileError for an invalid name.
+    Raise FileOperationError for an invalid name.
     """
     name = name.strip()
     if not name:
@@ -51,13 +51,16 @@ def check_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_p
 
 
 def remove_extension(name: str) -> str:
-    """Return the name without its extension, or the whole name if the rest ends in another extension."""
+    """Return the name without its extension.
+
+    If the remaining name ends in another program extension, return the whole name.
+    """
     left = Path(name).stem
     return name if Path(left).suffix.lower() in PROGRAM_EXTENSIONS - {""} else left
 
 
 def find_same_name(folder: Path, name: str) -> str:
-    """Return the name of the file that is equal except for case, or an empty string."""
+    """Return the name of the file in the folder that is equal except for case, or an empty string."""
     try:
         names = [path.name for path in folder.iterdir()]
     except OSError:
@@ -66,7 +69,10 @@ def find_same_name(folder: Path, name: str) -> str:
 
 
 def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsName = is_program_name) -> str:
-    """Copy a program to the operator's folder and return its name. Raises FileError."""
+    """Copy a program to the operator's folder, and return its name.
+
+    Raise FileOperationError on failure.
+    """
     name = check_name(name, source, accepts_name)
     _free(folder, name)
     write_program_file(folder / name, _read(source))
@@ -76,9 +82,9 @@ def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsNam
 def rename_program(
     source: Path, name: str, persistence: Persistence, accepts_name: AcceptsName = is_program_name
 ) -> str:
-    """Rename a program together with its versions, count and record, and return the name.
+    """Rename a program together with its versions, count and record, and return the new name.
 
-    Raises FileError.
+    Raise FileOperationError on failure.
     """
     name = check_name(name, source, accepts_name)
     if name == source.name:
@@ -104,9 +110,9 @@ def rename_program(
 
 
 def delete_program(path: Path, persistence: Persistence) -> str:
-    """Archive a program as a version and delete its file.
+    """Archive a program as a version, and delete its file.
 
-    If FileError is raised, the file still exists.
+    If FileOperationError is raised, the file still exists.
     """
     try:
         persistence.save_version(path.name, _read(path), "deleted")
@@ -136,9 +142,9 @@ def _read(path: Path) -> bytes:
 
 @dataclass(slots=True)
 class ProgramCommands:
-    """Commands on the selected program.
+    """Commands for the selected program.
 
-    ``on_changed`` is called with the name to select after the list was read again.
+    After the list has been read again, ``on_changed`` is called with the name to select.
     """
 
     desk: Desk
@@ -151,7 +157,7 @@ class ProgramCommands:
     name_field: InputField = field(default_factory=lambda: InputField(words=True))
 
     def ask_name(self, question: str) -> None:
-        """Ask for the name of a copy or the new name."""
+        """Ask for the name of a copy, or for a new name."""
         here = self.find_selected()
         if here is None:
             self.desk.say(NO_SELECTION)
@@ -166,12 +172,12 @@ class ProgramCommands:
 
     @property
     def is_protected(self) -> bool:
-        """Whether the selected program cannot be renamed or deleted now."""
+        """Return whether the selected program cannot be renamed or deleted now."""
         here = self.find_selected()
         return here is None or bool(self._find_protection(here))
 
     def _find_protection(self, program: ListedFile) -> str:
-        """Return the reason why a program cannot be changed, or an empty string."""
+        """Return why a program cannot be changed, or an empty string."""
         if program.is_sample:
             return SAMPLE_READ_ONLY
         found = self.desk.read_snapshot().interrupted
@@ -199,7 +205,10 @@ class ProgramCommands:
             )
 
     def confirm_delete(self) -> None:
-        """Delete the selected program after confirmation. Its text remains as a version."""
+        """Delete the selected program after the operator confirms.
+
+        Its text remains stored as a version.
+        """
         here = self.find_selected()
         if here is None or self._find_protection(here):
             self.desk.say(self._find_protection(here) if here else NO_SELECTION)

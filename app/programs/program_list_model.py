@@ -1,4 +1,6 @@
-"""Model of the program list without Qt: search, sort, preview, load, file commands and transfer."""
+"""Model of the program list without Qt, with search, sorting, preview, loading, file commands
+and transfer.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,10 @@ DRAWING_HINT = "{name} IS A DRAWING. F3: MAKE A PROGRAM FROM IT"
 
 @dataclass(slots=True)
 class ProgramListModel:
-    """Model of the program list. ``own_folder`` is the operator's folder."""
+    """Model of the program list.
+
+    ``own_folder`` is the operator's folder.
+    """
 
     desk: Desk
     own_folder: Path
@@ -63,12 +68,12 @@ class ProgramListModel:
 
     @property
     def question(self) -> str:
-        """Question about a name, or an empty string."""
+        """Return the question about a name, or an empty string."""
         return self.program_commands.question
 
     @property
     def name_field(self) -> InputField:
-        """Entry field of the name."""
+        """Return the entry field of the name."""
         return self.program_commands.name_field
 
     # --- displayed values ----------------------------------------------------------------------------
@@ -79,14 +84,20 @@ class ProgramListModel:
         self.reload_list()
 
     def reload_list(self) -> None:
-        """Read the folders again. The result arrives in a later frame."""
+        """Read the folders again.
+
+        The result is shown in a later frame.
+        """
         work = partial(
             list_programs, self.desk.program_choice.program_folders, self.own_folder, self.persistence
         )
         self.worker.enqueue(work, self._found, self.desk.show_refusal)
 
     def poll(self) -> None:
-        """Process the results of the worker; called once per frame."""
+        """Process the results of the worker.
+
+        This is called once a frame.
+        """
         self.worker.poll()
 
     def _found(self, found: tuple[ListedFile, ...]) -> None:
@@ -103,7 +114,7 @@ class ProgramListModel:
 
     @property
     def selected_program(self) -> ListedFile | None:
-        """Selected program, or None in an empty list."""
+        """Return the selected program, or None in an empty list."""
         return (
             self.listed_programs[self.selected_row] if self.selected_row < len(self.listed_programs) else None
         )
@@ -115,7 +126,7 @@ class ProgramListModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the present function keys."""
+        """Return the function keys that are available now."""
         if self.import_export.is_open:
             return self.import_export.function_keys()
         return {
@@ -134,11 +145,17 @@ class ProgramListModel:
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of a name, as all are while the folder chooser is closed."""
+        """Return whether a character is part of a name.
+
+        No character is part of a name while the folder chooser is open.
+        """
         return not self.import_export.is_open and self.search_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select, Enter loads or submits, and letters filter the list."""
+        """Handle a key.
+
+        Arrow keys select a row, Enter loads or submits, and letters filter the list.
+        """
         if self.import_export.is_open:
             return self.import_export.handle_key(key)
         if key in ROW_STEPS and not self.question:
@@ -154,13 +171,16 @@ class ProgramListModel:
         return True
 
     def select_row(self, row: int) -> None:
-        """Select a row."""
+        """Select a row of the list."""
         if not self.question and self.listed_programs:
             self.desk.clear_prompt_line()
             self.selected_row = max(0, min(len(self.listed_programs) - 1, row))
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False if the page can close."""
+        """Go back one step.
+
+        Return False if the page can close.
+        """
         if self.desk.prompt_notice:
             self.desk.clear_prompt_line()
         elif self.import_export.is_open:
@@ -182,7 +202,7 @@ class ProgramListModel:
         self._narrow(self.selected_program.name if self.selected_program else "")
 
     def select_next_order(self) -> None:
-        """Sort the list by the next criterion (F2)."""
+        """Handle F2: sort the list by the next criterion."""
         self.sort_order = following(SORT_ORDERS, self.sort_order)
         self._narrow(self.selected_program.name if self.selected_program else "")
 
@@ -202,7 +222,7 @@ class ProgramListModel:
         )
 
     def load_selected(self) -> bool:
-        """Load the selected program or ask for confirmation.
+        """Load the selected program, or ask for confirmation first.
 
         Return False if loading is not possible.
         """
@@ -229,7 +249,7 @@ class ProgramListModel:
             )
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.import_export.is_open:
             return self.import_export.prompt_text()
         if self.question:
@@ -254,7 +274,7 @@ ProgramDetail = tuple[str, str]
 
 
 def make_program_table(model: ProgramListModel) -> TableContent:
-    """Return the table with name, date, last run, parts and best cycle."""
+    """Return the table of programs with name, date, last run, parts and best cycle."""
     rows = tuple(_row(program) for program in model.listed_programs)
     count = (
         Message(
@@ -299,7 +319,7 @@ def _row(program: ListedFile) -> TableRow:
 def make_details(program: ListedFile) -> tuple[ProgramDetail, ...]:
     """Return the details of a program.
 
-    The last two texts can be long, and the others are short.
+    The last two texts can be long. The others are short.
     """
     run = program.run_row
     return (

@@ -1,4 +1,4 @@
-"""Programs of the list: their data, their sort order, and previews of the selected program."""
+"""Programs of the list, with their data, their sort order, and previews of the selected program."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ListedFile:
-    """Program file with its size in bytes and its time in seconds since 1970.
+    """Program file with its size in bytes and its modification time in seconds since 1970.
 
     Samples are read-only.
     """
@@ -42,7 +42,10 @@ class ListedFile:
 
     @property
     def content_key(self) -> tuple[str, float, int]:
-        """Key of the file content. Previews remain valid while the key is unchanged."""
+        """Return the key of the file content.
+
+        Previews remain valid until the key changes.
+        """
         return str(self.path), self.modified_at, self.size_bytes
 
 
@@ -51,8 +54,8 @@ def list_programs(
 ) -> tuple[ListedFile, ...]:
     """Return all programs and drawings of the folders, each with the record of its text.
 
-    Files with unknown text are read, so call this function on a worker. Raises StoreError if the store cannot
-    be read.
+    Files whose text is not known yet are read. Call this function on a worker. Raise StoreError if the
+    store cannot be read.
     """
     runs = persistence.runs.read_records_by_text()
     found = []
@@ -99,17 +102,17 @@ def _backwards(at: str | None) -> float:
 
 
 def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFile, ...]:
-    """Return the programs in the order with this name."""
+    """Return the programs in the sort order with this name."""
     return tuple(sorted(programs, key=SORT_ORDERS[order]))
 
 
 def format_store_time(utc_time: str | None) -> str:
-    """Return a time of the store in local time to the minute, or a dash without a time."""
+    """Return a time of the store in local time to the minute, or a dash if there is no time."""
     return formats.format_local_time(utc_time, seconds=False) if utc_time else formats.NO_VALUE
 
 
 def format_file_time(unix_time_s: float) -> str:
-    """Return the time of a file in the same format."""
+    """Return the time of a file in local time to the minute."""
     return datetime.fromtimestamp(unix_time_s).strftime("%Y-%m-%d %H:%M")
 
 
@@ -119,7 +122,10 @@ ContentKey = tuple[str, float, int]
 
 
 class Thumbnail(NamedTuple):
-    """Small picture with 32 bits per pixel (alpha, red, green, blue from the highest), rows from the top."""
+    """Small picture with 32 bits per pixel.
+
+    The bits are alpha, red, green and blue, starting at the highest. The rows start at the top.
+    """
 
     pixels: bytes
     width: int
@@ -147,9 +153,9 @@ class ProgramPreview:
     _asked: ContentKey | None = None
 
     def find_picture(self, program: ListedFile | None) -> ProgramPicture | None:
-        """Return the picture of a program once it is drawn, else None; called once per frame.
+        """Return the picture of a program, or None until it is drawn.
 
-        Another program cancels the previous drawing.
+        This is called once a frame. A request for another program cancels the previous drawing.
         """
         self._worker.poll()
         self.error_text = ""
@@ -168,9 +174,9 @@ class ProgramPreview:
         return made
 
     def find_thumbnail(self, program: ListedFile | None) -> Thumbnail | None:
-        """Return the thumbnail of the finished part, or None without a thumbnail.
+        """Return the thumbnail of the finished part, or None if there is no thumbnail.
 
-        The thumbnail is drawn after the path. Called once per frame.
+        This is called once a frame. The thumbnail is drawn after the path.
         """
         self._drawing.poll()
         key = program.content_key if program is not None else None
@@ -200,7 +206,7 @@ class ProgramPreview:
 
     @property
     def is_drawing(self) -> bool:
-        """Whether the requested picture is still being drawn."""
+        """Return whether the requested picture is still being drawn."""
         return self.wanted_key is not None and self.wanted_key not in self._made
 
     def _begin(self, program: ListedFile) -> None:

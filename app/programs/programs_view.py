@@ -1,4 +1,7 @@
-"""Page PROGRAMS: list of programs on the left, preview and details of the selected program on the right."""
+"""The PROGRAMS page, with the list on the left.
+
+Preview and details of the selected program are on the right.
+"""
 
 from __future__ import annotations
 
@@ -41,7 +44,7 @@ FULL_WIDTH_ROWS = 2  # rows at the end that use the whole width
 
 
 class ProgramDetailPanel(Panel):
-    """Panel of details in two columns: label and value."""
+    """Panel of details in two columns, a label and a value."""
 
     title = "DETAILS"
     program: RedrawingAttribute[ListedFile | None] = RedrawingAttribute(None)
@@ -86,13 +89,13 @@ class PreviewPathView(PathView):
 
 
 class PreviewPlaneView(WorkingPlaneView):
-    """Preview of a mill program: table, workpiece and path."""
+    """Preview of a mill program, with table, workpiece and path."""
 
     title = "PREVIEW"
 
 
 class ProgramsPage(ListPage):
-    """Page PROGRAMS: shows its model and passes the keys to it."""
+    """The PROGRAMS page, which shows its model and passes the keys to the model."""
 
     NAME = page_table.PROGRAMS
     model: ProgramListModel
@@ -109,7 +112,7 @@ class ProgramsPage(ListPage):
         self.table_panel.on_entry_touched = self._turn_letters
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the barred keys of the list, and F3 while the editor cannot be opened."""
+        """Return the disabled keys of the list, and F3 while the editor cannot be opened."""
         closed = not self.model.import_export.is_open and find_editor_refusal(self.desk.read_snapshot())
         return super().disabled_keys() | ({"F3"} if closed else set())
 
@@ -118,13 +121,13 @@ class ProgramsPage(ListPage):
         return self.model.function_keys()
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the list or of the folder chooser."""
+        """Return the key labels of the list or of the folder chooser."""
         added = {name: key.label for name, key in self.desk.page_registry.program_keys.items()}
         own = {} if self.model.import_export.is_open else {"F3": "EDIT", **added}
         return self.make_labels(own, self.function_keys())
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of the function keys of the list or of the folder chooser."""
+        """Return the key actions of the list or of the folder chooser."""
         keys = self.function_keys()
         added = {
             name: partial(self._use_program_key, key)
@@ -137,7 +140,7 @@ class ProgramsPage(ListPage):
         self.function_keys()[name].action()
 
     def _open_editor(self) -> None:
-        """Edit the selected program without loading it, or a new program with the typed name."""
+        """Edit the selected program without loading it, or edit a new program with the typed name."""
         here = self.model.selected_program
         editor = self.desk.page_registry.find(EditorModel)
         if here is None and editor is not None and self.model.search_field.text:
@@ -153,7 +156,7 @@ class ProgramsPage(ListPage):
             editor.source_drawing = None
 
     def _use_program_key(self, key: ProgramKey) -> None:
-        """Open the page of the key with the selected program."""
+        """Open the page that belongs to the key, with the selected program."""
         here = self.model.selected_program
         if here is None or here.is_drawing:
             self.desk.say(NO_SELECTION)
@@ -170,7 +173,10 @@ class ProgramsPage(ListPage):
             model.select_row(row)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Enter on a program loads it and opens the Automatic page."""
+        """Handle a key.
+
+        Enter on a program loads the program and opens the Automatic page.
+        """
         model = self.model
         if key == "Enter" and not model.import_export.is_open and not model.question:
             # The page changes first, because a question about an interrupted job belongs to the new page.
@@ -184,11 +190,11 @@ class ProgramsPage(ListPage):
         return not self.model.import_export.is_open
 
     def apply_theme(self) -> None:
-        """Redraw the path in the present colors."""
+        """Redraw the path in the current colors."""
         self.path_view.redraw()
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update list, preview and details."""
+        """Update the list, the preview and the details."""
         model = self.model
         model.poll()
         self.table_panel.show_table(model.make_table())
@@ -217,14 +223,14 @@ class ProgramsPage(ListPage):
             self.plane_view.show_instant(make_line_instant(scene, 0), "")
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange the parts after a change of size."""
+        """Arrange the parts of the page after a change of size."""
         self._lay_out()
 
     def _turn_letters(self) -> None:
         self._with_letters = not self._with_letters
 
     def on_open(self) -> None:
-        """Open the list without the drawn keyboard."""
+        """Open the list without the on-screen keyboard."""
         self._with_letters = False
         super().on_open()
 

@@ -1,6 +1,7 @@
-"""USB sticks and folders as sources of programs: mounted media, free space and write errors.
+"""USB sticks and folders as sources of programs, with mounted media, free space and write errors.
 
-The kernel's list of mounts (``/proc/self/mountinfo``) is used. On other systems, each folder is checked.
+The list of mounts comes from the kernel (``/proc/self/mountinfo``). On systems without this list, each
+folder is checked.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ _DISK_FULL_ERRORS = frozenset({errno.ENOSPC, errno.EDQUOT})
 
 @dataclass(frozen=True, slots=True)
 class UsbStick:
-    """Mounted medium: label, path and ``free_bytes`` space in bytes. ``is_read_only`` means read-only."""
+    """Mounted medium with its label, path and free space.
+
+    ``free_bytes`` is the free space in bytes. ``is_read_only`` is set for a read-only medium.
+    """
 
     label: str
     path: Path
@@ -40,7 +44,7 @@ class UsbStick:
 
 @dataclass(frozen=True, slots=True)
 class MountEntry:
-    """Entry of the kernel's list of mounts: path, block device and read-only state."""
+    """Entry of the kernel's list of mounts, with path, block device and read-only state."""
 
     path: Path
     device_number: str
@@ -91,7 +95,7 @@ def _is_below(path: Path, roots: Sequence[Path]) -> bool:
 def _is_removable(device: str, blocks: Path) -> bool:
     """Return whether the disk of a mount is removable.
 
-    A partition is looked up through its disk.
+    For a partition, the disk that contains it is examined.
     """
     if not device or device.startswith("0:"):
         return False
@@ -130,9 +134,9 @@ def _free(path: Path) -> int:
 
 @dataclass(frozen=True, slots=True)
 class TargetMedium:
-    """Folder for a copy, with its device number at the time of opening.
+    """Folder for a copy, with the device number it had when it was opened.
 
-    A stick that is unplugged leaves its folder, which then belongs to the disk of the control.
+    When a stick is unplugged, its folder remains and then belongs to the disk of the control.
     """
 
     folder: Path
@@ -140,19 +144,22 @@ class TargetMedium:
 
     @classmethod
     def from_folder(cls, folder: Path) -> TargetMedium:
-        """Return the present medium of a folder. Raises FileError if the folder does not exist."""
+        """Return the medium that is now mounted at a folder.
+
+        Raise FileOperationError if the folder does not exist.
+        """
         try:
             return cls(folder, folder.stat().st_dev)
         except OSError as error:
             raise FileOperationError(describe_media_error(error, folder)) from error
 
     def check_present(self) -> None:
-        """Raise FileError if another medium or no medium is present now."""
+        """Raise FileOperationError if another medium or no medium is present now."""
         if TargetMedium.from_folder(self.folder).device_number != self.device_number:
             raise FileOperationError(describe_unplugged(self.folder))
 
     def check_free_space(self, size_bytes: int) -> None:
-        """Raise FileError if fewer than ``size_bytes`` bytes are free."""
+        """Raise FileOperationError if fewer than ``size_bytes`` bytes are free."""
         free = _free(self.folder)
         if size_bytes > free:
             raise FileOperationError(
@@ -173,7 +180,7 @@ def describe_unplugged(folder: Path) -> str:
 
 
 def describe_media_error(error: OSError, folder: Path) -> str:
-    """Return the reason for a failed access to a medium as a message for the operator."""
+    """Return the message for the operator about a failed access to a medium."""
     if error.errno in _DISK_FULL_ERRORS:
         return tr(Message("{place} IS FULL. NO PARTIAL FILE LEFT. USE ANOTHER USB STICK", place=folder.name))
     if error.errno == errno.EROFS:
@@ -190,7 +197,7 @@ MAX_LINES = 2000
 
 @dataclass(frozen=True, slots=True)
 class FolderLine:
-    """Line of the chooser: a place, a folder, the parent folder or a program."""
+    """Line of the chooser, which is a location, a folder, the parent folder or a program."""
 
     name: str
     path: Path
@@ -201,9 +208,10 @@ class FolderLine:
 
 @dataclass(slots=True)
 class FolderChooser:
-    """Folder chooser.
+    """Chooser of folders.
 
-    ``current_folder`` is the open folder, or None for the list of places. ``list_lines`` can take a while.
+    ``current_folder`` is the open folder, or None for the list of locations. ``list_lines`` can take a
+    while.
     """
 
     home_folder: Path
@@ -217,9 +225,9 @@ class FolderChooser:
     error_text: str = field(default="")
 
     def list_lines(self) -> tuple[FolderLine, ...]:
-        """Return the lines of the open folder, on a worker.
+        """Return the lines of the open folder.
 
-        Raises FileError if the folder cannot be read.
+        This runs on a worker. Raise FileOperationError if the folder cannot be read.
         """
         if self.current_folder is None:
             self.medium = None
@@ -244,7 +252,10 @@ class FolderChooser:
         self.selected_row = min(self.selected_row, max(0, len(lines) - 1))
 
     def open_line(self, line: FolderLine) -> None:
-        """Open a folder, its parent folder, or the list of places from the top of a place."""
+        """Open a folder or its parent folder.
+
+        The parent of the top folder of a location is the list of locations.
+        """
         self.selected_row = 0
         if line.name == PARENT_NAME and self.current_folder == self.top_folder:
             self.current_folder = self.top_folder = None
@@ -255,12 +266,12 @@ class FolderChooser:
 
     @property
     def selected_line(self) -> FolderLine | None:
-        """Selected line, or None."""
+        """Return the selected line, or None if no line is selected."""
         return self.lines[self.selected_row] if self.selected_row < len(self.lines) else None
 
     @property
     def program_paths(self) -> tuple[Path, ...]:
-        """Programs of the open folder."""
+        """Return the paths of the programs in the open folder."""
         return tuple(line.path for line in self.lines if not line.is_folder)
 
 
@@ -273,7 +284,7 @@ def _inside(folder: Path, takes: AcceptsName) -> list[FolderLine]:
 
 
 def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
-    """Return the table of places, folders and programs."""
+    """Return the table of locations, folders and programs."""
     rows = tuple(
         TableRow(
             (

@@ -1,4 +1,4 @@
-"""Run history from snapshots: runs with outcome, cycle times, proofs and part counts."""
+"""Run history from snapshots, with runs and their outcomes, cycle times, proofs and part counts."""
 
 from __future__ import annotations
 
@@ -27,7 +27,10 @@ _FINAL_PHASES = frozenset({LoadingPhase.READY, LoadingPhase.REFUSED})
 
 @dataclass(slots=True)
 class RunHistory:
-    """Recorder of runs; examines every snapshot and posts to the store without waiting."""
+    """Recorder of runs.
+
+    It examines every snapshot and posts to the store without waiting.
+    """
 
     persistence: Persistence = field(default_factory=Persistence)
     running_program: str = ""  # program that is running
@@ -39,9 +42,9 @@ class RunHistory:
     _loaded: LoadedProgram | None = None
 
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Record the runs and proofs that a snapshot shows. Called once per frame.
+        """Record the runs and proofs that a snapshot shows.
 
-        TurnDesk reports separately if the store rejects a record.
+        This is called once a frame. TurnDesk reports separately if the store rejects a record.
         """
         try:
             self._run(snapshot)
@@ -103,7 +106,10 @@ def _outcome(snapshot: Snapshot) -> str:
 
 
 def mark_interrupted_runs(run_records: RunRecords) -> None:
-    """Mark runs without an end as interrupted by a shutdown; called at the start."""
+    """Mark runs without an end as interrupted by a shutdown.
+
+    This is called at startup.
+    """
     told = run_records.end_interrupted_runs(
         INTERRUPTED_OUTCOME, "{program}: the control shut down during the last run of this program"
     )
@@ -117,9 +123,10 @@ _PRODUCING_STATES = frozenset({MachineState.RUN, MachineState.WAIT})
 
 @dataclass(slots=True)
 class PartCounter:
-    """Part count of each program, stored with its target. Target 0 means no target.
+    """Part count of each program, stored with its target.
 
-    In the cycle of the last part, Cycle Repeat is switched off, so that the machine stops.
+    A target of 0 means no target. During the cycle of the last part, Cycle Repeat is switched off so that
+    the machine stops.
     """
 
     persistence: Persistence = field(default_factory=Persistence)
@@ -134,17 +141,20 @@ class PartCounter:
 
     @property
     def count_text(self) -> str:
-        """Number of parts, with the target if there is one: ``12`` or ``12/100``."""
+        """Return the number of parts, with the target if there is one, for example ``12`` or ``12/100``."""
         return f"{self.count}/{self.final_count}" if self.final_count else str(self.count)
 
     @property
     def final_count(self) -> int:
-        """Count at which production ends: that of the active job, or else the target. 0 means no end."""
+        """Return the count at which production ends, or 0 if it does not end.
+
+        This is the target of the active job if there is one, and otherwise the target of the program.
+        """
         return self.job_target or self.target
 
     @property
     def is_complete(self) -> bool:
-        """Whether all requested parts are made."""
+        """Return whether all requested parts have been made."""
         return 0 < self.final_count <= self.count
 
     def observe(
@@ -154,10 +164,10 @@ class PartCounter:
         show_message: Callable[[str], None],
         text_digest: str = "",
     ) -> None:
-        """Update the count from a snapshot, once per frame.
+        """Update the count from a snapshot.
 
-        The method handles a change of program, a new part and the last part. ``text`` is the digest of the
-        loaded program text.
+        This is called once a frame. It handles a change of program, a new part and the last part.
+        ``text_digest`` is the digest of the loaded program text.
         """
         name = Path(snapshot.program).name
         if name != self.program or text_digest != self.text_digest:
@@ -207,11 +217,14 @@ class PartCounter:
         self.target = kept if isinstance(kept, int) and 0 < kept <= MAX_COUNT else 0
 
     def reload(self) -> None:
-        """Reload count and target, for example after a restore."""
+        """Reload the count and the target, for example after a restore."""
         self._load(self.program)
 
     def set_target(self, target: int) -> None:
-        """Set the target number of parts, or 0 for no target. Raises StoreError if it cannot be stored."""
+        """Set the target number of parts, or 0 for no target.
+
+        Raise StoreError if the target cannot be stored.
+        """
         before, self.target, self._announced = self.target, target, -1
         self.persistence.save_setting(_key(self.program), target or None)
         self.persistence.log_change(
@@ -224,9 +237,9 @@ class PartCounter:
         )
 
     def correct_count(self, change: int) -> None:
-        """Change the count by parts made elsewhere or by scrap.
+        """Change the count by the number of parts that were made elsewhere or scrapped.
 
-        Raises StoreError if it cannot be stored.
+        Raise StoreError if the count cannot be stored.
         """
         self.count, self._announced = self.count + change, -1
         self.persistence.runs.add_parts(self.program, change)
@@ -240,7 +253,10 @@ class PartCounter:
         )
 
     def reset_count(self) -> None:
-        """Reset the count to zero. Raises StoreError if it cannot be stored."""
+        """Reset the count to zero.
+
+        Raise StoreError if the count cannot be stored.
+        """
         before, self.count, self._announced = self.count, 0, -1
         self.persistence.runs.reset_parts(self.program)
         self.persistence.log_change(

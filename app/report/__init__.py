@@ -1,1 +1,1 @@
-"""Proof report as one self-contained HTML file with drawings of part, path and tools."""
+"""Report of a proof as one self-contained HTML file, with drawings of part, path and tools."""

@@ -1,4 +1,4 @@
-"""HTML tables, drawings, style and frame for reports and setup sheets."""
+"""HTML tables, drawings, style and page frame for reports and setup sheets."""
 
 from __future__ import annotations
 
@@ -90,9 +90,9 @@ HTML_END = "</body></html>\n"
 
 
 def make_page_head(title: str, date_text: str, language: str) -> str:
-    """Return the HTML before the first section.
+    """Return the HTML that precedes the first section.
 
-    ``date_text`` is the date, ``language`` an ISO 639-1 code.
+    ``language`` is an ISO 639-1 code.
     """
     return (
         f'<!DOCTYPE html>\n<html lang="{language}"><head><meta charset="utf-8">'
@@ -109,7 +109,7 @@ def make_headline(title: str, date_text: str) -> str:
 
 
 def make_result_line(css_class: str, text: str) -> str:
-    """Return the result line with the style ``good``, ``doubt`` or ``bad``."""
+    """Return the result line as HTML with the given class of the page's style."""
     return f'<p class="verdict {css_class}">{escape(text)}</p>'
 
 
@@ -119,13 +119,19 @@ def make_drawing_block(drawing: str, caption: str) -> str:
 
 
 def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
-    """Return a table of names and values. Both are escaped."""
+    """Return a table of names and values.
+
+    Names and values are escaped.
+    """
     lines = "".join(f"<tr><th>{escape(name)}</th><td>{escape(value)}</td></tr>" for name, value in rows)
     return f'<table class="facts">{lines}</table>'
 
 
 def make_table(column_heads: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
-    """Return a table. The cells must be HTML."""
+    """Return a table.
+
+    The cells must be HTML.
+    """
     top = "".join(f"<th>{escape(each)}</th>" for each in column_heads)
     lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><tr>{top}</tr>{lines}</table>"
@@ -142,5 +148,5 @@ def format_minutes(seconds: float) -> str:
 
 
 def hash_text(source: ProgramSource) -> str:
-    """Return the SHA-256 of a program text, which identifies the text."""
+    """Return the SHA-256 hash of a program text, which identifies the text."""
     return sha256(source.text.encode("utf-8", "surrogatepass")).hexdigest()

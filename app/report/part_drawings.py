@@ -20,7 +20,7 @@ PointMm = tuple[float, float]
 
 @dataclass(slots=True)
 class SvgDrawing:
-    """SVG drawing of a window in mm, at most ``max_width_px`` × ``max_height_px`` pixels.
+    """SVG drawing of a window in mm, at most ``max_width_px`` × ``max_height_px`` pixels in size.
 
     ``lower_corner`` and ``upper_corner`` are the corners (z, radius) of the window.
     """
@@ -33,29 +33,41 @@ class SvgDrawing:
 
     @property
     def scale(self) -> float:
-        """Scale in pixels per millimeter."""
+        """Return the scale in pixels per millimeter."""
         wide, high = self.upper_corner[0] - self.lower_corner[0], self.upper_corner[1] - self.lower_corner[1]
         return min(self.max_width_px / wide, self.max_height_px / high)
 
     def add_polygon(self, points: Iterable[PointMm], css_class: str) -> None:
-        """Add a closed outline. ``look`` is a class of the page's style."""
+        """Add a closed outline.
+
+        ``css_class`` is a class of the page's style.
+        """
         self._parts.append(f'<polygon class="{css_class}" points="{self._placed(points)}"/>')
 
     def add_polyline(self, points: Iterable[PointMm], css_class: str) -> None:
-        """Add an open line."""
+        """Add an open line.
+
+        ``css_class`` is a class of the page's style.
+        """
         self._parts.append(f'<polyline class="{css_class}" points="{self._placed(points)}"/>')
 
     def add_dot(self, point: PointMm, css_class: str) -> None:
-        """Add a dot at a point."""
+        """Add a dot at a point.
+
+        ``css_class`` is a class of the page's style.
+        """
         x, y = self._place(point)
         self._parts.append(f'<circle class="{css_class}" cx="{x}" cy="{y}" r="3.5"/>')
 
     def add_center_line(self) -> None:
-        """Add the center line."""
+        """Add the center line of the part."""
         self.add_polyline([(self.lower_corner[0], 0.0), (self.upper_corner[0], 0.0)], "axis")
 
     def make_svg(self, title: str) -> str:
-        """Return the SVG. ``title`` is the text alternative."""
+        """Return the drawing as SVG.
+
+        ``title`` is the alternative text.
+        """
         scale = self.scale
         wide, high = (
             (self.upper_corner[0] - self.lower_corner[0]) * scale,
@@ -84,7 +96,10 @@ class SvgDrawing:
 def find_window(
     points: Sequence[PointMm], margin_mm: float, min_size_mm: float = 1.0
 ) -> tuple[PointMm, PointMm]:
-    """Return the window around points with a margin in mm, at least ``min_size_mm`` wide and high."""
+    """Return the window around the points with a margin in mm.
+
+    The window is at least ``min_size_mm`` wide and high.
+    """
     zs, rs = [z for z, _ in points], [r for _, r in points]
     low, high = (min(zs) - margin_mm, min(rs) - margin_mm), (max(zs) + margin_mm, max(rs) + margin_mm)
     more = [max(min_size_mm - (b - a), 0.0) / 2 for a, b in zip(low, high, strict=True)]
@@ -104,9 +119,9 @@ SectionSides = tuple[PartedPiece, PartedPiece]
 def draw_section(
     stock: Stock, after: PartedPiece | None, clamping: Clamping | None, sides: SectionSides | None = None
 ) -> str:
-    """Return the section of the stock and the finished part.
+    """Return the drawing of the section of the stock and the finished part.
 
-    ``sides`` are X+ and X- of a milled part.
+    ``sides`` are the X+ and X- sides of a milled part.
     """
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
@@ -120,7 +135,7 @@ def path(
     stock: Stock, after: PartedPiece | None, clamping: Clamping | None, moves: Sequence[TipMove],
     sides: SectionSides | None = None,
 ) -> str:  # fmt: skip
-    """Return the drawing of the tool paths: cuts as solid lines, rapids as dashed lines."""
+    """Return the drawing of the tool paths, with cuts as solid lines and rapids as dashed lines."""
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
     _part(drawing, after, sides, "faint")
@@ -133,7 +148,10 @@ def path(
 def draw_finding(
     move: TipMove, material: PartedPiece, tool: ToolShape | None, clamping: Clamping | None
 ) -> str:
-    """Return the drawing of a finding: the material before the move, the move, and the tool at its end."""
+    """Return the drawing of a finding.
+
+    It shows the material before the move, the move, and the tool at its end.
+    """
     near = _find_bounds(move.points, material.outside_profile)
     drawing = SvgDrawing(
         *find_window(near, 3.0, 8.0), max_width_px=_FINDING_WIDTH, max_height_px=_FINDING_WIDTH
@@ -153,7 +171,7 @@ def draw_finding(
 
 
 def draw_tool(shape: ToolShape | None) -> str:
-    """Return the outline of a tool around its control point, or an empty string if it is unknown."""
+    """Return the outline of a tool around its control point, or an empty string if the outline is unknown."""
     lines = _outline(shape)
     if lines is None or not lines.cutting_outlines:
         return ""
@@ -228,7 +246,7 @@ def _half(
 
 
 def _group_moves(moves: Sequence[TipMove]) -> Iterator[tuple[list[PointMm], str]]:
-    """Yield moves of the same style as one line each.
+    """Yield each group of consecutive moves with the same style as one line.
 
     The first move of the program is omitted.
     """

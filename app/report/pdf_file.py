@@ -1,4 +1,7 @@
-"""PDF output by a separate process, because text layout takes time and the caller must not wait."""
+"""PDF output by a separate process.
+
+Text layout takes time, and the caller must not wait.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ _TIMEOUT_S = 120.0  # seconds
 
 
 class PaperSize(StrEnum):
-    """Paper size."""
+    """The supported paper sizes."""
 
     A4 = "a4"
     LETTER = "letter"
@@ -24,7 +27,7 @@ class PaperSize(StrEnum):
 def make_pdf(html: str, title: str, paper: PaperSize) -> bytes:
     """Return the PDF of a page's HTML body.
 
-    ``title`` is the footer. Runs on a worker. Raises OSError.
+    ``title`` is the footer. This runs on a worker. Raise OSError on failure.
     """
     with TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / "sheet.pdf"

@@ -1,6 +1,6 @@
-"""Report of a proof as one HTML page: result, drawings, findings, tools, times, stops and offsets.
+"""Report of a proof as one HTML page, with result, drawings, findings, tools, times, stops and offsets.
 
-All text from programs and files is escaped. The page loads nothing and contains no scripts.
+All text from programs and files is escaped. The page loads no external resources and contains no scripts.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _MM_PER_INCH = 25.4
 
 
 class ProgramReport:
-    """Report section of one program."""
+    """Report section about one program."""
 
     def __init__(
         self,
@@ -51,7 +51,7 @@ class ProgramReport:
         self._metric = report.is_metric or report.dialect is not Dialect.OMNITURN
 
     def make_html(self) -> str:
-        """Return the section as HTML."""
+        """Return the report section as HTML."""
         return "".join(
             (
                 self._head(), self._drawings(), self._findings(), self._tools(), self._stops(),
@@ -191,7 +191,7 @@ class ProgramReport:
         )
 
     def _draw_findings(self, found: Sequence[Diagnostic]) -> dict[int, str]:
-        """Return pictures of the part findings by elementary block."""
+        """Return the pictures of the part findings by block number."""
         wanted = list(dict.fromkeys(each.block_number for each in found if each.block_number))[:_MAX_PICTURES]
         if self._part is None or not wanted:
             return {}
@@ -289,7 +289,7 @@ def make_unproved_section(reason: str) -> str:
 
 
 def make_comparison(lines: str) -> str:
-    """Return the effect of other offsets, in the text form of the command line."""
+    """Return the effect of other offsets as HTML, in the text format of the command line."""
     return f"<h3>With different offsets</h3><pre>{escape(lines)}</pre>"
 
 

@@ -1,4 +1,4 @@
-"""Data for a report from the proving pass: moves, times by tool, stops and material."""
+"""Data for a report from the proving pass, with moves, times by tool, stops and material."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MAX_STOPS = 500
 
 @dataclass(slots=True)
 class ToolTime:
-    """Times of one tool in seconds: cutting, rapid and rest."""
+    """Times of one tool in seconds, divided into cutting, rapid and remaining time."""
 
     cutting_s: float = 0.0
     rapid_s: float = 0.0
@@ -28,13 +28,16 @@ class ToolTime:
 
     @property
     def total_s(self) -> float:
-        """Total time in seconds."""
+        """Return the total time in seconds."""
         return self.cutting_s + self.rapid_s + self.rest_s
 
 
 @dataclass(frozen=True, slots=True)
 class PlannedStop:
-    """Program stop M00, or M01 if ``optional``: line, time in seconds and message to the operator."""
+    """Program stop M00, or M01 if ``is_optional`` is set.
+
+    It has a line, a time in seconds and a message to the operator.
+    """
 
     line: int
     time_s: float
@@ -114,5 +117,5 @@ class RunRecorder:
                     self.moves.append(make_live_tool_move(step))
 
     def find_material(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
-        """Return the material before each of these blocks, if a tool moved in X and Z."""
+        """Return the material before each of these blocks in which a tool moves in X and Z."""
         return self._part.material_before_blocks(blocks)

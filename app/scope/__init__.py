@@ -1,1 +1,1 @@
-"""Scope: machine signals as curves over time, live and from records."""
+"""Scope page that shows machine signals as curves over time, live and from records."""

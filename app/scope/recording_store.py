@@ -1,6 +1,7 @@
-"""Scope records on the disk: listing, saving, opening and exporting.
+"""Listing, saving, opening and exporting of scope records on the disk.
 
-All functions run on a worker. A full disk and an invalid file raise an error with a message for the operator.
+All functions run on a worker. A full disk and an invalid file raise an error with a message for the
+operator.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ _RESERVED_BYTES = 20_000_000  # bytes of disk space reserved for the store and t
 
 
 class RecordingFileError(CodedError):
-    """Failed file operation. The message states the reason and the remedy."""
+    """Failed file operation.
+
+    The message states the reason and the remedy.
+    """
 
 
 class RecordingFile(NamedTuple):
@@ -39,12 +43,15 @@ class RecordingFile(NamedTuple):
 
     @property
     def modified_text(self) -> str:
-        """Month, day and time of the last modification. The name contains the year."""
+        """Return the month, day and time of the last modification.
+
+        The year is in the file name.
+        """
         return time.strftime("%m-%d %H:%M:%S", time.localtime(self.modified_at))
 
     @property
     def size_text(self) -> str:
-        """Size of the file as text with a unit."""
+        """Return the size of the file as text with a unit."""
         return format_file_size(self.size)
 
 
@@ -56,9 +63,9 @@ WriteCsvTable = Callable[[ScopeRecord, Callable[[str], object]], None]
 
 @dataclass(slots=True)
 class RecordingStore:
-    """Folder of scope records, with the functions that know the file format.
+    """Folder of scope records, with the functions that process the file format.
 
-    Errors are raised as ShelfError or as an error whose text is a message for the operator.
+    Errors are raised as RecordingFileError, or as an error whose text is a message for the operator.
     """
 
     folder: Path
@@ -69,7 +76,10 @@ class RecordingStore:
     recording_files: tuple[RecordingFile, ...] = field(default=())
 
     def list_files(self) -> tuple[RecordingFile, ...]:
-        """Return the record files, newest first, at most ``MAX_FILES``; runs on a worker."""
+        """Return the record files, newest first, at most ``MAX_FILES`` of them.
+
+        This runs on a worker.
+        """
         found = []
         with suppress(FileNotFoundError):
             for entry in os.scandir(self.folder):
@@ -80,13 +90,19 @@ class RecordingStore:
         return tuple(sorted(found, key=lambda each: -each.modified_at)[:MAX_FILES])
 
     def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
-        """Save a record under a name with date and time, and return its path. Raises ShelfError."""
+        """Save a record under a name with date and time, and return its path.
+
+        Raise RecordingFileError on failure.
+        """
         path = self._make_path(name_stem, RECORD_SUFFIX)
         self._write_guarded(path, lambda: self.save_recording(record, path))
         return path
 
     def write_csv(self, record: ScopeRecord) -> Path:
-        """Write a record as a CSV table and return its path. Raises ShelfError."""
+        """Write a record as a CSV table and return its path.
+
+        Raise RecordingFileError on failure.
+        """
         path = self._make_path("scope", ".csv")
 
         def write() -> None:
@@ -98,7 +114,10 @@ class RecordingStore:
         return path
 
     def write_picture(self, png: bytes) -> Path:
-        """Save a picture of the page and return its path. Raises ShelfError."""
+        """Save a picture of the page and return its path.
+
+        Raise RecordingFileError on failure.
+        """
         path = self._make_path("scope", ".png")
 
         def write() -> None:
@@ -110,15 +129,21 @@ class RecordingStore:
         return path
 
     def read_recording(self, path: Path) -> ScopeRecord:
-        """Open a stored record. Raises ShelfError."""
+        """Open a stored record.
+
+        Raise RecordingFileError on failure.
+        """
         return self._run_reporting(path, lambda: self.open_recording(path))
 
     def delete(self, path: Path) -> None:
-        """Delete a record file. Raises ShelfError."""
+        """Delete a record file.
+
+        Raise RecordingFileError on failure.
+        """
         self._run_reporting(path, path.unlink)
 
     def _make_path(self, stem: str, extension: str) -> Path:
-        """Return an unused path with the date and time."""
+        """Return an unused path that contains the date and time."""
         named = f"{stem} {time.strftime('%Y-%m-%d %H-%M-%S', time.localtime(self.clock()))}"
         names = (f"{named}{more}{extension}" for more in ("", *(f" {n}" for n in range(2, 100))))
         return next(self.folder / name for name in names if not (self.folder / name).exists())
@@ -138,7 +163,7 @@ class RecordingStore:
         self._run_reporting(path, carefully)
 
     def _run_reporting(self, path: Path, work: Callable[[], T]) -> T:
-        """Run a file operation and convert an OSError into a ShelfError with the file name."""
+        """Run a file operation, and convert an OSError into a RecordingFileError with the file name."""
         try:
             return work()
         except RecordingFileError:
@@ -154,7 +179,7 @@ def _draft(path: Path) -> _DraftFile:
 
 
 class _DraftFile:
-    """Temporary file next to its target, deleted if writing fails."""
+    """Temporary file next to its target, which is deleted if writing fails."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -169,7 +194,10 @@ class _DraftFile:
 
 
 def find_zero_instant(record: ScopeRecord) -> float:
-    """Return the instant 0 of a record on its clock: the trigger or alarm, or else the last sample."""
+    """Return the instant 0 of a record on its clock.
+
+    This is the trigger or alarm, or the last sample if there is neither.
+    """
     told = record.about.get(INSTANT_KEY, "")
     if not len(record.times_s):
         return 0.0

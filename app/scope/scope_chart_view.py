@@ -1,4 +1,4 @@
-"""Chart of the scope: one lane per quantity, one below the other, over a common time axis."""
+"""Chart of the scope, with one lane per quantity, one below the other, over a common time axis."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 class ScopeChart(Chart):
     """Chart of the scope.
 
-    ``show_picture`` draws a picture, and other quantities rebuild the lanes.
+    ``show_picture`` draws a picture. The lanes are rebuilt if the picture contains other quantities.
     """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
@@ -42,9 +42,9 @@ class ScopeChart(Chart):
     # --- drawing -------------------------------------------------------------------------------------
 
     def show_picture(self, picture: ScopePicture, cursors: TimeCursors) -> bool:
-        """Draw a prepared picture and return whether it was drawn.
+        """Draw a prepared picture, and return whether it was drawn.
 
-        The result is False while lanes are still being created, and the caller then repeats the call.
+        The result is False while lanes are still being created. The caller then repeats the call.
         """
         if not (self.prepare_plots(len(_quantities(picture))) and self._prepare_lanes(picture)):
             return False
@@ -78,7 +78,10 @@ class ScopeChart(Chart):
         set_curve_points(item, points.times, values, _connect(points))
 
     def _prepare_lanes(self, sight: ScopePicture) -> bool:
-        """Return whether lanes and curves match the picture. Each call creates one lane."""
+        """Return whether lanes and curves match the picture.
+
+        Each call creates at most one lane.
+        """
         shown = [*((each, True) for each in sight.overlay_curves), *((each, False) for each in sight.curves)]
         known = tuple((each.signal.key, earlier) for each, earlier in shown)
         if known != self._known:
@@ -111,7 +114,10 @@ class ScopeChart(Chart):
         return mix_colors(full, self.theme.color("panel"), _OVERLAY_COLOR_SHARE) if earlier else full
 
     def apply_theme(self) -> None:
-        """Apply the present colors and fonts. The next picture rebuilds the chart."""
+        """Apply the current colors and fonts.
+
+        The next picture rebuilds the chart.
+        """
         super().apply_theme()
         self._known = None
 
@@ -123,7 +129,7 @@ class ScopeChart(Chart):
 
     @property
     def curve_area(self) -> QRectF:
-        """Area of the curves across all lanes, in pixels of the chart."""
+        """Return the area of the curves across all lanes, in pixels of the chart."""
         rooms = [plot.find_curve_area() for plot in self.plots]
         return rooms[0].united(rooms[-1]) if rooms else QRectF()
 
@@ -139,7 +145,7 @@ class ScopeChart(Chart):
         return room.x() + (time_s - sight.begin_s) / (sight.end_s - sight.begin_s) * room.width()
 
     def find_quantity(self, position: QPointF) -> Quantity | None:
-        """Return the quantity of the lane at a chart position, or None."""
+        """Return the quantity of the lane at a chart position, or None if there is no lane."""
         found = (
             each for each, plot in self._lanes.items() if plot.find_curve_area().bottom() >= position.y()
         )
@@ -209,7 +215,10 @@ def _connect(points: CurvePoints) -> object:
 
 
 def mix_colors(foreground: QColor, background: QColor, fraction: float) -> QColor:
-    """Return a mix of two colors. Opaque lines are drawn faster than transparent lines."""
+    """Return a mix of two colors.
+
+    Opaque lines are drawn faster than transparent lines.
+    """
     parts = (
         (foreground.red(), background.red()),
         (foreground.green(), background.green()),

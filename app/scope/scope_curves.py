@@ -1,7 +1,7 @@
 """Curves of the scope, prepared on a worker from a record or from live samples.
 
-Both sources produce a ``ScopePicture``: arrays that are ready to draw, in the displayed units. Live curves
-are extended by the samples since the last picture only.
+Both sources produce a ``ScopePicture``, whose arrays are ready to draw and in the displayed units. Live
+curves are extended only by the samples since the last picture.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ MIN_SAMPLES_PER_COLUMN = 2.0  # number of samples per column above which columns
 
 @dataclass(frozen=True, slots=True)
 class CurvePoints:
-    """Points of a curve. ``times`` are seconds of the record's clock.
+    """Points of a curve.
 
-    If ``has_line_pairs`` is set, each two points are one line. Otherwise ``is_joined`` marks the points that
-    are connected to the next point.
+    ``times`` are in seconds of the record's clock. If ``has_line_pairs`` is set, each pair of points is one
+    line. Otherwise ``is_joined`` marks the points that are connected to the next point.
     """
 
     times: FloatArray
@@ -38,7 +38,10 @@ class CurvePoints:
 
 @dataclass(slots=True)
 class CurveColumns:
-    """Minimum and maximum per column. Column n of ``column_numbers`` starts at n · ``width`` seconds."""
+    """Minimum and maximum of a curve in each column.
+
+    Column n of ``column_numbers`` starts at n · ``width_s`` seconds.
+    """
 
     width_s: float
     column_numbers: IntArray
@@ -49,7 +52,7 @@ class CurveColumns:
 
     @classmethod
     def make_empty(cls, width_s: float) -> CurveColumns:
-        """Return an empty set of columns of a width in seconds."""
+        """Return an empty set of columns with a width in seconds."""
         nothing = np.empty(0)
         return cls(width_s, np.empty(0, dtype=np.int64), nothing, nothing, nothing)
 
@@ -92,7 +95,7 @@ class CurveColumns:
         self.minima, self.maxima = self.minima[cut:], self.maxima[cut:]
 
     def make_points(self) -> CurvePoints:
-        """Return one vertical line per column, and a horizontal line over each gap in a connected curve."""
+        """Return one vertical line per column, and a horizontal line across each gap in a connected curve."""
         at = (self.column_numbers + 0.5) * self.width_s
         later = 1 + np.flatnonzero(
             (np.diff(self.column_numbers) > 1) & np.isfinite(self.preceding_samples[1:])
@@ -107,7 +110,10 @@ class CurveColumns:
 
 
 def make_points(times: FloatArray, values: FloatArray, pixel_width_s: float) -> CurvePoints:
-    """Return the points to draw for samples, at a pixel width of ``width`` seconds."""
+    """Return the points that are drawn for the samples.
+
+    One pixel is ``pixel_width_s`` seconds wide.
+    """
     if len(times) < 2 or len(times) < MIN_SAMPLES_PER_COLUMN * (times[-1] - times[0]) / pixel_width_s:
         told = np.flatnonzero(np.isfinite(values))
         if len(told) == len(values):
@@ -125,7 +131,10 @@ _ROUND_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 
 
 def make_round_range(low: float, high: float, min_width: float) -> tuple[float, float]:
-    """Return a range with round limits around two values, at least ``least`` wide and with a margin."""
+    """Return a range with round limits and a margin around two values.
+
+    The range is at least ``min_width`` wide.
+    """
     middle, wide = 0.5 * (low + high), max(1.08 * (high - low), min_width)
     power = 10.0 ** np.floor(np.log10(wide / 4.0))
     step = float(next(power * each for each in _ROUND_STEPS if power * each >= wide / 4.0 - 1e-12))
@@ -136,9 +145,10 @@ def make_round_range(low: float, high: float, min_width: float) -> tuple[float, 
 def update_range(
     present_range: tuple[float, float] | None, low: float, high: float, min_width: float
 ) -> tuple[float, float]:
-    """Return the present range while the curve is inside and fills a quarter. Otherwise return a new range.
+    """Return the present range if it still suits the curve, and otherwise a new range.
 
-    This prevents frequent small changes of the scale.
+    The present range suits the curve if the curve is inside it and fills at least a quarter of it. This
+    prevents frequent small changes of the scale.
     """
     if present_range is not None:
         wide = present_range[1] - present_range[0]
@@ -157,25 +167,28 @@ ALARM_STATES = (MachineState.FAULT.value, MachineState.ESTOP.value)
 
 
 class LiveSamples(Protocol):
-    """Ring buffer of the samples of the last minutes; readable from any thread."""
+    """Ring buffer of the samples of the last minutes, readable from any thread."""
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """Recorded channels."""
+        """Return the recorded channels."""
         ...
 
     @property
     def newest_time_s(self) -> float:
-        """Time of the newest sample in seconds of the monotonic clock, or minus infinity without samples."""
+        """Return the time of the newest sample in seconds of the monotonic clock.
+
+        Return minus infinity if there are no samples.
+        """
         ...
 
     @property
     def buffer_length_s(self) -> float:
-        """Length of the ring buffer in seconds."""
+        """Return the length of the ring buffer in seconds."""
         ...
 
     def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end`` inclusive.
+        """Return the samples from ``start_s`` to ``end_s``, both included.
 
         ``names`` restricts the channels.
         """
@@ -186,7 +199,7 @@ class LiveSamples(Protocol):
 class ScopeCurve:
     """Curve of one signal in displayed units.
 
-    ``latest_value`` is the newest value, or nan without a value.
+    ``latest_value`` is the newest value, or NaN if there is no value.
     """
 
     signal: ScopeSignal
@@ -196,10 +209,10 @@ class ScopeCurve:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ScopePicture:
-    """Prepared picture of the scope. Times of curves and window are seconds relative to ``zero``.
+    """Prepared picture of the scope.
 
-    ``ranges`` are the ranges of the lanes in displayed units. ``cursor_values`` contains the values at both
-    cursors by signal.
+    The times of the curves and of the window are in seconds relative to ``zero_s``. ``lane_ranges`` are the
+    ranges of the lanes in displayed units. ``cursor_values`` contains the values at both cursors by signal.
     """
 
     curves: tuple[ScopeCurve, ...] = ()
@@ -218,9 +231,10 @@ class ScopePicture:
 
 @dataclass(frozen=True, slots=True)
 class PictureRequest:
-    """Request for a picture: signals, time window, width in pixels and units.
+    """Request for a picture, with signals, time window, width in pixels and units.
 
-    ``begin`` and ``end`` are relative to ``zero`` of a record, or to the newest sample when live.
+    ``begin`` and ``end`` are in seconds, relative to instant 0 of a record, or to the newest sample if the
+    curves are live.
     """
 
     signals: tuple[ScopeSignal, ...]
@@ -235,12 +249,12 @@ class PictureRequest:
 
     @property
     def span_s(self) -> float:
-        """Width of the window in seconds."""
+        """Return the width of the window in seconds."""
         return self.end - self.begin
 
     @property
     def width(self) -> float:
-        """Duration of one pixel in seconds."""
+        """Return the duration of one pixel in seconds."""
         return self.span_s / max(1, self.width_px)
 
 
@@ -252,7 +266,10 @@ def convert_to_displayed(points: CurvePoints, scale: float, zero: float) -> Curv
 def find_ranges(
     curves: Sequence[ScopeCurve], present_ranges: Mapping[Quantity, ValueRange], request: PictureRequest
 ) -> dict[Quantity, ValueRange]:
-    """Return the range of each lane: the range that the user has set, or one that contains the curves."""
+    """Return the range of each lane.
+
+    This is the range that the user has set, or a range that contains the curves.
+    """
     found: dict[Quantity, ValueRange] = {}
     for quantity in dict.fromkeys(each.signal.quantity for each in curves):
         chosen = request.ranges.get(quantity)
@@ -272,9 +289,9 @@ def find_ranges(
 def find_constant_values(
     curves: Sequence[ScopeCurve], begin: float, width: float
 ) -> tuple[float, ...] | None:
-    """Return the values of the curves if all are constant across the window, else None.
+    """Return the values of the curves if each curve is constant across the window, or None otherwise.
 
-    An empty curve has the value nan. A picture of constant curves does not change while it scrolls.
+    An empty curve has the value NaN. A picture of constant curves does not change while it scrolls.
     """
     levels = []
     for curve in curves:
@@ -293,9 +310,9 @@ def find_constant_values(
 
 @dataclass(slots=True, eq=False)
 class RecordingCurves:
-    """Curves of one record, with cached derived columns.
+    """Curves of one record, with a cache of derived columns.
 
-    ``zero`` is the instant 0 on the record's clock.
+    ``zero_s`` is the instant 0 on the record's clock.
     """
 
     record: ScopeRecord
@@ -305,7 +322,7 @@ class RecordingCurves:
     _metric: bool | None = None
 
     def read_column(self, signal: ScopeSignal) -> FloatArray | None:
-        """Return all values of a signal in internal units, or None if the record does not contain it."""
+        """Return all values of a signal in internal units, or None if it is not in the record."""
         source = self.record.values_by_channel.get(signal.channel_name)
         if source is None:
             return None
@@ -329,7 +346,10 @@ class RecordingCurves:
         return tuple(found)
 
     def make_picture(self, request: PictureRequest, overlay: RecordingCurves | None = None) -> ScopePicture:
-        """Return the picture of a window, with an overlaid record aligned at its own instant 0."""
+        """Return the picture of a window.
+
+        An overlaid record is aligned at its own instant 0.
+        """
         curves = self.make_curves(request)
         earlier = overlay.make_curves(request) if overlay is not None else ()
         if self._metric is not request.metric:
@@ -356,7 +376,10 @@ class RecordingCurves:
     def _find_cursor_values(
         self, signal: ScopeSignal, cursors: tuple[float, float], metric: bool
     ) -> tuple[float, float]:
-        """Return the values of the samples nearest to both cursors, or nan outside the record."""
+        """Return the values of the samples nearest to the two cursors.
+
+        A value outside the record is NaN.
+        """
         column, times = self.read_column(signal), self.record.times_s
         if column is None or not len(times):
             return np.nan, np.nan
@@ -377,7 +400,10 @@ class RecordingCurves:
 
 @dataclass(slots=True, eq=False)
 class LiveCurves:
-    """Live curves that are extended with each picture, and restarted when window, size or signals change."""
+    """Live curves that are extended with each picture.
+
+    The curves restart when the window, the size or the signals change.
+    """
 
     live_samples: LiveSamples
     _of: object = None
@@ -453,7 +479,7 @@ class LiveCurves:
         return record.sampling_rate_hz
 
     def _find_trigger_time(self, wanted: PictureRequest, newest: float) -> float | None:
-        """Return the time at which new samples fired the trigger, or None.
+        """Return the time at which new samples fired the trigger, or None if they did not.
 
         Samples from before the trigger was armed are ignored.
         """
@@ -481,6 +507,6 @@ class LiveCurves:
 
 
 def find_alarm_values(record: ScopeRecord) -> frozenset[int]:
-    """Return the values of the channel ``state`` that mean an alarm or an E-stop."""
+    """Return the values of the channel ``state`` that indicate an alarm or an E-stop."""
     words = record.about.get("states", "").split("|")
     return frozenset(i for i, word in enumerate(words) if word in ALARM_STATES)

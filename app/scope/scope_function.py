@@ -12,7 +12,7 @@ SCOPE_PAGE = "SCOPE"  # name of the page in app.screen.page_table
 
 
 class ScopeFunction(PageFunction):
-    """Special function that shows the recorded duration and opens the scope."""
+    """Special function that shows how long data is recorded, and opens the scope."""
 
     name = "SCOPE"
     use = "axis and spindle curves"

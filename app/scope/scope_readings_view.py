@@ -1,4 +1,4 @@
-"""Values next to the scope's curves: color, name and value now or at both cursors."""
+"""Values next to the curves of the scope, with color, name, and the value now or at both cursors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _UPDATE_INTERVAL_S = 0.1  # seconds between two updates of a live value
 
 
 class ScopeReadings(RowPanel):
-    """List with one row per curve. A touch selects a row."""
+    """List with one row per curve.
+
+    A touch selects a row.
+    """
 
     title = "VALUES"
     scroll_step = 1
@@ -40,7 +43,10 @@ class ScopeReadings(RowPanel):
         self.value_texts: tuple[tuple[str, ...], ...] = ()
 
     def show_picture(self, picture: ScopePicture) -> None:
-        """Show the values of a picture. Live values change at most ten times per second."""
+        """Show the values of a picture.
+
+        Live values change at most ten times per second.
+        """
         scope = self.scope_model
         latest = {each.signal.key: each.latest_value for each in picture.curves}
         figures = tuple(self._words(each, latest, picture) for each in scope.shown)
@@ -72,12 +78,15 @@ class ScopeReadings(RowPanel):
         return (f"{formats.format_fixed(value, places)} {unit}" if math.isfinite(value) else "",)
 
     def scroll_by(self, rows: int) -> None:
-        """Select the curve a number of rows further down. Negative numbers go up."""
+        """Select the curve that is a number of rows further down.
+
+        Negative numbers move the selection up.
+        """
         self._choose(self.scope_model.marked + rows)
 
     @property
     def row_height_px(self) -> float:
-        """Height of a row in pixels, at least that of a fingertip."""
+        """Return the height of a row in pixels, which is at least that of a fingertip."""
         return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.u)
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -98,7 +107,7 @@ class ScopeReadings(RowPanel):
             self.add_target(box, partial(self._choose, number), kind="row", is_on=number == marked)
 
     def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
-        """Draw the time between the cursors and return the area below."""
+        """Draw the time between the cursors, and return the area below it."""
         u, apart = self.theme.u, self.scope_model.cursors.distance_s
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
         row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)

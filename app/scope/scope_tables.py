@@ -1,4 +1,4 @@
-"""Tables next to the scope's curves: all signals, the trigger, and the records on the disk."""
+"""Tables next to the curves of the scope: all signals, the trigger, and the records on the disk."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _RELEASE, _SIGNAL, _LEVEL, _PLACE = range(4)  # rows of the trigger
 
 @dataclass(slots=True)
 class ScopeTables:
-    """Tables of the scope page. Enter or a second touch executes the selected row."""
+    """Tables of the scope page.
+
+    Enter or a second touch executes the selected row.
+    """
 
     scope_model: ScopeModel
     selected_rows: dict[SidePanel, int] = field(default_factory=dict)
@@ -26,12 +29,12 @@ class ScopeTables:
 
     @property
     def selected_row(self) -> int:
-        """Index of the selected row."""
+        """Return the index of the selected row."""
         return max(0, min(self.selected_rows.get(self.scope_model.side_panel, 0), self.row_count - 1))
 
     @property
     def row_count(self) -> int:
-        """Number of rows."""
+        """Return the number of rows."""
         scope = self.scope_model
         return {
             SidePanel.READINGS: len(scope.shown),
@@ -41,7 +44,7 @@ class ScopeTables:
         }[scope.side_panel]
 
     def open_table(self, side_panel: SidePanel) -> None:
-        """Open a table. The same table again returns to the readings."""
+        """Open a table, or return to the readings if this table is already open."""
         self.scope_model.desk.clear_prompt_line()
         self.input_field.text = ""
         self.scope_model.side_panel = (
@@ -51,7 +54,7 @@ class ScopeTables:
             self.scope_model.reload_files()
 
     def make_table(self) -> TableContent:
-        """Return the present table."""
+        """Return the table that is shown now."""
         side = self.scope_model.side_panel
         if side is SidePanel.CURVES:
             return self._curves()
@@ -161,15 +164,18 @@ class ScopeTables:
 
     @property
     def is_value_asked(self) -> bool:
-        """Whether a value is to be entered."""
+        """Return whether the operator has to enter a value."""
         return self.scope_model.side_panel is SidePanel.TRIGGER and bool(self._trigger().question)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the value to be entered."""
+        """Return whether a character can be entered as part of a value."""
         return self.is_value_asked and self.input_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a row, Enter executes the row, and digits edit the entry."""
+        """Handle a key.
+
+        Arrow keys select a row, Enter executes the row, and digits edit the entry.
+        """
         if self.is_value_asked and self.input_field.handle_key(key):
             self.scope_model.desk.clear_prompt_line()
             return True
@@ -188,7 +194,10 @@ class ScopeTables:
             self.scope_model.mark(row)
 
     def touch_row(self, row: int) -> None:
-        """Handle a touch: a curve acts at once, and other rows act on a second touch."""
+        """Handle a touch of a row.
+
+        A curve is shown or hidden at once. Other rows are executed by a second touch.
+        """
         if row >= self.row_count:
             return
         again = row == self.selected_row
@@ -249,7 +258,10 @@ class ScopeTables:
         self.input_field.text = ""
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False at the readings without cursors."""
+        """Go back one step.
+
+        Return False if the readings are shown without cursors, because no step remains.
+        """
         scope = self.scope_model
         if scope.desk.prompt_notice:
             scope.desk.clear_prompt_line()
@@ -264,7 +276,7 @@ class ScopeTables:
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.scope_model.side_panel is SidePanel.READINGS:
             if self.scope_model.cursors.shown:
                 return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   CTRL+ARROWS: PAN")

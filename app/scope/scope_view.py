@@ -1,4 +1,4 @@
-"""Scope page: curves over time with their values, and zoom, pan and measuring."""
+"""The scope page, with curves over time and their values, and with zoom, pan and measuring."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def _import_chart_class() -> type[ScopeChart]:
 
 
 class ScopeHeadLine(Panel):
-    """Head line with sample rate, window, displayed data and trigger."""
+    """Header line with sample rate, window, displayed data and trigger."""
 
     ground_color = "panel"
     head_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
@@ -63,7 +63,10 @@ class ScopeHeadLine(Panel):
 
 
 class CurveArea(QWidget):
-    """Area that handles touch, wheel and mouse. Its chart only draws."""
+    """Area that handles touch, wheel and mouse.
+
+    The chart in this area only draws.
+    """
 
     part_name = "CHART"
 
@@ -79,12 +82,12 @@ class CurveArea(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Resize the chart to the area."""
+        """Resize the chart so that it fills the area."""
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Zoom the time around the pointer, or with Shift the lane under the pointer."""
+        """Zoom the time around the pointer, or zoom the lane under the pointer if Shift is pressed."""
         notches = event.angleDelta().y() or event.angleDelta().x()
         steps = round(notches / _WHEEL_NOTCH) or (1 if notches > 0 else -1)
         if self.chart is None:
@@ -109,7 +112,7 @@ class CurveArea(QWidget):
         self._down = None
 
     def event(self, event: QEvent) -> bool:
-        """Handle one finger like the mouse, and two fingers as a zoom."""
+        """Handle a single touch like the mouse, and two touches as a zoom."""
         if not isinstance(event, QTouchEvent):
             return super().event(event)
         spots = [point.position() for point in event.points()]
@@ -151,7 +154,7 @@ class CurveArea(QWidget):
                 )
 
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
-        """Zoom the time by horizontal finger motion, or the lane by vertical finger motion."""
+        """Zoom the time by horizontal motion of two fingers, or the lane by vertical motion."""
         self._down = None
         way = (abs(one.x() - other.x()), abs(one.y() - other.y()))
         before, self._spread = self._spread, way
@@ -169,7 +172,7 @@ class CurveArea(QWidget):
 
 
 class ScopePage(ListPage):
-    """Scope page: shows its model and passes the keys to it."""
+    """The scope page, which shows its model and passes the keys to the model."""
 
     NAME = page_table.SCOPE
     model: _ScopeKeys
@@ -189,14 +192,17 @@ class ScopePage(ListPage):
         scope.file_worker.enqueue(_import_chart_class, self._create_chart, self.desk.say)
 
     def _create_chart(self, chart_class: type[ScopeChart]) -> None:
-        """Insert the chart after its class was loaded."""
+        """Insert the chart after its class has been loaded."""
         chart = chart_class(self.theme, self.curve_area)
         self.curve_area.chart = chart
         chart.setGeometry(self.curve_area.rect())
         chart.show()
 
     def prepare_slice(self) -> bool:
-        """Create the chart and its lanes in steps, before the page is first shown."""
+        """Create the chart and its lanes in steps before the page is first shown.
+
+        Return whether work remains.
+        """
         self.scope_model.file_worker.poll()
         chart = self.curve_area.chart
         return chart is None or not chart.prepare_plots(_LANES_AHEAD)
@@ -207,7 +213,7 @@ class ScopePage(ListPage):
     # --- keys ----------------------------------------------------------------------------------------
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the displayed table."""
+        """Return the key labels of the displayed table."""
         return self.make_labels({}, self.function_keys())
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
@@ -235,7 +241,7 @@ class ScopePage(ListPage):
         }
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of the function keys and of zoom and pan."""
+        """Return the key actions, including zoom and pan."""
         scope = self.scope_model
         return {
             **{name: key.action for name, key in self.function_keys().items()},
@@ -251,31 +257,40 @@ class ScopePage(ListPage):
         }
 
     def is_animating(self) -> bool:
-        """Return whether the picture changes: live curves that are not constant, or unfinished lanes."""
+        """Return whether the picture changes.
+
+        It changes while live curves are not constant or lanes are unfinished.
+        """
         return self._undrawn or (
             self.scope_model.is_live and self.scope_model.picture.constant_values is None
         )
 
     def has_text_field(self) -> bool:
-        """Return whether a level or a line number is to be entered."""
+        """Return whether the operator has to enter a level or a line number."""
         return self.scope_tables.is_value_asked
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False from the curves."""
+        """Go back one step.
+
+        Return False if only the curves are shown, because no step remains.
+        """
         return self.scope_tables.handle_escape()
 
     def _analyse(self) -> None:
         self.host.open_page(page_table.ANALYSES)
 
     def _save_picture(self) -> None:
-        """Save a picture of the page. A worker encodes it."""
+        """Save a picture of the page.
+
+        A worker encodes the picture.
+        """
         image = self.grab().toImage()
         self.scope_model.write_picture(partial(_encode_png, image))
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Draw the last finished picture and request the next one."""
+        """Draw the last finished picture, and request the next picture."""
         scope, chart = self.scope_model, self.curve_area.chart
         if chart is not None and chart.curve_area.width() > 1.0:
             scope.width_px = round(chart.curve_area.width())
@@ -304,7 +319,7 @@ class ScopePage(ListPage):
         return join_messages("  ·  ", (what, rate, span, over)), scope.trigger_text, scope.is_armed
 
     def apply_theme(self) -> None:
-        """Apply the present colors."""
+        """Apply the current colors."""
         if self.curve_area.chart is not None:
             self.curve_area.chart.apply_theme()
         self._drawn = None
@@ -312,7 +327,7 @@ class ScopePage(ListPage):
     # --- layout --------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out and draw everything again."""
+        """Arrange and draw all parts again."""
         self._laid = None
         self._lay_out_if()
         self.apply_theme()
@@ -342,13 +357,13 @@ class ScopePage(ListPage):
 
 
 class _ScopeKeys:
-    """Adapter between the page and its models."""
+    """Adapter that passes keys from the page to its models."""
 
     def __init__(self, scope: ScopeModel, sheets: ScopeTables) -> None:
         self._scope, self._sheets = scope, sheets
 
     def handle_key(self, key: str) -> bool:
-        """Pass a key to the cursors or to the table."""
+        """Pass a key to the cursors if they use it, and otherwise to the table."""
         scope = self._scope
         if scope.cursors.shown and scope.side_panel is SidePanel.READINGS and key in {"Left", "Right"}:
             scope.step_cursor(1 if key == "Right" else -1)
@@ -361,27 +376,27 @@ class _ScopeKeys:
         return self._sheets.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the value to be entered."""
+        """Return whether a character can be entered as part of a value."""
         return self._sheets.accepts_key(key)
 
     def on_open(self) -> None:
-        """Do nothing, because the page reopens as it was left."""
+        """Do nothing, because the page reopens in its last state."""
 
     def handle_escape(self) -> bool:
-        """Go back one step, and return whether there was a step."""
+        """Go back one step, and return whether there was a step to go back."""
         return self._sheets.handle_escape()
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         return self._sheets.prompt_text()
 
     def on_close(self) -> None:
-        """Clear the entry."""
+        """Clear the entered value when the page closes."""
         self._sheets.input_field.text = ""
 
 
 def _find_view_key(sight: ScopePicture) -> object:
-    """Return a value that is equal for pictures that look the same."""
+    """Return a value that is equal for pictures with the same appearance."""
     if sight.constant_values is None:
         return sight
     figures = [
@@ -401,7 +416,10 @@ def format_span(seconds: float) -> str:
 
 
 def _encode_png(image: QImage) -> bytes:
-    """Encode an image as PNG; runs on a worker."""
+    """Encode an image as PNG.
+
+    This runs on a worker.
+    """
     buffer = QBuffer()
     buffer.open(QIODevice.OpenModeFlag.WriteOnly)
     QImageWriter(buffer, QByteArray(b"png")).write(image)

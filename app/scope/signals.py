@@ -22,7 +22,10 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class Quantity(Enum):
-    """Measured quantity with its name, metric unit, inch unit and minimum range; one lane per quantity."""
+    """The measured quantities, each with its name, metric unit, inch unit and minimum range.
+
+    The chart has one lane per quantity.
+    """
 
     POSITION = ("POSITION", "mm", "in", 1e-3)
     FOLLOWING_ERROR = ("FOLLOWING ERROR", "mm", "in", 1e-3)
@@ -44,17 +47,17 @@ class Quantity(Enum):
 
     @property
     def title(self) -> str:
-        """English name of the quantity."""
+        """Return the English name of the quantity."""
         return str(self.value[0])
 
     @property
     def min_range(self) -> float:
-        """Smallest useful range in internal units."""
+        """Return the smallest useful range in internal units."""
         return float(self.value[3])
 
     @property
     def is_length(self) -> bool:
-        """Whether the unit depends on the choice of millimeters or inches."""
+        """Return whether the unit depends on the choice of millimeters or inches."""
         return self.unit(True) != self.unit(False)
 
     def unit(self, metric: bool) -> str:
@@ -70,7 +73,7 @@ class Quantity(Enum):
         return 1.0 / MM_PER_INCH if self.is_length and not metric else 1.0
 
     def places(self, metric: bool) -> int:
-        """Return the number of decimals."""
+        """Return the number of decimals of a displayed value."""
         return _DECIMALS[self] + (1 if self.is_length and not metric else 0)
 
 
@@ -103,9 +106,9 @@ def _as_it_is(_times: FloatArray, values: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class ScopeSignal:
-    """One curve: its channel, its calculation, and the calculation window ``span_s`` in seconds.
+    """One curve, with its channel, its calculation, and the calculation window ``span_s`` in seconds.
 
-    ``letter`` is the axis, or empty for signals of the machine. ``word`` is the English name.
+    ``axis_letter`` is the axis, or empty for signals of the machine. ``display_name`` is the English name.
     ``is_untranslated`` is set if the name comes from the machine file and is not translated.
     """
 
@@ -120,13 +123,13 @@ class ScopeSignal:
 
     @property
     def title(self) -> str:
-        """Name of the signal in the operator's language."""
+        """Return the name of the signal in the operator's language."""
         word = self.display_name if self.is_untranslated else tr(self.display_name)
         return f"{self.axis_letter} {word}" if self.axis_letter else word
 
     @property
     def note(self) -> str:
-        """Text about the calculation window, or an empty string for directly sampled signals."""
+        """Return the text about the calculation window, or an empty string for directly sampled signals."""
         return tr(Message("{ms} ms window", ms=f"{1000.0 * self.span_s:g}")) if self.span_s else ""
 
     def calculate_values(self, times: FloatArray, column: FloatArray) -> FloatArray:
@@ -223,8 +226,8 @@ def list_signals(channels: Sequence[Channel]) -> tuple[ScopeSignal, ...]:
 def find_default_keys(signals: Sequence[ScopeSignal]) -> tuple[str, ...]:
     """Return the keys of the signals that are shown first.
 
-    They are the following errors and velocities of the axes, and the spindle, as many as the smallest screen
-    can list.
+    These are the following errors and velocities of the axes, and the spindle. Their number is limited by
+    what the smallest screen can list.
     """
     slides = [each.axis_letter for each in signals if each.quantity is Quantity.FOLLOWING_ERROR][:3]
     wanted = [f"{letter} {name}" for name in ("following error", "velocity") for letter in slides]

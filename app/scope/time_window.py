@@ -20,9 +20,10 @@ PAN_STEP_SHARE = 0.1  # ratio of the window per step
 
 @dataclass(slots=True)
 class TimeWindow:
-    """Time window in seconds relative to instant 0 of the record, or to the newest sample when live.
+    """Time window of the scope, in seconds.
 
-    ``limits`` is the largest possible window: the start and end of the record.
+    The times are relative to instant 0 of the record, or to the newest sample if the curves are live.
+    ``limits`` is the largest possible window, from the start to the end of the record.
     """
 
     begin_s: float = -10.0
@@ -31,16 +32,19 @@ class TimeWindow:
 
     @property
     def span_s(self) -> float:
-        """Width of the window in seconds."""
+        """Return the width of the window in seconds."""
         return self.end_s - self.begin_s
 
     @property
     def middle_s(self) -> float:
-        """Middle of the window in seconds."""
+        """Return the middle of the window in seconds."""
         return 0.5 * (self.begin_s + self.end_s)
 
     def zoom_window(self, steps: int, time_s: float | None = None) -> None:
-        """Zoom in (positive steps) or out through round spans. The time ``at`` stays in place."""
+        """Zoom in (positive steps) or out (negative steps) through round spans.
+
+        The time ``time_s`` does not move.
+        """
         near = [each for each in ROUND_SPANS_S if each < self.span_s * 0.999]
         far = [each for each in ROUND_SPANS_S if each > self.span_s * 1.001]
         for _ in range(abs(steps)):
@@ -49,7 +53,7 @@ class TimeWindow:
             self.magnify(self.span_s / span, time_s)
 
     def magnify(self, factor: float, time_s: float | None = None) -> None:
-        """Magnify by a factor around a time, or around the middle."""
+        """Magnify the window by a factor, around a time or around the middle."""
         time_s = self.middle_s if time_s is None else time_s
         whole = self.limits[1] - self.limits[0]
         span = min(max(self.span_s / factor, MIN_SPAN_S), max(whole, MIN_SPAN_S))
@@ -59,7 +63,7 @@ class TimeWindow:
         self._stay()
 
     def pan_window(self, shift_s: float) -> None:
-        """Move the window by a number of seconds, within the record."""
+        """Move the window by a number of seconds, within the limits of the record."""
         self.begin_s, self.end_s = self.begin_s + shift_s, self.end_s + shift_s
         self._stay()
 
@@ -70,7 +74,7 @@ class TimeWindow:
             self.begin_s = self.end_s - MIN_SPAN_S
 
     def show_time(self, time_s: float) -> None:
-        """Pan as far as necessary to show a time."""
+        """Pan only as far as necessary to show a time."""
         if not self.begin_s <= time_s <= self.end_s:
             self.pan_window(time_s - self.middle_s)
 
@@ -82,9 +86,9 @@ class TimeWindow:
 
 @dataclass(slots=True)
 class TimeCursors:
-    """Two cursors in seconds.
+    """Two cursors with times in seconds.
 
-    ``at`` is the index of the cursor that keys move, or -1 while hidden.
+    ``active_cursor`` is the index of the cursor that the keys move, or -1 while the cursors are hidden.
     """
 
     times_s: tuple[float, float] = (0.0, 0.0)
@@ -92,12 +96,12 @@ class TimeCursors:
 
     @property
     def shown(self) -> bool:
-        """Whether the cursors are shown."""
+        """Return whether the cursors are shown."""
         return self.active_cursor >= 0
 
     @property
     def distance_s(self) -> float:
-        """Time from the first to the second cursor in seconds."""
+        """Return the time from the first to the second cursor in seconds."""
         return self.times_s[1] - self.times_s[0]
 
     def place_in(self, window: TimeWindow) -> None:
@@ -106,7 +110,10 @@ class TimeCursors:
         self.times_s, self.active_cursor = (window.begin_s + quarter, window.end_s - quarter), 0
 
     def move_cursor(self, time_s: float, cursor: int | None = None) -> None:
-        """Move a cursor to a time. The default is the active cursor."""
+        """Move a cursor to a time.
+
+        The default is the active cursor.
+        """
         self.active_cursor = self.active_cursor if cursor is None else cursor
         self.times_s = (time_s, self.times_s[1]) if self.active_cursor == 0 else (self.times_s[0], time_s)
 
@@ -120,7 +127,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class TriggerEvent(Enum):
-    """Trigger event."""
+    """The events that can fire the trigger."""
 
     OFF = tr("OFF: CURVES KEEP UPDATING")
     RISES_ABOVE = tr("SIGNAL RISES ABOVE LEVEL")
@@ -131,7 +138,7 @@ class TriggerEvent(Enum):
 
     @property
     def needs_level(self) -> bool:
-        """Whether the event depends on a signal and a level."""
+        """Return whether the event depends on a signal and a level."""
         return self in {TriggerEvent.RISES_ABOVE, TriggerEvent.FALLS_BELOW, TriggerEvent.EXCEEDS}
 
 
@@ -142,7 +149,7 @@ TRIGGER_SHARES = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 class Trigger:
     """Trigger of the scope.
 
-    ``signal_key`` is the key of a signal, ``level`` is in internal units, and ``share_before`` is the share
+    ``signal_key`` is the key of a signal. ``level`` is in internal units. ``share_before`` is the fraction
     of the window before the event.
     """
 
@@ -154,13 +161,16 @@ class Trigger:
 
     @property
     def watched_key(self) -> str:
-        """Key of the signal or channel that the trigger examines, or an empty string while it is off."""
+        """Return the key of the signal or channel that the trigger examines.
+
+        Return an empty string while the trigger is off.
+        """
         if self.event.needs_level:
             return self.signal_key
         return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.event, "")
 
     def with_next_share(self) -> Trigger:
-        """Return a copy with the next position in the window."""
+        """Return a copy with the next position of the event in the window."""
         at = TRIGGER_SHARES.index(self.share_before) if self.share_before in TRIGGER_SHARES else -1
         return replace(self, share_before=TRIGGER_SHARES[(at + 1) % len(TRIGGER_SHARES)])
 
@@ -169,8 +179,8 @@ class Trigger:
     ) -> float | None:
         """Return the time of the first sample that fires the trigger, or None.
 
-        The first sample cannot fire the trigger. ``alarmed`` contains the values of the channel ``state``
-        that mean an alarm or an E-stop.
+        The first sample cannot fire the trigger. ``alarm_values`` contains the values of the channel
+        ``state`` that indicate an alarm or an E-stop.
         """
         if self.event is TriggerEvent.OFF or len(values) < 2:
             return None

@@ -1,4 +1,7 @@
-"""Parts of the screen that the pages share. Importing any of them loads Qt."""
+"""Parts of the screen that several pages use.
+
+Importing any of these modules loads Qt.
+"""
 
 import builtins
 from importlib import import_module

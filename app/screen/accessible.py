@@ -32,14 +32,20 @@ def register_accessibility() -> None:
 
 
 def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
-    """Return the accessible interface of a plain QWidget, or None. Qt has interfaces for other classes."""
+    """Return the accessible interface of a plain QWidget, or None for other classes.
+
+    Qt has its own interfaces for other classes.
+    """
     if kind != "QWidget" or not isinstance(shown, QWidget):
         return None
     return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
 
 
 def speak_text(widget: QWidget, text: str) -> None:
-    """Let a screen reader speak a text that has appeared. Without a screen reader, nothing happens."""
+    """Let a screen reader speak a text that has appeared.
+
+    Without a screen reader, this does nothing.
+    """
     if QAccessible.isActive() and text:
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(widget, text))
 
@@ -47,7 +53,7 @@ def speak_text(widget: QWidget, text: str) -> None:
 class AccessiblePart(QAccessibleWidget):
     """A page or another widget that contains panels.
 
-    Without a ``part_name``, it has the name of its parent widget.
+    A part without a ``part_name`` uses the name of its parent widget.
     """
 
     def __init__(self, widget: QWidget, role: QAccessible.Role = Role.Grouping) -> None:
@@ -66,7 +72,7 @@ class AccessiblePart(QAccessibleWidget):
 
 
 class AccessiblePanel(AccessiblePart):
-    """A panel, with its title as name, its texts as description, and its targets as children."""
+    """A panel with its title as name, its texts as description, and its targets as children."""
 
     def __init__(self, panel: Panel) -> None:
         super().__init__(panel, Role.List if panel.is_list else Role.Grouping)
@@ -74,7 +80,7 @@ class AccessiblePanel(AccessiblePart):
         self._spots: dict[int, AccessibleTarget] = {}
 
     def text(self, kind: QAccessible.Text) -> str:
-        """Return the title, or all texts outside the targets for the description."""
+        """Return the title for the name, or all texts outside the targets for the description."""
         if kind is Text.Name:
             return self._panel.find_accessible_name() or super().text(kind)
         return self._panel.describe_content() if kind is Text.Description else super().text(kind)
@@ -84,7 +90,10 @@ class AccessiblePanel(AccessiblePart):
         return super().childCount() + len(self._panel.list_targets())
 
     def child(self, index: int) -> MaybeInterface:
-        """Return a child by its index. The child widgets precede the targets."""
+        """Return the child with this index.
+
+        The child widgets precede the targets.
+        """
         number = index - super().childCount()
         if number < 0:
             return super().child(index)
@@ -96,13 +105,13 @@ class AccessiblePanel(AccessiblePart):
         return self._spots[number]
 
     def indexOfChild(self, child: QAccessibleInterface) -> int:
-        """Return the index of a child, or -1."""
+        """Return the index of a child, or -1 if it is not a child of the panel."""
         if isinstance(child, AccessibleTarget):
             return super().childCount() + child.target_index
         return super().indexOfChild(child)
 
     def childAt(self, x: int, y: int) -> MaybeInterface:
-        """Return the child at a position on the screen, or None."""
+        """Return the child at a position on the screen, or None if there is no child."""
         for index in range(self.childCount()):
             child = self.child(index)
             if child is not None and child.rect().contains(x, y):
@@ -111,7 +120,7 @@ class AccessiblePanel(AccessiblePart):
 
 
 class _PressAction(QAccessibleActionInterface):
-    """Action that presses a target as a touch does."""
+    """Action that presses a target in the same way as a touch."""
 
     def __init__(self, spot: AccessibleTarget) -> None:
         super().__init__()
@@ -133,7 +142,10 @@ class _PressAction(QAccessibleActionInterface):
 
 
 class AccessibleTarget(QAccessibleInterface):
-    """One target of a panel, by its index. After each painting, it describes what the panel shows there."""
+    """One target of a panel, identified by its index.
+
+    The interface always describes the target as it was last painted.
+    """
 
     def __init__(self, panel: Panel, index: int) -> None:
         super().__init__()
@@ -142,7 +154,7 @@ class AccessibleTarget(QAccessibleInterface):
 
     @property
     def target(self) -> TouchTarget:
-        """The target as it was last painted."""
+        """Return the target as it was last painted."""
         return self._panel.list_targets()[self.target_index]
 
     def isValid(self) -> bool:
@@ -191,7 +203,7 @@ class AccessibleTarget(QAccessibleInterface):
         return _ROLES[self.target.kind] if self.isValid() else Role.NoRole
 
     def state(self) -> QAccessible.State:
-        """Return whether the target is disabled, checked or selected."""
+        """Return the state of the target: disabled, checked or selected."""
         state = QAccessible.State()
         if not self.isValid():
             state.invalid = True

@@ -1,8 +1,8 @@
 """Charts of values over time or over parts, drawn by pyqtgraph in the colors and font of TurnDesk.
 
-Importing pyqtgraph takes 0.3 s, so only a ``_view`` module that has a chart imports this module. A chart only
-draws. Touches, the wheel and keys go to the parent widget, which sets the ranges. A context menu can
-therefore not take the keyboard, and dragging cannot move the curve out of view.
+Importing pyqtgraph takes 0.3 s. Only view modules that contain a chart therefore import this module. A
+chart only draws. Touches, the wheel and keys go to the parent widget, which sets the ranges. Therefore a
+context menu cannot take the keyboard focus, and dragging cannot move the curve out of view.
 """
 
 from __future__ import annotations
@@ -25,20 +25,26 @@ FloatArray = npt.NDArray[np.float64]
 
 
 def find_curve_color(theme: ScreenTheme, index: int) -> QColor:
-    """Return the color of a curve by its index, counted from 0. After eight curves, the colors repeat."""
+    """Return the color of a curve by its index, counted from 0.
+
+    After eight curves, the colors repeat.
+    """
     colours = CURVE_COLORS[theme.palette.name]
     return QColor(colours[index % len(colours)])
 
 
 def make_line_pen(color: QColor, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
-    """Return a pen one pixel wide. Qt needs four times as long for a wider pen."""
+    """Return a pen with a width of one pixel.
+
+    Qt needs four times as long for a wider pen.
+    """
     pen = QPen(color, 1.0, style)
     pen.setCosmetic(True)
     return pen
 
 
 class ChartAxis(pg.AxisItem):  # type: ignore[misc]
-    """An axis whose numbers have TurnDesk's format: a true minus sign and no SI prefix."""
+    """An axis whose numbers have TurnDesk's format, with a true minus sign and no SI prefix."""
 
     def __init__(self, orientation: str) -> None:
         super().__init__(orientation)
@@ -46,9 +52,7 @@ class ChartAxis(pg.AxisItem):  # type: ignore[misc]
         self.setCacheMode(QGraphicsItem.CacheMode.DeviceCoordinateCache)  # Draw the labels only once.
 
     def find_label_values(self, low: float, high: float, length_px: float) -> list[float]:
-        """Return the values that have labels between ``low`` and ``high`` on an axis of ``length_px``
-        pixels.
-        """
+        """Return the values that have labels on an axis of ``length_px`` pixels from ``low`` to ``high``."""
         levels = self.tickValues(low, high, length_px) if high > low and length_px > 0.0 else []
         return [float(value) for _spacing, values in levels[:1] for value in values]
 
@@ -59,10 +63,10 @@ class ChartAxis(pg.AxisItem):  # type: ignore[misc]
 
 
 class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
-    """One plot of a chart, with curves, a left axis and a bottom axis. Its owner sets the ranges.
+    """One plot of a chart, with curves, a left axis and a bottom axis.
 
-    It replaces the PlotItem of pyqtgraph, which spends three quarters of its time on menus that are not used
-    here.
+    Its owner sets the ranges. This class replaces the PlotItem of pyqtgraph, which spends three quarters of
+    its time on menus that are not used here.
     """
 
     def __init__(self) -> None:
@@ -82,7 +86,10 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
             self.layout.addItem(axis, *place)
 
     def find_axis(self, side: str) -> ChartAxis:
-        """Return the axis at the ``left`` or the ``bottom``."""
+        """Return the axis at the left or at the bottom.
+
+        ``side`` is "left" or "bottom".
+        """
         return self._axes[side]
 
     def add_item(self, item: QGraphicsItem) -> None:
@@ -90,7 +97,7 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
         self.vb.addItem(item)
 
     def clear_plot(self) -> None:
-        """Remove all curves and restore the initial state of the axes."""
+        """Remove all curves, and restore the initial state of the axes."""
         self.vb.clear()
         self.vb.invertY(False)
         for axis in self._axes.values():
@@ -100,7 +107,10 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
                 axis.setLabel("")
 
     def add_curve(self, pen: QPen) -> pg.PlotCurveItem:
-        """Add a curve and return it. Set its points with ``set_curve_points``."""
+        """Add a curve, and return it.
+
+        Set the points of the curve with ``set_curve_points``.
+        """
         found = pg.PlotCurveItem(pen=pen, antialias=False, skipFiniteCheck=True)
         found.setSegmentedLineMode("on")  # Drawing lines takes half as long as drawing a path.
         self.add_item(found)
@@ -133,12 +143,18 @@ class ChartPlot(pg.GraphicsWidget):  # type: ignore[misc]
 
 
 def set_curve_points(curve: pg.PlotCurveItem, x: FloatArray, y: FloatArray, connect: object = "all") -> None:
-    """Set the points of a curve. ``connect`` is all, pairs, or an array with 0 where a line ends."""
+    """Set the points of a curve.
+
+    ``connect`` is "all", "pairs", or an array with 0 where a line ends.
+    """
     curve.setData(x=x, y=y, connect=connect, skipFiniteCheck=True)
 
 
 class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
-    """A column of plots. Call ``apply_theme`` when the theme or the size of the window changes."""
+    """A column of plots.
+
+    Call ``apply_theme`` when the theme or the size of the window changes.
+    """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)
@@ -165,7 +181,7 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         return True
 
     def add_plot(self) -> ChartPlot:
-        """Add a plot below the others and return it."""
+        """Add a plot below the existing plots, and return it."""
         plot = self._spare.pop() if self._spare else ChartPlot()
         self.addItem(plot, row=len(self.plots), col=0)
         self.plots.append(plot)
@@ -173,7 +189,10 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         return plot
 
     def remove_plots(self) -> None:
-        """Remove all plots. They are reused later."""
+        """Remove all plots.
+
+        The plots are reused later.
+        """
         self.clear()
         for plot in self.plots:
             plot.clear_plot()
@@ -181,12 +200,12 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.plots.clear()
 
     def set_left_width(self, units: float) -> None:
-        """Set the width of all left axes in units, so that the plots are aligned."""
+        """Set the width of all left axes in screen units, so that the plots are aligned."""
         for plot in self.plots:
             plot.find_axis("left").setWidth(round(units * self.theme.u))
 
     def apply_theme(self) -> None:
-        """Apply the present colors and font sizes."""
+        """Apply the current colors and font sizes."""
         margin = round(0.4 * self.theme.u)
         top = round(0.6 * _TICK * self.theme.u)  # Half of the top label is above the highest line.
         self.ci.layout.setContentsMargins(margin, top, margin, margin)
@@ -223,7 +242,10 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def drawBackground(self, painter: QPainter, rect: QRectF) -> None:
-        """Draw the background and all grid lines together, in a tenth of the time of pyqtgraph's grid."""
+        """Draw the background and all grid lines.
+
+        The lines are drawn together, which takes a tenth of the time of pyqtgraph's grid.
+        """
         super().drawBackground(painter, rect)
         painter.setPen(make_line_pen(self.theme.color("ghost")))
         for plot in self.plots:

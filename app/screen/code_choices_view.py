@@ -38,11 +38,14 @@ class CodeChoiceList(RowPanel):
         self.hide()
 
     def refresh(self) -> None:
-        """Redraw the list if the choices or the selection have changed; called once a frame."""
+        """Redraw the list if the choices or the selection have changed.
+
+        This is called once a frame.
+        """
         self._shown = (self._help.choices, self._help.marked)
 
     def _find_foot_height(self) -> float:
-        """Return the height of the words and the example in pixels."""
+        """Return the total height of the words and the example in pixels."""
         return self._find_example_height() + self._count_word_rows() * WORD_ROW_HEIGHT * self.theme.u
 
     def _find_example_height(self) -> float:
@@ -52,11 +55,14 @@ class CodeChoiceList(RowPanel):
         return (len(lines) * EXAMPLE_LINE_HEIGHT + 1.4) * self.theme.u if lines else 0.0
 
     def _find_sketch_height(self) -> float:
-        """Return the height of a drawing in pixels. Subclasses may override this."""
+        """Return the height of a drawing in pixels, which is 0 here.
+
+        Subclasses may override this.
+        """
         return 0.0
 
     def _count_word_rows(self) -> int:
-        """Return the number of word rows that leave enough room for the selected code."""
+        """Return the number of word rows that leave enough space for the selected code."""
         count, u = len(self._help.words), self.theme.u
         wanted = count if count <= _MAX_ONE_COLUMN else -(-count // 2)
         room = (
@@ -130,7 +136,7 @@ class CodeChoiceList(RowPanel):
 
 
 def draw_entry(painter: ThemedPainter, box: QRectF, entry: CodeBookEntry, code: str, text: str) -> None:
-    """Draw the form of a code, with its meaning below."""
+    """Draw the syntax of a code, with its meaning below it."""
     upper = box.adjusted(0, 0, 0, -box.height() / 2)
     painter.draw_text_line(upper, entry.form, 1.9, code, raw=True, fit=False)
     painter.draw_text_line(

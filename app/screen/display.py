@@ -1,7 +1,7 @@
-"""Test whether a display can be opened, in a child process, because Qt aborts the process if it cannot.
+"""Test whether a display can be opened, in a child process.
 
-A missing X server, compositor, library or Qt platform would otherwise end the program with a core dump. This
-module returns an error text instead.
+Qt aborts the process if it cannot open the display. A missing X server, compositor, library or Qt platform
+would therefore end the program with a core dump. This module returns an error text instead.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _CHUNK_BYTES = 1 << 14
 
 
 def find_display_error() -> str:
-    """Return why no window can be opened, with a remedy. Empty if a window can be opened."""
+    """Return why no window can be opened, with a remedy, or an empty string if a window can be opened."""
     if sys.platform != "linux":
         return ""
     from PySide6 import QtGui  # Import before the fork, so that the child process has the module.
@@ -34,7 +34,10 @@ def find_display_error() -> str:
 
 
 def _try_open(gui: object) -> tuple[bool, str]:
-    """Open the display in a child process. Return whether this succeeded, and the messages of Qt."""
+    """Open the display in a child process.
+
+    Return whether this succeeded, and the messages of Qt.
+    """
     reads, writes = os.pipe()
     child = os.fork()
     if child == 0:
@@ -47,7 +50,10 @@ def _try_open(gui: object) -> tuple[bool, str]:
 
 
 def _open_display(gui: object, writes: int) -> None:
-    """Open the display and exit. This runs in the child process and must not run cleanup of the parent."""
+    """Open the display, and exit.
+
+    This runs in the child process and must not run the cleanup of the parent.
+    """
     try:
         import resource
 
@@ -62,7 +68,10 @@ def _open_display(gui: object, writes: int) -> None:
 
 
 def _read_result(reads: int, child: int) -> str:
-    """Return the output of the child process. Kill the process if the display does not respond."""
+    """Return the output of the child process.
+
+    If the display does not respond, kill the child process.
+    """
     said, end = b"", time.monotonic() + _TIMEOUT_S
     while (left := end - time.monotonic()) > 0.0:
         if not select.select([reads], [], [], left)[0]:
@@ -105,7 +114,10 @@ def _explain_error(qt_messages: str) -> str:
 
 
 def _find_missing_library() -> str:
-    """Return the error for a library that Qt's X11 plugin needs and that is missing. Empty if all exist."""
+    """Return the error about a missing library that Qt's X11 plugin needs.
+
+    Return an empty string if all libraries exist.
+    """
     import PySide6
 
     part = Path(PySide6.__file__).parent / "Qt" / "plugins" / "platforms" / "libqxcb.so"

@@ -55,9 +55,10 @@ class SketchPanel(Panel):
         on_touch_elsewhere: Callable[[tuple[float, float]], None],
         parent: QWidget,
     ) -> None:
-        """Create the panel. ``touch`` gets the word of a touched dimension.
+        """Create the panel.
 
-        ``on_touch_elsewhere`` gets the point of any other touch, in coordinates of the sketch.
+        ``on_dimension_touch`` is called with the word of a touched dimension. ``on_touch_elsewhere`` is
+        called with the point of any other touch, in coordinates of the sketch.
         """
         super().__init__(theme, parent)
         self._touch, self._beside = on_dimension_touch, on_touch_elsewhere
@@ -178,9 +179,9 @@ _DRAWING_SCALE = 1.9  # Size of the drawing relative to the cutting edges, for a
 def draw_tool_outline(
     painter: ThemedPainter, box: QRectF, outline: ToolOutline, *, is_small: bool = False
 ) -> None:
-    """Draw the body, cutting edges and control point of a tool. Z points right and X points down.
+    """Draw the body, cutting edges and control point of a tool.
 
-    ``is_small`` omits the arrows of the axes and draws a smaller cross.
+    Z points right and X points down. ``is_small`` omits the arrows of the axes and draws a smaller cross.
     """
     look, u = painter.theme, painter.theme.u
     place = _make_transform(box, outline)
@@ -209,7 +210,7 @@ def draw_tool_outline(
 def _make_transform(box: QRectF, outline: ToolOutline) -> QTransform:
     """Return the transform from (z, x) in mm to the box.
 
-    Axial tools are shown completely, other tools only around their cutting edges.
+    Axial tools are shown completely. For other tools, only the vicinity of the cutting edges is shown.
     """
     cutting = _polygon(outline.cutting_outlines[0]).boundingRect()
     for points in outline.cutting_outlines[1:]:
@@ -234,7 +235,7 @@ def _polygon(points: FloatArray) -> QPolygonF:
 
 
 def _draw_axes(painter: ThemedPainter, box: QRectF) -> None:
-    """Draw the arrows Z+ to the right and X+ down, in the upper left corner."""
+    """Draw the axis arrows in the upper left corner, with Z+ to the right and X+ down."""
     u = painter.theme.u
     at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
     painter.setPen(painter.theme.make_pen("soft", 0.14))
@@ -250,7 +251,7 @@ _FLANK_ANGLE = 0.7  # Radians from the tool's axis to its flanks.
 
 
 def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str = "text") -> None:
-    """Draw a tool tip: the body, the nose circle, and a dot at the point where X and Z are set."""
+    """Draw a tool tip, with the body, the nose circle, and a dot at the point where X and Z are set."""
     side = min(box.width(), box.height())
     centre, radius = box.center(), 0.16 * side
     z, x = TIP_DIRECTIONS[quadrant]  # X+ points down on the screen.
@@ -271,7 +272,10 @@ def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str
 
 
 def _make_body_path(nose: QPointF, away: float, radius: float, side: float) -> QPainterPath:
-    """Return two flanks that touch the nose circle and extend out of the drawing."""
+    """Return the outline of the body of a tool tip.
+
+    Its two flanks touch the nose circle and extend out of the drawing.
+    """
     path = QPainterPath(_on(nose, away + math.pi / 2 + _FLANK_ANGLE, radius))
     path.lineTo(_on(_on(nose, away + math.pi / 2 + _FLANK_ANGLE, radius), away + _FLANK_ANGLE, 2 * side))
     path.lineTo(_on(_on(nose, away - math.pi / 2 - _FLANK_ANGLE, radius), away - _FLANK_ANGLE, 2 * side))

@@ -1,4 +1,4 @@
-"""Input fields with a question and the entered text, and touch keyboards."""
+"""Input fields with a question and the entered text, and touch keyboards for them."""
 
 from __future__ import annotations
 
@@ -48,7 +48,10 @@ _ARROW_SIGNS = {"Up": "↑", "Down": "↓", "Left": "←", "Right": "→"}
 
 
 class LetterPad(Panel):
-    """A touch keyboard whose keys act like keys of the keyboard. It is hidden at first."""
+    """A touch keyboard whose keys act like those of the real keyboard.
+
+    The pad is hidden at first.
+    """
 
     accessible_name = "KEYBOARD"
 
@@ -61,7 +64,7 @@ class LetterPad(Panel):
 
     @property
     def min_height_px(self) -> int:
-        """The height in pixels at which every key is large enough for a fingertip."""
+        """Return the height in pixels at which every key is large enough for a fingertip."""
         return self.theme.find_key_rows_height(len(self._rows))
 
     def set_target_field(self, text_field: QWidget) -> None:
@@ -101,7 +104,8 @@ def send_key(key: str, widget: QWidget) -> None:
 class EntryTexts:
     """The texts of an entry.
 
-    They are its subject, question, input text, change (old → new) and a hint for other keys.
+    The texts are the subject, the question, the input text, the change (old → new), and a hint about other
+    keys.
     """
 
     subject: str = ""
@@ -116,7 +120,7 @@ class EntryTexts:
 
 
 class EntryPanel(Panel):
-    """A panel with one input field. It is redrawn when one of its texts changes."""
+    """A panel with one input field, which is redrawn when one of its texts changes."""
 
     ground_color = "panel"
     entry_texts = RedrawingAttribute(EntryTexts())
@@ -148,7 +152,7 @@ class EntryPanel(Panel):
 def draw_entry_text(
     painter: ThemedPainter, area: QRectF, text: str, *, size: float = 2.8, has_cursor: bool = True
 ) -> None:
-    """Draw an input text, ``size`` units high, with a caret if the field has the keyboard.
+    """Draw an input text that is ``size`` units high, with a caret if the field has the keyboard focus.
 
     A rejected text is drawn as selected, because the next character replaces it.
     """
@@ -171,7 +175,10 @@ def draw_entry_box(painter: ThemedPainter, box: QRectF, text: str, size: float =
 
 
 def style_line_edit(edit: QLineEdit, theme: ScreenTheme, size: float, left: float) -> None:
-    """Apply the present font and colors to a line edit, with ``left`` units of padding before its text."""
+    """Apply the current font and colors to a line edit.
+
+    ``left`` is the padding before the text, in units.
+    """
     u, colours = theme.u, theme.palette
     edit.setFont(theme.make_font(size, is_bold=True))
     edit.setStyleSheet(
@@ -205,15 +212,19 @@ class NumberPad(LetterPad):
         page_key: tuple[str, str] | None,
         parent: QWidget,
     ) -> None:
-        """Create the pad. ``page_key`` is the name and label of the page's own key, or None for an empty
-        place.
+        """Create the pad.
+
+        ``page_key`` is the name and label of the page's own key. None leaves its position empty.
         """
         super().__init__(theme, press, parent, _NUMBER_KEYS)
         self.page_key = page_key
         self.show()
 
     def draw_pad_key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
-        """Draw one key. The place of the page's own key remains empty without such a key."""
+        """Draw one key.
+
+        If the page has no key of its own, the position of this key remains empty.
+        """
         key, shown = (
             (self.page_key or ("", "")) if key == _PAGE_KEY else (key, _KEY_LABELS.get(key, key.upper()))
         )

@@ -26,7 +26,7 @@ COLUMN_COUNT = 2
 
 
 class MenuPage(Page):
-    """The page that opens all other pages, by key or touch."""
+    """The page from which all other pages can be opened, by key or touch."""
 
     NAME = page_table.MENU
 
@@ -39,11 +39,11 @@ class MenuPage(Page):
         self.menu_list = _MenuTiles(self.theme, host.press_key, self._entries, self)
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the pages that this machine has."""
+        """Return the key labels of the pages that this machine has."""
         return self._labels
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the keys of the editor and MDI while those pages cannot be opened."""
+        """Return the keys of the editor and MDI pages while these pages cannot be opened."""
         snapshot, named = self.desk.read_snapshot(), self.desk.program_loader.loaded.path is not None
         found = {
             page_table.EDITOR: find_editor_refusal(snapshot, has_name=named),
@@ -78,7 +78,7 @@ class MenuPage(Page):
         return True
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Let the tiles fill the page."""
+        """Resize the tiles so that they fill the page."""
         self.menu_list.setGeometry(self.rect())
 
 

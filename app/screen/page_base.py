@@ -1,50 +1,51 @@
-"""Base class of the pages of the main window, and how a page is added.
+"""Base class of the pages of the main window, with instructions on how to add a page.
 
-A page is a ``Page`` (a QWidget) in the room that the fixed parts of the window leave. Title, position, feed,
-spindle, lamps, station dock, prompt line and function keys belong to the ``Frame``. To add a page, add an
-entry to ``PAGES`` in ``app.screen.page_table``. The page is created when it is first opened. A page may
-override the following members:
+A page is a ``Page`` (a QWidget) in the area that the fixed parts of the window do not cover. Title,
+position, feed, spindle, lamps, station dock, prompt line and function keys belong to the ``WindowFrame``.
+To add a page, add an entry to ``_OWN_PAGES`` in ``app.screen.page_table``. The page is created when it is
+first opened. A page may override the following members:
 
 - ``NAME``: its name in ``app.screen.page_table``, which the title line shows.
 - ``LABELS``: ten labels of up to eight characters for the function keys. F1 is MENU.
-  An empty label means no key.
+  An empty label means that there is no key.
 - ``key_labels()``: the labels, if they change.
-- ``disabled_keys()``: function keys that are disabled now. They are drawn dim, and show the reason
-  when pressed.
+- ``disabled_keys()``: the function keys that are disabled now. They are drawn dim, and show the reason
+  when they are pressed.
 - ``STARTS``: whether the start buttons can start cycles while the page is shown.
-- ``key_actions()``: its key actions, by the key names of ``app.screen.window.make_key_table``. They
-  precede those of the frame. H, E, D, R and the pots work on every page without a caret, and
-  F1 on all pages.
-- ``handle_key_press``: gets every key press first, including repeats. True means that the page has
-  handled the key.
-- ``end_held_actions()``: called before any other key or touch acts. Actions that need a key held down end.
-- ``handle_key_release``: gets every key release.
-- ``release_all()``: called if no key release will arrive any more. All such actions end.
+- ``key_actions()``: its key actions, by the key names of ``app.screen.window.key_table``. They
+  have priority over the actions of the frame. H, E, D, R and the pots work on every page without
+  a caret, and F1 works on all pages.
+- ``handle_key_press``: receives every key press first, including repeats. True means that the page
+  has handled the key.
+- ``end_held_actions()``: called before any other key or touch acts. Actions that need a key held down
+  end.
+- ``handle_key_release``: receives every key release.
+- ``release_all()``: called if no more key releases will arrive. All such actions end.
 - ``handle_key(key)``: handles a key as text input: one character, or ``Enter Back Delete Tab Up
   Down``, ``Page up``, ``Page down``. True means that the page has handled the key. A standard
   widget with the focus handles its keys itself.
 - ``accepts_key(key)``: whether this character is text input. Lamps then do not show it as their key.
-- ``has_text_field()``: whether an input field has the keyboard. Only then is a caret drawn, and every
-  character belongs to the field.
+- ``has_text_field()``: whether an input field has the keyboard focus. Only then is a caret drawn, and
+  every character belongs to the field.
 - ``pending_question()``: a question of the page, which has priority on the prompt line.
 - ``prompt_text()``: the text of the prompt line if there is no message and no alarm.
-- ``can_open()``: whether the page can be opened now. If not, it shows the reason by ``desk.say``.
+- ``can_open()``: whether the page can be opened now. If not, it shows the reason with ``desk.say``.
 - ``on_open()``: called when the page has opened. It may take the focus from the window.
-- ``try_leave()``: called before the page or the window closes. False prevents this. The page then
-  shows the reason by ``desk.say``.
+- ``try_leave()``: called before the page or the window closes. False prevents closing. The page then
+  shows the reason with ``desk.say``.
 - ``is_esc_stop_key()``: whether Esc starts feed hold while the machine moves. False if Esc has another
   function.
 - ``handle_escape()``: handles Esc. False means that the page closed nothing. The window then closes its
   question, starts feed hold, or opens the Automatic page.
-- ``prepare_slice()``: prepares slow parts in slices before the page is shown. False means that nothing
-  is left.
+- ``prepare_slice()``: prepares slow parts in slices before the page is shown. False means that no work
+  remains.
 - ``is_animating()``: whether the page shows an animation, so that it is drawn 60 times per second.
 - ``refresh``: called once a frame with the snapshot, status and loaded program of one instant.
 - ``apply_theme()``: called when the colors have changed. The frame redraws painted parts.
 
-``host.open_page(name)`` opens another page, ``host.press_key(key)`` acts like a key press, and ``host.desk``
-is the model. The frame sets the page's geometry. Lay out the parts in ``resizeEvent``, in units of
-``look.u``.
+``host.open_page(name)`` opens another page, ``host.press_key(key)`` acts like a key press, and
+``host.desk`` is the model. The frame sets the geometry of the page. Arrange the parts in ``resizeEvent``,
+in units of ``theme.u``.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 
 
 def find_label(language: str, label: str) -> str:
-    """Return the label of a key on a machine with this programming language."""
+    """Return the key label that is used on a machine with this programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
 
@@ -79,7 +80,7 @@ KeyActions = Mapping[str, Callable[[], object]]  # Actions by key name. Their re
 
 @dataclass(frozen=True, slots=True)
 class PageHost:
-    """The objects and functions that the frame gives to its pages."""
+    """The objects and functions that the window frame provides to its pages."""
 
     theme: ScreenTheme
     desk: Desk
@@ -89,7 +90,10 @@ class PageHost:
 
 
 class Page(QWidget):
-    """Base class of all pages. The module's docstring describes the members."""
+    """Base class of all pages.
+
+    The docstring of the module describes the members.
+    """
 
     NAME: ClassVar[str]
     LABELS: ClassVar[tuple[str, ...]] = ("MENU", "", "", "", "", "", "ALARMS", "", "", "")
@@ -102,15 +106,21 @@ class Page(QWidget):
 
     @property
     def accessible_name(self) -> str:
-        """The name for assistive technology."""
+        """Return the name for assistive technology."""
         return self.NAME
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the present labels of the function keys; called once a frame."""
+        """Return the labels that the function keys have now.
+
+        This is called once a frame.
+        """
         return tuple(find_label(self.desk.machine.language, label) for label in self.LABELS)
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the function keys that are disabled now; called once a frame."""
+        """Return the function keys that are disabled now.
+
+        This is called once a frame.
+        """
         return frozenset()
 
     def key_actions(self) -> KeyActions:
@@ -118,24 +128,36 @@ class Page(QWidget):
         return {}
 
     def handle_key_press(self, _event: QKeyEvent) -> bool:
-        """Handle a key press before all other parts. Return False to leave the key to them."""
+        """Handle a key press before all other parts.
+
+        Return False to let the other parts handle the key.
+        """
         return False
 
     def handle_key_release(self, _event: QKeyEvent) -> None:
-        """Handle a key release."""
+        """Handle a key release.
+
+        The base class does nothing.
+        """
 
     def end_held_actions(self) -> None:
-        """End actions of keys held down, because another key or touch will act next."""
+        """End the actions of keys held down, because another key or touch will act next."""
 
     def release_all(self) -> None:
-        """End all actions of keys held down, because no key release will arrive."""
+        """End all actions of keys held down, because no more key releases will arrive."""
 
     def handle_key(self, _key: str) -> bool:
-        """Handle a key as text input. Return False to leave the key to the window."""
+        """Handle a key as text input.
+
+        Return False to let the window handle the key.
+        """
         return False
 
     def handle_touched_key(self, key: str) -> None:
-        """Handle a touch on a drawn key. Esc goes to the window, any other key to this page."""
+        """Handle a touch on a drawn key.
+
+        Esc goes to the window, and any other key goes to this page.
+        """
         if key == "Esc":
             self.host.press_key(key)
         else:
@@ -146,11 +168,14 @@ class Page(QWidget):
         return False
 
     def has_text_field(self) -> bool:
-        """Return whether an input field of the page has the keyboard."""
+        """Return whether an input field of the page has the keyboard focus."""
         return False
 
     def prepare_slice(self) -> bool:
-        """Prepare one slice of slow parts before the page is shown. Return False if nothing is left."""
+        """Prepare one slice of the slow parts before the page is shown.
+
+        Return False if no work remains.
+        """
         return False
 
     def is_animating(self) -> bool:
@@ -158,11 +183,14 @@ class Page(QWidget):
         return False
 
     def pending_question(self) -> str:
-        """Return a question of the page, which nothing covers. Empty without a question."""
+        """Return a question of the page that must always be visible.
+
+        Return an empty string if there is no question.
+        """
         return ""
 
     def prompt_text(self) -> str:
-        """Return the page's prompt. Empty for the prompt of the machine state."""
+        """Return the page's prompt, or an empty string to show the prompt of the machine state."""
         return ""
 
     def can_open(self) -> bool:
@@ -170,29 +198,44 @@ class Page(QWidget):
         return True
 
     def on_open(self) -> None:
-        """Handle the opening of the page."""
+        """Handle the opening of the page.
+
+        The base class does nothing.
+        """
 
     def try_leave(self) -> bool:
-        """Return whether another page may replace this one. If not, the prompt line shows the reason."""
+        """Return whether another page may replace this page.
+
+        If not, the prompt line shows the reason.
+        """
         return True
 
     def is_esc_stop_key(self) -> bool:
-        """Return whether Esc starts feed hold while the machine moves. An input field uses Esc itself."""
+        """Return whether Esc starts feed hold while the machine moves.
+
+        It does not if an input field uses Esc.
+        """
         return not self.has_text_field()
 
     def handle_escape(self) -> bool:
-        """Handle Esc. Return whether Esc has closed something on the page."""
+        """Handle Esc, and return whether something on the page was closed."""
         return False
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the snapshot, status and loaded program of this instant; called once a frame."""
+        """Show the snapshot, status and loaded program of this instant.
+
+        This is called once a frame.
+        """
 
     def apply_theme(self) -> None:
-        """Apply the present colors."""
+        """Apply the current colors."""
 
 
 class PageModel(Protocol):
-    """Interface of a page's model. ``handle_escape`` returns False if it canceled nothing."""
+    """Interface of the model of a page.
+
+    ``handle_escape`` returns False if there was nothing to cancel.
+    """
 
     def handle_key(self, key: str) -> bool: ...
 
@@ -217,18 +260,18 @@ class ModelPage(Page):
         return self.model.accepts_key(key)
 
     def on_open(self) -> None:
-        """Inform the model that the page has opened."""
+        """Notify the model that the page has opened."""
         self.model.on_open()
 
     def handle_escape(self) -> bool:
-        """Let the model go one step back."""
+        """Let the model go back one step."""
         return self.model.handle_escape()
 
 
 class HeadKey(NamedTuple):
     """A touch target above the editor's text that opens the panel.
 
-    ``label`` is its text. ``name`` is the name of the equivalent key.
+    ``label`` is the text of the target. ``name`` is the name of the equivalent key.
     """
 
     label: str
@@ -236,9 +279,10 @@ class HeadKey(NamedTuple):
 
 
 class EditorPanel(QWidget):
-    """A panel of the editor without content. A feature registers a subclass as ``Extra.editor_panel``.
+    """A panel of the editor without content.
 
-    ``KEYS`` are the names of the keys that open it, from ``app.screen.window.make_key_table``.
+    A feature registers a subclass as its ``editor_panel_class``. ``KEYS`` are the names of the keys that
+    open the panel, from ``app.screen.window.key_table``.
     """
 
     KEYS: Sequence[str] = ()
@@ -254,12 +298,15 @@ class EditorPanel(QWidget):
         return ()
 
     def open_for_text(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
-        """Open the panel for this text. Return why this is not possible, or an empty text.
+        """Open the panel for this text.
 
-        ``line`` is the line of the cursor, counted from 1. ``key`` is the name of the pressed key, or empty
-        if a program is made from a file.
+        Return why this is not possible, or an empty string. ``line`` is the line of the cursor, counted
+        from 1. ``key`` is the name of the pressed key, or empty if a program is made from a file.
         """
         return ""
 
     def refresh(self) -> None:
-        """Show the present state of the model; called once a frame."""
+        """Update the panel from the model.
+
+        This is called once a frame.
+        """

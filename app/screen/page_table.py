@@ -1,4 +1,4 @@
-"""The table of all pages of the main window, and the loading of pages before they are first opened."""
+"""The table of all pages of the main window, with the preloading of pages before they are first opened."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ _REPLACED_PAGES = {
 
 
 def find_page_name(language: str, name: str) -> str:
-    """Return the page that a machine with this language opens in place of the page ``name``."""
+    """Return the name of the page that replaces the page ``name`` on a machine with this language."""
     return _REPLACED_PAGES.get(language, {}).get(name, name)
 
 
@@ -181,7 +181,7 @@ def list_menu_entries(language: str) -> tuple[PageDescription, ...]:
 def map_menu_keys(language: str) -> dict[str, PageDescription]:
     """Return the menu keys with the pages that they open.
 
-    A page that replaces another page also has the other page's key.
+    A page that replaces another page can also be opened with the key of the replaced page.
     """
     entries = list_menu_entries(language)
     by_name = {entry.name: entry for entry in entries}
@@ -203,19 +203,28 @@ def list_pages(language: str) -> tuple[PageDescription, ...]:
 
 
 def has_page(name: str) -> bool:
-    """Return whether a page with this name exists. Pages of optional features may be missing."""
+    """Return whether a page with this name exists.
+
+    Pages of optional features may be missing.
+    """
     return name in _ENTRIES_BY_NAME
 
 
 def import_page_classes(entry: PageDescription) -> None:
-    """Import the classes that a page needs. This runs on a worker, so that opening the page is fast."""
+    """Import the classes that a page needs.
+
+    This runs on a worker, so that the page then opens without delay.
+    """
     for dotted in (entry.view_class, entry.model_class, *entry.deferred_modules):
         if dotted:
             import_class(dotted)
 
 
 def make_page(name: str, host: PageHost, parent: QWidget) -> Page:
-    """Create the page with this name. Raises RuntimeError if its model is not attached."""
+    """Create the page with this name.
+
+    Raise RuntimeError if its model is not attached.
+    """
     entry = _ENTRIES_BY_NAME[name]
     view = import_class(entry.view_class)
     page: Page = view(host, _model(entry, host), parent) if entry.model_class else view(host, parent)
@@ -223,7 +232,7 @@ def make_page(name: str, host: PageHost, parent: QWidget) -> Page:
 
 
 def import_class(dotted: str) -> Any:
-    """Import and return the class with this dotted name."""
+    """Import the class with this dotted name, and return it."""
     module, _, name = dotted.rpartition(".")
     return getattr(import_module(module), name)
 
@@ -252,8 +261,8 @@ _LOADING_PHASES = frozenset(
 def create_types() -> Iterator[bool]:
     """Create all PySide classes on Qt's thread, in slices, before a worker imports pyqtgraph.
 
-    PySide creates a class at its first use. If two threads do this at the same time, the process can crash.
-    Yields False after each slice of a few milliseconds.
+    PySide creates a class when it is first used. If two threads do this at the same time, the process can
+    crash. Yield False after each slice of a few milliseconds.
     """
     for module in (QtCore, QtGui, QtWidgets):
         for slice_ in batch_names(dir(module)):
@@ -263,13 +272,16 @@ def create_types() -> Iterator[bool]:
 
 
 def batch_names(names: list[str]) -> Iterator[list[str]]:
-    """Yield the names in lists of ``TYPES_PER_SLICE`` at most."""
+    """Yield the names in lists of at most ``TYPES_PER_SLICE`` names."""
     for first in range(0, len(names), TYPES_PER_SLICE):
         yield names[first : first + TYPES_PER_SLICE]
 
 
 class PagePreloader:
-    """Loads the pages in slices while TurnDesk is idle. It is closed with TurnDesk."""
+    """A loader that loads the pages in slices while TurnDesk is idle.
+
+    It is closed together with TurnDesk.
+    """
 
     def __init__(self, desk: Desk, find_page: Callable[[str], Page]) -> None:
         self._desk, self._page_of = desk, find_page
@@ -279,7 +291,10 @@ class PagePreloader:
         self.is_done = False
 
     def run_slice(self) -> None:
-        """Execute the next slice if no program is being loaded; called once a frame."""
+        """Execute the next slice if no program is being loaded.
+
+        This is called once a frame.
+        """
         now = self._desk.clock.read_seconds()
         if self.is_done or now < self._next or self._desk.program_loader.loaded.phase in _LOADING_PHASES:
             return
@@ -290,12 +305,15 @@ class PagePreloader:
             gc.freeze()  # Exclude the modules from garbage collection, which stops every thread.
 
     def close(self) -> None:
-        """Stop loading pages and end the worker."""
+        """Stop loading pages, and end the worker."""
         self.is_done = True
         self._worker.close()
 
     def _load_all(self) -> Iterator[bool]:
-        """Yield False after every slice: a page is imported, or a part of it is prepared."""
+        """Yield False after every slice.
+
+        A slice imports a page or prepares a part of it.
+        """
         yield from create_types()
         for entry in list_pages(self._desk.machine.language):
             found: list[None] = []

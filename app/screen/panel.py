@@ -1,4 +1,4 @@
-"""Base classes of the painted parts of the screen: a frame with a title, and targets to press."""
+"""Base classes of the painted parts of the screen, which have a frame with a title, and touch targets."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ T = TypeVar("T")
 
 
 class RedrawingAttribute(Generic[T]):
-    """A descriptor for an attribute of a panel. The panel is redrawn when its value changes."""
+    """A descriptor for an attribute of a panel.
+
+    The panel is redrawn when the value changes.
+    """
 
     def __init__(self, initial: T) -> None:
         self._first = initial
@@ -49,8 +52,9 @@ def ignore_press() -> None:
 
 
 class TouchTarget(NamedTuple):
-    """A target of a panel. ``name`` precedes the painted texts in the accessible name, see
-    ``describe_target``.
+    """A touch target of a panel.
+
+    In the accessible name, ``name`` precedes the painted texts. See ``Panel.describe_target``.
     """
 
     box: QRectF
@@ -83,7 +87,10 @@ class Panel(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        """Paint the panel. The painter always ends, because an active painter would crash the process."""
+        """Paint the panel.
+
+        The painter is always ended, because an active painter would crash the process.
+        """
         Panel.paint_count += 1
         with ThemedPainter(self, self.theme) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -95,14 +102,20 @@ class Panel(QWidget):
             self._written = painter.drawn_texts if ThemedPainter.records_texts else None
 
     def draw(self, painter: ThemedPainter) -> None:
-        """Draw the content of the panel inside its frame. Subclasses override this."""
+        """Draw the content of the panel inside its frame.
+
+        Subclasses override this.
+        """
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Press the target at once, when the mouse button or finger goes down."""
+        """Press the target immediately when the mouse button or a touch goes down."""
         self.press_at(event.position())
 
     def press_at(self, position: QPointF) -> bool:
-        """Press the target at this position. Return False if there is no target."""
+        """Press the target at this position.
+
+        Return False if there is no target.
+        """
         for spot in self._places:
             if spot.box.contains(position):
                 spot.on_press()
@@ -119,7 +132,10 @@ class Panel(QWidget):
         is_on: bool = False,
         is_disabled: bool = False,
     ) -> None:
-        """Register a target inside ``rect`` while drawing. See ``TouchTarget``."""
+        """Register a target inside ``rect`` while the panel is being drawn.
+
+        See ``TouchTarget``.
+        """
         self._places.append(TouchTarget(rect, press, name, kind, is_on, is_disabled))
 
     # --- for assistive technology ---------------------------------------------------------------------
@@ -139,7 +155,7 @@ class Panel(QWidget):
         return [(box, text) for box, text in self._written or () if text]
 
     def describe_target(self, target: TouchTarget) -> str:
-        """Return the accessible name of a target: its name, and the texts that are painted on it."""
+        """Return the accessible name of a target, with its name and the texts that are painted on it."""
         texts = (text for box, text in self.read_painted_texts() if target.box.contains(box.center()))
         return "  ".join((*([tr(target.name)] if target.name else ()), *texts))
 
@@ -153,7 +169,10 @@ class Panel(QWidget):
         )
 
     def find_accessible_name(self) -> str:
-        """Return the title, or else ``accessible_name``, or else the painted texts."""
+        """Return the title of the panel.
+
+        Without a title, return ``accessible_name``. Without either, return the painted texts.
+        """
         shown = self.describe_content() or "  ".join(text for _box, text in self.read_painted_texts())
         return self._titled or tr(self.accessible_name) or shown
 
@@ -184,7 +203,7 @@ class Panel(QWidget):
         return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
-        """Draw a frame with its title in the top line, as on text screens."""
+        """Draw a frame with its title in the top edge, as on text screens."""
         look, u, title = self.theme, self.theme.u, tr(title)
         self._titled = title
         top = 1.0 * u
@@ -215,7 +234,7 @@ MOUSE_TOUCH_ID = -1  # Touch number of the mouse.
 
 @dataclass(frozen=True, slots=True)
 class TouchControl:
-    """A target with actions for pressing, moving and releasing."""
+    """A touch target with actions for pressing, moving and releasing."""
 
     box: QRectF
     on_press: Callable[[QPointF], None]
@@ -232,23 +251,26 @@ class TouchControl:
         )
 
     def press_and_release(self) -> None:
-        """Press the control at its center and release it."""
+        """Press the control at its center, and release it."""
         self.on_press(self.box.center())
         if self.on_release:
             self.on_release()
 
     def make_stop_control(self) -> TouchControl:
-        """Return a copy of the control that stops the machine."""
+        """Return a copy of the control that is marked as stopping the machine."""
         return replace(self, acts_when_late=True)
 
 
 def make_press_control(box: QRectF, press: OnPress, name: str = "") -> TouchControl:
-    """Return a control that acts when it is pressed anywhere in its box."""
+    """Return a control that acts when any point in its box is pressed."""
     return TouchControl(box, lambda _at: press(), name=name)
 
 
 class TouchPanel(Panel):
-    """A panel with controls that react to several touches and the mouse. ``draw`` creates the controls."""
+    """A panel with controls that react to several simultaneous touches and to the mouse.
+
+    ``draw`` creates the controls.
+    """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
         super().__init__(theme, parent)
@@ -257,7 +279,7 @@ class TouchPanel(Panel):
         self.setAttribute(Qt.WidgetAttribute.WA_AcceptTouchEvents)
 
     def list_targets(self) -> Sequence[TouchTarget]:
-        """Return the targets and the controls."""
+        """Return the targets of the panel and those of its controls."""
         return [*super().list_targets(), *(each.make_target() for each in self.controls)]
 
     def has_stop_control_at(self, position: QPointF) -> bool:
@@ -266,11 +288,11 @@ class TouchPanel(Panel):
 
     @property
     def touch_count(self) -> int:
-        """The number of touches that hold a control, including the mouse."""
+        """Return the number of touches that hold a control, including the mouse."""
         return len(self._held)
 
     def release_mouse(self) -> None:
-        """Release the control of the mouse, because the release event of its button was lost."""
+        """Release the control that the mouse holds, because the release event of the button was lost."""
         self._up(MOUSE_TOUCH_ID)
 
     def release_all(self) -> None:
@@ -279,7 +301,7 @@ class TouchPanel(Panel):
             self._up(finger)
 
     def event(self, event: QEvent) -> bool:
-        """Handle touch events. Pass all other events to Qt."""
+        """Handle touch events, and pass all other events to Qt."""
         if not isinstance(event, QTouchEvent):
             return super().event(event)
         for point in event.points():
@@ -299,17 +321,20 @@ class TouchPanel(Panel):
             self._up(point.id())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Press a control with the left button. A control that stops the machine accepts any button."""
+        """Press a control with the left button.
+
+        A control that stops the machine accepts any button.
+        """
         if event.button() is Qt.MouseButton.LeftButton or self.has_stop_control_at(event.position()):
             self._up(MOUSE_TOUCH_ID)
             self._down(MOUSE_TOUCH_ID, event.position())
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        """Move along the control that the mouse has pressed."""
+        """Move the pointer within the control that the mouse has pressed."""
         self._along(MOUSE_TOUCH_ID, event.position())
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
-        """Release the control that the mouse has pressed, wherever the pointer is."""
+        """Release the control that the mouse has pressed, regardless of the pointer's position."""
         if not event.buttons() & Qt.MouseButton.LeftButton:
             self._up(MOUSE_TOUCH_ID)
 

@@ -1,8 +1,8 @@
-"""Reports and setup sheets as PDF files, from the HTML of ``app/report``. Drawings remain vector graphics.
+"""Reports and setup sheets as PDF files, from the HTML of ``app/report``.
 
-Qt lays out the text and tables (QTextDocument). Boxes that HTML puts side by side appear below each other,
-because Qt does not support them. The module works without a display, and on any thread after an application
-exists.
+Drawings remain vector graphics. Qt lays out the text and tables (QTextDocument). Boxes that HTML places
+side by side are placed below each other, because Qt does not support them. The module works without a
+display. After an application exists, it works on any thread.
 """
 
 from __future__ import annotations
@@ -48,7 +48,10 @@ _SVG = re.compile(r'<svg role="img" width="(\d+)" height="(\d+)".*?</svg>', re.D
 
 
 class PdfWriter:
-    """A PDF file that is written page by page. Raises OSError if writing fails."""
+    """A PDF file that is written page by page.
+
+    Raises OSError if writing fails.
+    """
 
     def __init__(self, path: Path, title: str, paper_size: PaperSize) -> None:
         _make_application()
@@ -81,7 +84,7 @@ class PdfWriter:
             self.discard()
 
     def add_pages(self, html: str, footer: str) -> None:
-        """Add ``html`` on new pages, with ``foot`` and a page number at the bottom of each page."""
+        """Add ``html`` on new pages, with ``footer`` and a page number at the bottom of each page."""
         text = _PdfText(html, self._writer.width() * _DPI / _PDF_DPI)
         room = QSizeF(text.width, self._writer.height() * _DPI / _PDF_DPI - _FOOTER_PX)
         text.document.setPageSize(room)
@@ -109,7 +112,10 @@ class PdfWriter:
         painter.drawText(row, Qt.AlignmentFlag.AlignRight | below, str(self._pages))
 
     def close(self) -> None:
-        """Finish the file and write it to the disk. Raises OSError."""
+        """Finish the file, and write it to the disk.
+
+        Raise OSError on failure.
+        """
         whole = self._painter.end()
         whole = self._file.flush() and whole and self._file.error() == QFile.FileError.NoError
         why = self._file.errorString()
@@ -126,7 +132,10 @@ class PdfWriter:
 
 
 class _PdfText:
-    """HTML that is ready to be drawn. Its drawings are stored and drawn as vector graphics."""
+    """HTML that is ready to be drawn.
+
+    Its SVG drawings are stored separately and drawn as vector graphics.
+    """
 
     def __init__(self, html: str, width: float) -> None:
         self.width = width
@@ -146,7 +155,7 @@ class _PdfText:
 
 
 class _SvgObjects(QPyTextObject):
-    """Draws the SVG drawings that replace images in the text."""
+    """Object handler that draws the SVG drawings in place of images in the text."""
 
     def __init__(self, width: float, parent: QObject) -> None:
         super().__init__(parent)
@@ -161,13 +170,13 @@ class _SvgObjects(QPyTextObject):
         return f'<img src="{len(self._kept) - 1}">'
 
     def intrinsicSize(self, _document: QTextDocument, _at: int, form: QTextFormat) -> QSizeF:
-        """Return the size of a drawing in pixels, not wider than the page."""
+        """Return the size of a drawing in pixels, limited to the width of the page."""
         return self._kept[self._number(form)][0]
 
     def drawObject(
         self, painter: QPainter, rect: QRectF | QRect, _document: QTextDocument, _at: int, form: QTextFormat
     ) -> None:
-        """Draw a drawing as vector graphics."""
+        """Draw an SVG drawing as vector graphics."""
         rect = QRectF(rect)
         text = self._kept[self._number(form)][1]
         text = text.replace("<svg ", '<svg xmlns="http://www.w3.org/2000/svg" ', 1)
@@ -185,13 +194,16 @@ class _SvgObjects(QPyTextObject):
 
 
 def find_default_paper() -> PaperSize:
-    """Return Letter if the computer's locale uses inches, else A4."""
+    """Return Letter if the computer's locale uses inches, and otherwise A4."""
     system = QLocale.system().measurementSystem()
     return PaperSize.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else PaperSize.A4
 
 
 def _make_application() -> None:
-    """Create an application without a display if no application exists, because fonts need one."""
+    """Create an application without a display if no application exists.
+
+    Fonts need an application.
+    """
     if QGuiApplication.instance() is None:
         _application_ref.append(QApplication(["turndesk", "-platform", "offscreen"]))
     load_fonts()
@@ -201,7 +213,10 @@ _application_ref: list[QGuiApplication] = []  # References that keep the applica
 
 
 def main() -> int:
-    """Run ``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML`` as a separate process."""
+    """Run this module as a separate process.
+
+    The command is ``python -m app.screen.pdf_pages FILE TITLE PAPER < HTML``.
+    """
     path, title, paper = sys.argv[1:]
     try:
         with PdfWriter(Path(path), title, PaperSize(paper)) as pages:

@@ -1,4 +1,4 @@
-"""The program window: source lines, the current line highlighted, and the generated block below it."""
+"""The program window, with source lines, the current line highlighted, and the generated block below it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ ROW, MM = 2.9, 7.0  # Line spacing in units, and its maximum in millimeters.
 
 
 class ProgramListing(RowPanel):
-    """The list of source lines. Only visible lines are painted, so a long program takes no extra time."""
+    """The list of source lines.
+
+    Only visible lines are painted, so a long program takes no extra time.
+    """
 
     has_scroll_keys = False
     follows_run = RedrawingAttribute(
@@ -34,7 +37,10 @@ class ProgramListing(RowPanel):
     on_line_touched: Callable[[int], None] | None = None
 
     def show_source(self, lines: Sequence[str], line_errors: Mapping[int, str]) -> None:
-        """Show another program. ``line_errors`` contains error messages by line number."""
+        """Show another program.
+
+        ``line_errors`` contains the error messages by line number.
+        """
         if lines is not self._lines or line_errors != self._bad:
             self._lines, self._bad = lines, dict(line_errors)
             self.follows_run = not self._bad
@@ -54,26 +60,29 @@ class ProgramListing(RowPanel):
 
     @property
     def _high(self) -> float:
-        """The line spacing in pixels."""
+        """Return the line spacing in pixels."""
         return self.theme.find_row_height(ROW, MM, is_touchable=self.on_line_touched is not None)
 
     @property
     def _text_scale(self) -> float:
-        """The scale of the letters, which depends on the line spacing."""
+        """Return the scale of the letters, which depends on the line spacing."""
         # Rows for touch are higher, but their letters are not larger.
         return min(1.0, self._high / (ROW * self.theme.u))
 
     @property
     def _generated_blocks(self) -> tuple[str, ...]:
-        """The generated block and the next one, which are below the executed line."""
+        """Return the generated block and the next block, which are shown below the executed line."""
         return tuple(filter(None, (self._block, self._next))) if self._block else ()
 
     def follow_run(self) -> None:
-        """Follow the run again."""
+        """Make the listing follow the run again."""
         self.follows_run = True
 
     def scroll_by(self, rows: int) -> None:
-        """Scroll to another part of the program. The listing no longer follows the run."""
+        """Scroll by a number of rows.
+
+        The listing then no longer follows the run.
+        """
         self.follows_run = False
         super().scroll_by(rows)
 
@@ -107,7 +116,7 @@ class ProgramListing(RowPanel):
             room.translate(0, high)
 
     def _list_row_drawers(self, painter: ThemedPainter) -> Iterator[Callable[[QRectF], None]]:
-        """Yield the drawing functions of the rows, from the first visible row on."""
+        """Yield the drawing functions of the rows, starting with the first visible row."""
         for number in range(self.first_row + 1, len(self._lines) + 1):
             yield partial(self._source, painter, number)
             if number == self._line:

@@ -1,4 +1,7 @@
-"""Start of the operator screen: show the window first, then build the model, then load a program."""
+"""Start of the operator screen.
+
+The window is shown first, then the model is built, and then a program is loaded.
+"""
 
 from __future__ import annotations
 
@@ -36,10 +39,10 @@ def run_screen(
 ) -> int:
     """Show the screen until it is closed, and return the exit status.
 
-    ``machine`` is a machine file. ``program`` is a file to load at the start. ``offsets`` is an offsets file
-    that replaces the stored offsets. ``build`` creates the model; the default is the composed model. A
-    ``is_kiosk`` fills the screen and cannot be closed by hand. An exception of ``build`` is raised here after
-    the window has closed.
+    ``machine`` is a machine file. ``program_file`` is a program to load at the start. ``offsets_file`` is
+    an offsets file that replaces the stored offsets. ``build_model`` creates the model. By default, the
+    standard model is built. With ``is_kiosk``, the window fills the screen and cannot be closed by hand. An
+    exception of ``build_model`` is raised here after the window has closed.
     """
     build_model = build_model or _import_builder(machine, offsets_file)
     app = _application(theme)
@@ -72,7 +75,10 @@ class _Startup:
         self._trouble: Exception | None = None
 
     def run(self) -> None:
-        """Build the model and open it. An error ends the event loop, and ``close`` raises it."""
+        """Build the model, and open it.
+
+        An error ends the event loop, and ``close`` then raises the error.
+        """
         try:
             desk = self._desk = self._build()
             self._window.show_model(desk)
@@ -83,7 +89,10 @@ class _Startup:
             QApplication.exit(1)
 
     def _listen_later(self) -> None:
-        """Start ``_listen`` after the first pictures; the timer ends with the window."""
+        """Start ``_listen`` after the first frames.
+
+        The timer ends with the window.
+        """
         timer = QTimer(self._window)
         timer.setSingleShot(True)
         timer.timeout.connect(self._listen)
@@ -108,7 +117,7 @@ class _Startup:
             )
 
     def close(self) -> None:
-        """Stop the machine, end the threads and raise the error of the start, if any."""
+        """Stop the machine, end the threads, and raise the error of the start if there was one."""
         if self._desk is not None:
             self._desk.close()
         if self._trouble is not None:
@@ -116,7 +125,7 @@ class _Startup:
 
 
 def _import_builder(machine: str | None, offsets: str | None) -> BuildModel:
-    """Start the control in the background, and return the function that builds the model on it."""
+    """Start the control in the background, and return the function that builds the model for this control."""
     from app.compose.control.control_attachment import find_or_start_control
 
     begun = find_or_start_control(machine)

@@ -1,4 +1,7 @@
-"""Panels with rows: a scrolling list, and a table with a head line, notes and an entry line; their page."""
+"""Panels with rows, and the base class of list pages.
+
+The panels are a scrolling list, and a table with a heading line, notes and an entry line.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,8 @@ class RowPanel(Panel):
     """A list of rows of equal height.
 
     A subclass gets the rectangle for its rows from ``draw_scroll_keys``, and each visible row from
-    ``find_row_boxes``. The selected row stays visible when the selection or the size changes. Scrolling does
-    not move the selection, except in a ``is_centered`` list.
+    ``find_row_boxes``. The selected row remains visible when the selection or the size changes. Scrolling
+    does not move the selection, except in an ``is_centered`` list.
     """
 
     is_list = True
@@ -49,7 +52,10 @@ class RowPanel(Panel):
         self.scroll_by(-round(event.angleDelta().y() * self.scroll_step / 120))
 
     def scroll_by(self, rows: int) -> None:
-        """Scroll down by a number of rows. A negative number scrolls up."""
+        """Scroll down by a number of rows.
+
+        A negative number scrolls up.
+        """
         self.first_row = self._limited(self.first_row + rows)
         self.update()
 
@@ -61,7 +67,8 @@ class RowPanel(Panel):
     ) -> QRectF:
         """Draw the scroll keys if ``count`` rows do not fit, and return the rectangle for the rows.
 
-        ``visible_count`` is the number of rows that fit. ``marked`` is the index of the selected row, or -1.
+        ``visible_count`` is the number of rows that fit. ``selected_row`` is the index of the selected row,
+        or -1.
         """
         self.rows, self._count = visible_count, count
         if self.is_centered:
@@ -77,7 +84,10 @@ class RowPanel(Panel):
         return self._with_keys(painter, area) if self.has_scroll_keys and 0 < visible_count < count else area
 
     def find_row_boxes(self, area: QRectF, height: float) -> Iterator[tuple[int, QRectF]]:
-        """Yield the index and box of each visible row. ``height`` is the height of a row in pixels."""
+        """Yield the index and box of each visible row.
+
+        ``height`` is the height of a row in pixels.
+        """
         for number in range(self.first_row, min(self._count, self.first_row + self.rows)):
             yield (
                 number,
@@ -85,7 +95,7 @@ class RowPanel(Panel):
             )
 
     def count_fitting_rows(self, area: QRectF, height: float, count: int) -> int:
-        """Return how many rows of this height fit, at least one.
+        """Return how many rows of this height fit, which is at least one.
 
         The scroll keys of a narrow list are below its rows and use some of the height.
         """
@@ -96,19 +106,22 @@ class RowPanel(Panel):
 
     @property
     def scroll_key_size(self) -> tuple[float, float]:
-        """The width and minimum height of a scroll key in pixels."""
+        """Return the width and minimum height of a scroll key in pixels."""
         size = max(SCROLL_KEY_SIZE * self.theme.u, float(FINGERTIP_PX))
         return size, size
 
     def is_narrow(self, width: float) -> bool:
-        """Return whether a list of this width has its scroll keys below the rows, not to their right."""
+        """Return whether the scroll keys of a list of this width are below its rows.
+
+        The scroll keys of wider lists are on the right.
+        """
         return width < NARROW_WIDTH * self.theme.u
 
     def _with_keys(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
 
-        The keys are at the right, or below the rows of a narrow list. They are side by side if there is
-        little height.
+        The keys are on the right, or below the rows of a narrow list. They are side by side if the area is
+        low.
         """
         gap, (wide, high) = 0.6 * self.theme.u, self.scroll_key_size
         foot = self.is_narrow(area.width())
@@ -152,7 +165,10 @@ _ROUNDING = 1e-6
 
 
 class TablePanel(RowPanel):
-    """A panel that draws a table. A touch selects a row. The selected row stays visible."""
+    """A panel that draws a table.
+
+    A touch selects a row. The selected row remains visible.
+    """
 
     table = RedrawingAttribute(TableContent("", (), (), ()))
 
@@ -162,39 +178,45 @@ class TablePanel(RowPanel):
         self.on_entry_touched: Callable[[], None] | None = None  # Called for a touch on the entry line.
 
     def show_table(self, table: TableContent) -> None:
-        """Show a table, and redraw it if it has changed. A table with another title begins at its top."""
+        """Show a table, and redraw it if it has changed.
+
+        A table with another title is shown from its first row.
+        """
         if table.title.split("  ·  ")[0] != self.table.title.split("  ·  ")[0]:
             self.first_row = 0
         self.table = table
 
     @property
     def _high(self) -> float:
-        """The height of a row in units.
+        """Return the height of a row in units.
 
-        A row is at least as high as a fingertip. On a large screen, a row has at most 9 mm, or 14 mm if it is
-        tall. If there are few rows, their height follows the size of the window.
+        A row is at least as high as a fingertip. On a large screen, a row is at most 9 mm high, or 14 mm if
+        it is a tall row. If there are few rows, their height follows the size of the window.
         """
         own, mm = (TALL_ROW_HEIGHT, 14.0) if self.table.has_tall_rows else (ROW, 9.0)
         share = self._find_list_height(len(self.table.notes)) / max(1, len(self.table.rows)) - _ROUNDING
         return max(self.theme.find_row_height(own, mm, is_touchable=True) / self.theme.u, min(own, share))
 
     def _find_list_height(self, notes: int) -> float:
-        """Return the height in units that is left for rows next to a number of note lines."""
+        """Return the height in units that remains for rows when a number of note lines is shown."""
         foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
         return self.height() / self.theme.u - 4.0 - HEAD - foot
 
     @property
     def _entry_height(self) -> float:
-        """The height of the entry line in units, at least a fingertip if it reacts to touch."""
+        """Return the height of the entry line in units.
+
+        The line is at least as high as a fingertip if it reacts to touch.
+        """
         return ASKED if self.on_entry_touched is None else max(ASKED, FINGERTIP_PX / self.theme.u + 0.6)
 
     @property
     def _text_scale(self) -> float:
-        """The scale of the letters in a row, which depends on the row's height."""
+        """Return the scale of the letters in a row, which depends on the row's height."""
         return min(1.0, self._high / (TALL_ROW_HEIGHT if self.table.has_tall_rows else 4.2))
 
     def _count_fitting(self) -> int:
-        """Return how many rows of the table fit. 0 if the entry line needs the whole panel."""
+        """Return how many rows of the table fit, or 0 if the entry line needs the whole panel."""
         fits = self._fit(len(self._visible_notes))
         if fits < len(self.table.rows):
             fits = self._fit(len(self._visible_notes), self._scroll_key_height)
@@ -205,12 +227,18 @@ class TablePanel(RowPanel):
 
     @property
     def _scroll_key_height(self) -> float:
-        """The height in units of the scroll keys below the rows of a narrow table, else 0."""
+        """Return the height in units of the scroll keys of a narrow table, or 0 for other tables.
+
+        The scroll keys of a narrow table are below its rows.
+        """
         return self.scroll_key_size[1] / self.theme.u + 0.6 if self.is_narrow(self.inside().width()) else 0.0
 
     @property
     def _visible_notes(self) -> tuple[str, ...]:
-        """The notes. Empty if the entry line and the notes would leave no room for the selected row."""
+        """Return the notes that are shown.
+
+        No notes are shown if notes and entry line would leave no space for the selected row.
+        """
         notes = self.table.notes
         return () if self.table.question and self._fit(len(notes)) < 1 else notes
 
@@ -306,7 +334,10 @@ class TablePanel(RowPanel):
 
 
 class ListModel(PageModel, Protocol):
-    """Interface of a list page's model. ``handle_escape`` returns False if only the list is shown."""
+    """Interface of the model of a list page.
+
+    ``handle_escape`` returns False if only the list is shown.
+    """
 
     def prompt_text(self) -> str: ...
 
@@ -314,7 +345,10 @@ class ListModel(PageModel, Protocol):
 
 
 class ListPage(ModelPage):
-    """A page with a list. It passes keys to its model. Esc leads from the list to the Automatic page."""
+    """A page with a list, which passes keys to its model.
+
+    Esc on the list opens the Automatic page.
+    """
 
     model: ListModel
 
@@ -325,15 +359,16 @@ class ListPage(ModelPage):
     def make_labels(
         self, page_labels: Mapping[str, str], function_keys: Mapping[str, FunctionKey]
     ) -> tuple[str, ...]:
-        """Return the ten labels from the common keys, the page's ``page_labels`` labels and the model's
-        ``function_keys``.
+        """Return the ten key labels.
+
+        They come from the common keys, the page's ``page_labels`` and the model's ``function_keys``.
         """
         named = {"F1": "MENU", "F7": "ALARMS", **page_labels}
         named.update((name, key.label) for name, key in function_keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the model."""
+        """Return the function keys of the model, which are none here."""
         return {}
 
     def disabled_keys(self) -> frozenset[str]:
@@ -345,17 +380,17 @@ class ListPage(ModelPage):
         return self.model.prompt_text()
 
     def try_leave(self) -> bool:
-        """Cancel unfinished entries and questions, and let the page close."""
+        """Cancel unfinished entries and questions, and allow the page to close."""
         self.desk.clear_prompt_line()
         self.model.on_close()
         return True
 
     def is_esc_stop_key(self) -> bool:
-        """Return False, because Esc goes one step back even while the machine moves."""
+        """Return False, because Esc goes back one step even while the machine moves."""
         return False
 
     def handle_escape(self) -> bool:
-        """Go one step back, or from the list to the Automatic page."""
+        """Go back one step, or open the Automatic page if only the list is shown."""
         if not self.model.handle_escape():
             self.host.open_page(page_table.AUTOMATIC)
         return True

@@ -1,4 +1,4 @@
-"""Smallest text heights by role, from the viewing distance and the real size of the panel."""
+"""Smallest text heights by role, calculated from the viewing distance and the real size of the panel."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ CAPITALS = 0.73  # Height of a capital or a digit of B612, as a ratio to its em 
 
 
 class Role(Enum):
-    """Role of a text. All texts without another role are values, labels or rows of a table."""
+    """The roles of texts.
+
+    Texts without another role are values, labels or rows of a table.
+    """
 
     POSITION = "position"
     STATE = "state"
@@ -24,7 +27,7 @@ class Role(Enum):
     TABLE = "table"
 
     def least_mm(self, *, small: bool) -> float:
-        """Return the smallest height of capitals in mm."""
+        """Return the smallest permitted height of capital letters in mm."""
         minutes, far, near = _SEEN[self]
         return (near if small else far) * math.tan(math.radians(minutes / 60.0))
 
@@ -42,20 +45,23 @@ _SEEN = {
 
 @dataclass(frozen=True, slots=True)
 class PanelSize:
-    """Resolution of a panel in pixels per mm, and whether its diagonal is less than 10 inches."""
+    """Resolution of a panel in pixels per mm.
+
+    ``small`` is set if the diagonal of the panel is less than 10 inches.
+    """
 
     pixels_per_mm: float = DESK_DPI / _INCH
     small: bool = False
 
     def least_em(self, role: Role) -> float:
-        """Return the smallest em height of a text in pixels."""
+        """Return the smallest permitted em height of a text in pixels."""
         return role.least_mm(small=self.small) * self.pixels_per_mm / CAPITALS
 
 
 def panel_size(width: int, height: int, width_mm: float, height_mm: float) -> PanelSize:
-    """Return the size of a panel from its size in pixels and the size in mm that it reports.
+    """Return the size of a panel from its size in pixels and its reported size in mm.
 
-    Panels report no size, the size of another panel, or only an aspect ratio. An implausible size is
+    Some panels report no size, the size of another panel, or only an aspect ratio. An implausible size is
     replaced by 96 dots per inch.
     """
     across = width / width_mm if width_mm > 0.0 else 0.0

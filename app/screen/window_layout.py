@@ -1,7 +1,7 @@
-"""Layout of the window and of the Automatic page for any size, as pure arithmetic.
+"""Layout of the window and of the Automatic page for any size, calculated without Qt.
 
-Fixed parts are measured in one unit that follows the window's size: a 16:9 window is 160 by 90 units. The
-program window and the path view get the rest.
+Fixed parts are measured in a unit that follows the size of the window. A 16:9 window is 160 by 90 units.
+The program window and the path view use the remaining area.
 """
 
 from __future__ import annotations
@@ -23,17 +23,20 @@ class Rect(NamedTuple):
 
     @property
     def right(self) -> int:
-        """The x coordinate of the first pixel column to the right of the rectangle."""
+        """Return the x coordinate of the first pixel column to the right of the rectangle."""
         return self.x + self.w
 
     @property
     def bottom(self) -> int:
-        """The y coordinate of the first pixel row below the rectangle."""
+        """Return the y coordinate of the first pixel row below the rectangle."""
         return self.y + self.h
 
 
 class LowLayout(NamedTuple):
-    """Layout of a page with the readouts in one row: readouts, lamps, page and run line."""
+    """Layout of a page with the readouts in one row.
+
+    It consists of readouts, lamps, page and run line.
+    """
 
     readout_line: Rect
     strip: Rect
@@ -42,7 +45,10 @@ class LowLayout(NamedTuple):
 
 
 class AutomaticLayout(NamedTuple):
-    """Layout of the Automatic page. ``dock`` is empty for a machine with its own operator station."""
+    """Layout of the Automatic page.
+
+    ``dock`` is empty for a machine that has its own operator station.
+    """
 
     title: Rect
     position: Rect
@@ -101,7 +107,7 @@ def make_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
 
 
 def divide_work_area(work_area: Rect, u: float) -> tuple[Rect, Rect, Rect]:
-    """Divide the work area of the Automatic page into listing, comment and path."""
+    """Return the rectangles of listing, comment and path in the work area of the Automatic page."""
     gap = _gap(u)
     wide, comment_h = round(52 * u), round(4.8 * u)
     listing = Rect(work_area.x, work_area.y, wide, work_area.h - comment_h - gap)
@@ -121,9 +127,9 @@ def find_work_area(layout: AutomaticLayout) -> Rect:
 def make_low_layout(width: int, height: int, has_dock: bool, *, moves: bool = False) -> LowLayout:
     """Return the layout with low readouts, for a window of this size in pixels.
 
-    The readouts are in one row. On a page on which axes can move, large positions are above the others,
-    unless the window is so low that the targets of the page would no longer fit a finger.
-    Title, dock, prompt and function keys have the same places as on the Automatic page.
+    The readouts are in one row. On a page on which axes can move, large positions are above the other
+    readouts, unless the window is so low that the touch targets of the page would become too small. Title,
+    dock, prompt and function keys have the same positions as on the Automatic page.
     """
     at, u = make_layout(width, height, has_dock), find_unit(width, height)
     gap, wide = _gap(u), at.strip.w

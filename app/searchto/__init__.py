@@ -1,1 +1,1 @@
-"""SEARCHTO: restart in the middle of a program, and retract from the part."""
+"""SEARCHTO function, which restarts in the middle of a program or retracts from the part."""

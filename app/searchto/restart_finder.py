@@ -1,4 +1,4 @@
-"""Search for the restart line of SEARCHTO, by number or text, and its proof on a worker."""
+"""Search for the restart line of SEARCHTO by number or text, and proof of the restart on a worker."""
 
 from __future__ import annotations
 
@@ -27,10 +27,11 @@ RestartSearchResult = RestartPoint | RestartRefusal | CutRecord | tuple[Job, Pro
 
 @dataclass(slots=True)
 class RestartFinder:
-    """Finds and proves restart lines on a worker. A search for a later line continues from an earlier one.
+    """Finder that finds and proves restart lines on a worker.
 
-    ``rebuild`` and ``prove_job`` are called on the worker. ``found`` and ``on_failed`` are called with the
-    results when the worker is polled.
+    A search for a later line continues from an earlier search. ``rebuild_state`` and ``prove_job`` are
+    called on the worker. ``on_found`` and ``on_failed`` are called with the results when the worker is
+    polled.
     """
 
     rebuild_state: Callable[[Job, ProgressCallback], Search]
@@ -45,17 +46,17 @@ class RestartFinder:
     ) -> None:
         """Search for a line of this job's program.
 
-        ``visit`` is the pass of the line, counted from 1. 0 means the interrupted pass, or else the first
-        pass.
+        ``pass_number`` is the execution of the line, counted from 1. If it is 0, the interrupted execution
+        is used, or the first execution if none was interrupted.
         """
         self._ask(job, lambda rebuild: rebuild.find_restart(line, pass_number, interruption))
 
     def calculate_cuts(self, job: Job) -> None:
-        """Calculate everything that this job's program cuts."""
+        """Calculate all cuts of this job's program."""
         self._ask(job, lambda rebuild: rebuild.cut_record)
 
     def prove_restart(self, job: Job) -> None:
-        """Prove the job of a restart."""
+        """Prove the job of a restart on the worker."""
         self.worker.request(lambda watch: (job, self.prove_job(job, watch)), self.on_found, self.on_failed)
 
     def _ask(self, job: Job, ask: Callable[[Search], RestartSearchResult]) -> None:
@@ -64,7 +65,10 @@ class RestartFinder:
     def _with(
         self, job: Job, watch: ProgressCallback, ask: Callable[[Search], RestartSearchResult]
     ) -> RestartSearchResult:
-        """Run a query on the worker. A canceled search is discarded, because it stopped within a line."""
+        """Run a query on the worker.
+
+        A canceled search is discarded, because it stopped within a line.
+        """
         kept, self._rebuild = self._rebuild, None
         if kept is not None and kept[0] is job:
             rebuild = kept[1]
@@ -83,7 +87,7 @@ _QUOTE = '"'
 
 @dataclass(slots=True)
 class LineCursor:
-    """The selected program line, counted from 1, and the text that is entered to find another line."""
+    """The selected program line, counted from 1, and the text entered to find another line."""
 
     lines: Sequence[str] = ()
     selected_line: int = 1
@@ -92,19 +96,25 @@ class LineCursor:
 
     @property
     def entered_number(self) -> int | None:
-        """The line number that was entered, also as an expression. None if the entry is a search text."""
+        """Return the entered line number, or None if the entry is a search text.
+
+        The number may be entered as an expression.
+        """
         passes = _PASS_PATTERN.fullmatch(self.entry_text)
         return int(passes[1]) if passes else evaluate_line_number(self.entry_text)
 
     @property
     def entered_pass(self) -> int:
-        """The pass that was entered after the line, for example in ``8P4``. 0 without a pass."""
+        """Return the pass entered after the line, for example 4 in ``8P4``, or 0 if none was entered."""
         passes = _PASS_PATTERN.fullmatch(self.entry_text)
         return int(passes[2]) if passes else 0
 
     @property
     def search_text(self) -> str:
-        """The search text. A leading quotation mark makes a number a text."""
+        """Return the search text.
+
+        A number with a leading quotation mark is also a search text.
+        """
         return self.entry_text.removeprefix(_QUOTE).upper()
 
     def set_program(self, lines: Sequence[str], line: int) -> None:
@@ -117,14 +127,17 @@ class LineCursor:
         self.selected_line = max(1, min(line, len(self.lines)))
 
     def handle_key(self, key: str) -> bool:
-        """Handle a character or an editing key. Return False if the key has no meaning here."""
+        """Handle a character or an editing key.
+
+        Return False if the key has no meaning here.
+        """
         taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
         if taken:
             self.entry_text, self.is_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False
         return taken
 
     def find_text(self, direction: int) -> bool:
-        """Select the next (1) or previous (-1) line that contains the text, in a cycle.
+        """Select the next (1) or previous (-1) line that contains the text, and wrap around at the end.
 
         Return False if no line contains the text.
         """

@@ -1,4 +1,4 @@
-"""Texts and lines that describe a restart: required and present state, functions that start, and path.
+"""Texts and rows that describe a restart: required and current state, functions that start, and path.
 
 If the tool is in the part, the plan contains the retract path, or the instruction for a manual retract.
 """
@@ -54,8 +54,9 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RetractPlan:
-    """A retract without a restart: its legs and its feed. ``error_text`` is why it is not possible, or
-    empty.
+    """A retract without a restart, with its legs and its feed.
+
+    ``error_text`` is the reason why the retract is not possible, or empty.
     """
 
     start_state: PassStart
@@ -65,7 +66,7 @@ class RetractPlan:
 
 
 def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: OperatorChoices) -> RetractPlan:
-    """Return the retract path from the present position of the tool."""
+    """Return the plan of a retract from the current position of the tool."""
     now = read_machine_state(snapshot, job)
     found, tool = plan_retract_from_part(cut_state, now)
     steps = plan_exit_moves(cut_state, now, choices) if found.is_known else ()
@@ -85,7 +86,7 @@ def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: Op
 
 
 def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
-    """Return the present machine state, with the interruption of the loaded program if there is one.
+    """Return the current machine state, with the interruption of the loaded program if there is one.
 
     If the text has changed since the interruption, the interrupted block is unknown.
     """
@@ -101,7 +102,10 @@ def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
 def make_drawn_legs(
     steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
 ) -> tuple[Drawn, ...]:
-    """Return the legs of a path in the frame of one tool. The first leg is the present tip position."""
+    """Return the legs of a path in the frame of one tool.
+
+    The first leg is the current tip position.
+    """
     x, z = snapshot.demand[0], snapshot.demand[1]
     legs = [Drawn(z - offset[1], x - offset[0])]
     for step in steps:
@@ -112,7 +116,7 @@ def make_drawn_legs(
 
 
 def describe_manual_retract(retract: Retract, tool: int) -> str:
-    """Return the instruction for a manual retract if no retract path is certain. Empty if one is."""
+    """Return the instruction for a manual retract, or an empty string if a retract path is known."""
     if retract.is_known:
         return ""
     if retract.situation is ToolSituation.IN_TAPPED_HOLE:
@@ -146,7 +150,7 @@ ROTATION_TOLERANCE_DEG = 0.01  # Degrees.
 
 @dataclass(frozen=True, slots=True)
 class StateRow:
-    """One row of the state: the required value at the line and the present value."""
+    """One row of the state table, with the value required at the line and the present value."""
 
     label: str
     required_value: str
@@ -154,13 +158,13 @@ class StateRow:
 
     @property
     def must_change(self) -> bool:
-        """Whether the restart must change this value."""
+        """Return whether the restart must change this value."""
         return self.required_value != self.present_value
 
 
 @dataclass(frozen=True, slots=True)
 class RestartPlan:
-    """A restart plan that the operator confirms."""
+    """A plan of a restart that the operator confirms."""
 
     restart_point: RestartPoint
     start_state: PassStart
@@ -177,7 +181,7 @@ class RestartPlan:
 def make_restart_plan(
     restart_point: RestartPoint, snapshot: Snapshot, job: Job, choices: OperatorChoices
 ) -> RestartPlan:
-    """Return the restart plan from the present machine state."""
+    """Return the plan of a restart from the current machine state."""
     if job.setup.kinematics is not None:
         return _on_mill(restart_point, snapshot, job, choices, job.setup.kinematics)
     now = read_machine_state(snapshot, job)
@@ -234,7 +238,7 @@ def _on_mill(
 
 
 def _check_rotary_axes(found: RestartPoint, now: PresentState, machine: Kinematics) -> str:
-    """Return a warning about a rotary axis that is not at zero and that no earlier line positions."""
+    """Return a warning about a rotary axis that is not at zero if no earlier line positions it."""
     names = {axis.name for axis in machine.rotary_axes}
     for name, wanted, at in zip(machine.axis_names, found.axis_positions, now.axis_positions, strict=True):
         if name in names and wanted is None and abs(at) > ROTATION_TOLERANCE_DEG:
@@ -253,7 +257,10 @@ def _place(axis: str, at: float) -> str:
 
 
 def _make_pass_rows(found: RestartPoint) -> tuple[StateRow, ...]:
-    """Return the rows of the loops and calls that contain the line, with the interrupted ones."""
+    """Return the rows of the loops and calls that contain the line.
+
+    Each row compares the pass at the line with the interrupted pass.
+    """
     was = found.interrupted_visit.enclosing_levels if found.interrupted_visit is not None else ()
     return tuple(
         _pass(each, was[number] if number < len(was) else None)
@@ -292,7 +299,10 @@ def _rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRo
 
 
 def _make_state_rows(point: Checkpoint, snapshot: Snapshot, language: str) -> tuple[StateRow, ...]:
-    """Return the rows of the state at the line and the present state, in the program's language."""
+    """Return the rows that compare the state at the line with the current state.
+
+    The rows are in the terms of the program's language.
+    """
     both = zip(make_modal_rows(point, language), make_modal_rows(_now(snapshot), language), strict=True)
     return tuple(StateRow(w.label, w.value, n.value) for w, n in both if w.key != "comment" or w.value)
 
@@ -302,7 +312,7 @@ def _now(snapshot: Snapshot) -> Checkpoint:
 
 
 def _make_position_rows(point: Checkpoint, x: float, z: float) -> tuple[ModalRow, ...]:
-    """Return the rows of a machine position as the line would read it, with its tool, unit and Ø or R."""
+    """Return the rows of a machine position in the terms of the line, with its tool, unit and Ø or R."""
     modal = point.modal
     mark, factor = ("Ø", 2.0) if modal.diameter else ("R", 1.0)
     return (

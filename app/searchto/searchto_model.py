@@ -1,4 +1,7 @@
-"""The model of the SEARCHTO page: choose a line, rebuild its state, confirm, prove and start. No Qt."""
+"""The model of the SEARCHTO page without Qt.
+
+The steps are to choose a line, rebuild its state, confirm, prove and start.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ RETRACT_TEXT = "(RETRACT FROM THE PART)"
 
 
 class SearchtoStage(Enum):
-    """The stage of a restart, from choosing a line to ready for Cycle Start."""
+    """The stages of a restart, from choosing a line to being ready for Cycle Start."""
 
     CHOOSING = auto()
     SEARCHING = auto()
@@ -47,7 +50,10 @@ class SearchtoStage(Enum):
 
 @dataclass(slots=True)
 class SearchtoModel:
-    """The model of the SEARCHTO page. ``show_message`` shows a message, and ``clear_message`` removes it."""
+    """The model of the SEARCHTO page.
+
+    ``show_message`` shows a message, and ``clear_message`` removes it.
+    """
 
     program_loader: ProgramLoader
     post_command: Callable[[Command], None]
@@ -87,18 +93,21 @@ class SearchtoModel:
 
     @property
     def has_keyboard(self) -> bool:
-        """Whether a line can be chosen, which is not possible while the tool retracts."""
+        """Return whether a line can be chosen.
+
+        This is not possible while the tool retracts.
+        """
         return self.read_snapshot().state not in CYCLE_STATES
 
     def can_open(self) -> bool:
-        """Return whether SEARCHTO can be opened now. If not, show the reason."""
+        """Return whether SEARCHTO can be opened now, and show the reason if not."""
         why = find_searchto_refusal(self.read_snapshot(), self.program_loader.loaded)
         if why:
             self.show_message(why)
         return not why
 
     def on_open(self) -> None:
-        """Prepare for the open page: Cycle Start runs a confirmed restart and nothing else."""
+        """Prepare for the open page, on which Cycle Start only runs a confirmed restart."""
         loaded, snapshot = self.program_loader.loaded, self.read_snapshot()
         self.clear_message()  # The operator has read the earlier message.
         self.is_open, self.is_started = True, False
@@ -110,7 +119,7 @@ class SearchtoModel:
         self._discard_results()
 
     def on_close(self) -> None:
-        """Let Cycle Start run programs again."""
+        """Allow Cycle Start to run programs again."""
         if self.is_open:
             self.is_open = False
             self._withdraw()
@@ -148,7 +157,10 @@ class SearchtoModel:
         self._discard_results()
 
     def select_line(self, line: int, pass_number: int = 0) -> None:
-        """Select this line in this pass, and rebuild its state. Line 0 does nothing."""
+        """Select this line in this pass, and rebuild its state.
+
+        Line 0 has no effect.
+        """
         if line:
             self.line_cursor.select_line(line)
             self.line_cursor.entry_text = ""
@@ -156,7 +168,7 @@ class SearchtoModel:
             self.rebuild_selected()
 
     def select_pass(self, steps: int) -> None:
-        """Select a later or earlier pass of a line that runs more than once."""
+        """Select a later or earlier pass of a line that is executed more than once."""
         if self.pass_count < 2:
             self.show_message(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
             return
@@ -166,11 +178,17 @@ class SearchtoModel:
             self.rebuild_selected()
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether this character is text input, which is not so while the tool retracts."""
+        """Return whether this character is text input.
+
+        No character is text input while the tool retracts.
+        """
         return len(key) == 1 and self.has_keyboard
 
     def handle_key(self, key: str) -> bool:
-        """Handle a character or an editing key. Return False if the key has no meaning here."""
+        """Handle a character or an editing key.
+
+        Return False if the key has no meaning here.
+        """
         if not self.line_cursor.handle_key(key):
             return False
         self.clear_message()
@@ -203,13 +221,16 @@ class SearchtoModel:
 
     @property
     def _needs_manual_retract(self) -> bool:
-        """Whether the machine is a mill, where every restart retracts the tool first."""
+        """Return whether the machine is a mill.
+
+        On a mill, every restart retracts the tool first.
+        """
         job = self.program_loader.loaded.job
         return job is not None and job.setup.kinematics is not None
 
     @property
     def _is_decided(self) -> bool:
-        """Whether a retract path or a valid line is shown."""
+        """Return whether a retract path or a valid line is shown."""
         whole = self.program_loader.loaded.job is not None
         return (
             self.stage is SearchtoStage.PLAN_SHOWN
@@ -240,7 +261,7 @@ class SearchtoModel:
         )
 
     def select_nearest_valid(self, direction: int) -> None:
-        """Go to the valid line before or after a rejected line."""
+        """Select the nearest valid line before or after a rejected line."""
         if self.search_refusal is not None:
             self.select_line(
                 self.search_refusal.nearest_line_before
@@ -261,11 +282,11 @@ class SearchtoModel:
             self.restart_finder.calculate_cuts(job)
 
     def toggle_coolant(self) -> None:
-        """Toggle whether the coolant starts, if it is on at the line."""
+        """Toggle whether the coolant starts if it is on at the line."""
         self._choose(replace(self.restart_choices, coolant=not self.restart_choices.coolant))
 
     def confirm_plan(self) -> None:
-        """Confirm the restart or the retract. It is then proved and prepared for Cycle Start."""
+        """Confirm the restart or the retract, which is then proved and prepared for Cycle Start."""
         if self.stage in {SearchtoStage.PROVING, SearchtoStage.READY}:
             return  # It is already confirmed.
         self.clear_message()
@@ -302,7 +323,10 @@ class SearchtoModel:
         self.restart_finder.prove_restart(make_job(ProgramSource("RETRACT", RETRACT_TEXT), setup))
 
     def handle_escape(self) -> bool:
-        """Go one step back. Return False if there was no step."""
+        """Go back one step.
+
+        Return False if there was no step to go back.
+        """
         if self.line_cursor.entry_text:
             self.line_cursor.entry_text = ""
             return True
@@ -321,7 +345,10 @@ class SearchtoModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Accept the results of the worker; called once a frame. A reloaded program needs a new search."""
+        """Accept the results of the worker.
+
+        This is called once a frame. After a program has been reloaded, a new search is needed.
+        """
         if self._of is not None and loaded.job is not self._of:
             self._of = None
             self._discard_results()
@@ -333,7 +360,10 @@ class SearchtoModel:
         self.restart_finder.worker.poll()
 
     def prompt_text(self, snapshot: Snapshot, start_instruction: str) -> str:
-        """Return the prompt. ``start`` is the instruction for starting a cycle."""
+        """Return the prompt.
+
+        ``start_instruction`` is the instruction for starting a cycle.
+        """
         shown = self.retract_plan or self.restart_plan
         trouble = shown.error_text if shown is not None else ""
         return "" if snapshot.state in CYCLE_STATES else self._prompt(snapshot, trouble, start_instruction)
@@ -344,7 +374,10 @@ class SearchtoModel:
         )
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now. Empty if they can start the restart."""
+        """Return why the start buttons have no effect now.
+
+        Return an empty string if they can start the restart.
+        """
         if self.stage is SearchtoStage.READY or self.read_snapshot().state in CYCLE_STATES:
             return ""
         return tr("CANNOT START: SEARCH FOR A LINE AND CONFIRM IT FIRST (F10)")
@@ -407,8 +440,8 @@ def make_searchto_prompt(
 ) -> str:
     """Return the prompt for a stage of the restart.
 
-    ``start`` is the instruction for starting a cycle. ``trouble`` is why the plan cannot be started, or
-    empty. ``is_retract`` is True for a retract without a restart.
+    ``start_instruction`` is the instruction for starting a cycle. ``error_text`` is the reason why the plan
+    cannot be started, or empty. ``is_retract`` is True for a retract without a restart.
     """
     if is_retract and stage is SearchtoStage.PLAN_SHOWN and not error_text:
         return tr("CHECK THE RETRACT PATH. F10: CONFIRM")

@@ -1,4 +1,7 @@
-"""Panel of SEARCHTO with the state at the line and the present state. Differences have a color and a sign."""
+"""SEARCHTO panel with the state at the line and the current state.
+
+Differences are marked by a color and a sign.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,10 @@ _LABEL, _SIGN = 0.25, 0.61  # Fractions of a row: end of the label, position of 
 
 @dataclass(frozen=True, slots=True)
 class NearestValidLine:
-    """A valid line near a rejected one: the key that selects it, its number (0 for none) and its text."""
+    """A valid line near a rejected line.
+
+    It has the key that selects it, its number (0 for none) and its text.
+    """
 
     key_name: str
     label: str
@@ -36,7 +42,10 @@ class NearestValidLine:
 
 @dataclass(frozen=True, slots=True)
 class StateContent:
-    """The rows of a valid line, or the reason for a rejected line with the nearest valid lines."""
+    """The state rows of a valid line.
+
+    For a rejected line, it contains the reason and the nearest valid lines.
+    """
 
     title: str = ""
     state_rows: tuple[StateRow, ...] = ()
@@ -47,7 +56,7 @@ class StateContent:
 
 
 class RestartStatePanel(Panel):
-    """The panel that shows the state rows or the refusal."""
+    """The panel that shows the state rows, or why a line is rejected."""
 
     content = RedrawingAttribute(StateContent())
 
@@ -75,7 +84,7 @@ class RestartStatePanel(Panel):
             self._draw_table(painter, room)
 
     def _draw_passes(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the pass with a touch key on either side."""
+        """Draw the pass with a touch key on each side."""
         wide = area.height() * 2
         sides = ((area.x(), "◀", PASS_BEFORE), (area.right() - wide, "▶", PASS_AFTER))
         for left, sign, key in sides:
@@ -85,7 +94,10 @@ class RestartStatePanel(Panel):
         painter.draw_text_line(words, self.content.pass_text, 2.0, "text", at=ALIGN_CENTER)
 
     def _draw_table(self, painter: ThemedPainter, area: QRectF) -> None:
-        """Draw the different rows large. Equal rows follow, folded into one row or one row each."""
+        """Draw the rows that differ in large letters, followed by the equal rows.
+
+        The equal rows are folded into one row, or have one row each.
+        """
         u, shown = self.theme.u, self.content
         other = tuple(row for row in shown.state_rows if row.must_change)
         equal = tuple(row for row in shown.state_rows if not row.must_change)
@@ -109,7 +121,10 @@ class RestartStatePanel(Panel):
             self._row(painter, foot.translated(0, number * high), row, min(1.9, high / u * 0.78), head=False)
 
     def _draw_fold_key(self, painter: ThemedPainter, box: QRectF, equal: tuple[StateRow, ...]) -> None:
-        """Draw the row that lists the equal rows. A touch folds or unfolds them."""
+        """Draw the row that lists the equal rows.
+
+        A touch on this row folds or unfolds the equal rows.
+        """
         u = self.theme.u
         painter.fill_rect(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
         words = tr(Message("{count} IDENTICAL", count=len(equal)))

@@ -1,4 +1,4 @@
-"""The SEARCHTO page (F6): a line, its state, the path to it, and the functions that will start."""
+"""The SEARCHTO page (F6), with a line, its state, the path to it, and the functions that will start."""
 
 from __future__ import annotations
 
@@ -48,13 +48,16 @@ if TYPE_CHECKING:
 
 
 class SearchEntryPanel(Panel):
-    """The question for a line or text, with the entered text."""
+    """The prompt for a line or a text, with the entered text."""
 
     ground_color = "panel"
     entry_text = RedrawingAttribute("")
 
     def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
-        """Create the panel. ``press`` is called for a touch."""
+        """Create the panel.
+
+        ``press`` is called on a touch.
+        """
         super().__init__(theme, parent)
         self._press = press
 
@@ -79,8 +82,8 @@ WARNING_LINE_CHARS = 40  # Characters of one line of a warning.
 class StartedFunctionsPanel(Panel):
     """The functions that will start.
 
-    ``choices`` are options with their keys. ``error_text`` is a warning, or the reason why the restart cannot
-    start.
+    ``option_texts`` are the options with their keys. ``error_text`` is a warning, or the reason why the
+    restart cannot start.
     """
 
     started_functions: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
@@ -91,7 +94,7 @@ class StartedFunctionsPanel(Panel):
     def show_functions(
         self, functions: Sequence[str], options: Sequence[str], error_text: str, is_confirmed: bool
     ) -> None:
-        """Show these functions, options and warnings."""
+        """Show these functions and options, and the warning or error."""
         self.started_functions, self.option_texts = tuple(functions), tuple(options)
         self.error_text, self.is_confirmed = error_text, is_confirmed
 
@@ -116,7 +119,7 @@ LIST, STATE, ASKED, STARTS = 0.26, 0.46, 4.6, 19.0  # Fractions of the width; un
 
 
 class SearchtoPage(ModelPage):
-    """The SEARCHTO page. Lines are chosen by arrow keys, numbers or texts."""
+    """The SEARCHTO page, on which lines are chosen by arrow keys, numbers or texts."""
 
     NAME = page_table.SEARCHTO_PAGE
     LABELS = (
@@ -175,7 +178,10 @@ class SearchtoPage(ModelPage):
         }
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Arrow keys select a line, and other keys are text input."""
+        """Handle a key.
+
+        Arrow keys select a line, and other keys are text input.
+        """
         if not self.model.has_keyboard:
             return False
         steps = {
@@ -199,7 +205,10 @@ class SearchtoPage(ModelPage):
         return self.model.handle_key(key)
 
     def handle_touched_key(self, key: str) -> None:
-        """Handle a touch on the number pad. Enter and Esc also hide the pad, so that the state is visible."""
+        """Handle a touch on the number pad.
+
+        Enter and Esc also hide the pad, so that the state is visible.
+        """
         if key in {"Enter", "Esc"}:
             self.number_pad.hide()
         if key != "Esc":
@@ -222,7 +231,10 @@ class SearchtoPage(ModelPage):
         self._whole = not self._whole
 
     def has_text_field(self) -> bool:
-        """Return whether the entry accepts text, which is so except while the tool retracts."""
+        """Return whether the entry accepts text.
+
+        It always does except while the tool retracts.
+        """
         return self.model.has_keyboard
 
     def prompt_text(self) -> str:
@@ -230,27 +242,33 @@ class SearchtoPage(ModelPage):
         return self.model.prompt_text(self.desk.read_snapshot(), self.desk.start_instruction)
 
     def can_open(self) -> bool:
-        """Return whether the page can be opened, which needs a proved program that is not running."""
+        """Return whether the page can be opened.
+
+        It needs a proved program that is not running.
+        """
         return self.model.can_open()
 
     def try_leave(self) -> bool:
-        """Let Cycle Start run programs again, and let the page close."""
+        """Allow Cycle Start to run programs again, and allow the page to close."""
         self.number_pad.hide()
         self.model.on_close()
         return True
 
     def handle_escape(self) -> bool:
-        """Go one step back, or from the first step to the Automatic page."""
+        """Go back one step, or open the Automatic page if there is no step to go back."""
         if not self.model.handle_escape():
             self.host.open_page(page_table.AUTOMATIC)
         return True
 
     def apply_theme(self) -> None:
-        """Redraw the path in the present colors."""
+        """Redraw the path in the current colors."""
         self.path_view.redraw()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, loaded: LoadedProgram) -> None:
-        """Show the line, its state and the path. After a restart has started, open the Automatic page."""
+        """Show the line, its state and the path.
+
+        After a restart has started, open the Automatic page instead.
+        """
         model = self.model
         model.update(snapshot, loaded)
         if model.is_started:
@@ -272,14 +290,14 @@ class SearchtoPage(ModelPage):
         self.path_view.draw_slice()
 
     def _show_program(self, loaded: LoadedProgram) -> None:
-        """Show the path of the program, or on a mill the table and workpiece."""
+        """Show the path of the program, or the table and workpiece on a mill."""
         scene = loaded.picture.scene if loaded.picture is not None else None
         self.plane_view.show_scene(scene)
         self.plane_view.setVisible(scene is not None)
         self.path_view.show_picture(loaded.picture if scene is None else None)
 
     def _show_plane(self, scene: MillScene, picture: ProgramPicture) -> None:
-        """Show axes and plane at the beginning of the line, with the earlier blocks drawn as done."""
+        """Show axes and plane at the beginning of the line, with the earlier blocks drawn as finished."""
         plan, line = self.model.restart_plan, self.model.line_cursor.selected_line
         here = make_line_instant(scene, line - 1)
         axes, done = here.axis_positions, picture.count_blocks_before(line)
@@ -291,11 +309,14 @@ class SearchtoPage(ModelPage):
 
     @property
     def _visible_view(self) -> PathView | WorkingPlaneView:
-        """The view that the zoom keys control."""
+        """Return the view that the zoom keys control."""
         return self.path_view if self.plane_view.scene is None else self.plane_view
 
     def _find_tip(self, snapshot: Snapshot) -> TipPosition:
-        """Return the tool tip. With a plan, this is the tip of the line's tool, where the path begins."""
+        """Return the position of the tool tip.
+
+        With a plan, this is the tip of the line's tool, where the path begins.
+        """
         shown = self.model.retract_plan or self.model.restart_plan
         legs = shown.drawn_legs if shown is not None else ()
         return TipPosition(0, legs[0].z, legs[0].x) if legs else find_tip_position(snapshot)._replace(block=0)
@@ -363,7 +384,7 @@ class SearchtoPage(ModelPage):
         )
 
     def _show_stock(self, loaded: LoadedProgram) -> None:
-        """Show the part as the earlier lines leave it, in the pass that was found."""
+        """Show the part after the earlier lines, in the pass that was found."""
         plan, picture, player = self.model.restart_plan, loaded.picture, self.path_view.part_player
         if picture is None or player is None:
             return
@@ -382,7 +403,7 @@ class SearchtoPage(ModelPage):
         self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out the program, the state, and the path above the functions that start."""
+        """Arrange the program, the state, and the path above the functions that start."""
         u = self.theme.u
         gap, asked, starts = max(4, round(0.7 * u)), max(FINGERTIP_PX, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()

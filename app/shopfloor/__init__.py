@@ -1,1 +1,1 @@
-"""Machine data for other programs, read-only."""
+"""Machine data that other programs can read but not change."""

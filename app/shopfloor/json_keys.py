@@ -1,4 +1,4 @@
-"""Keys of status.json, for the reference page and its tests."""
+"""Keys of the file status.json, for the reference page and its tests."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""A snapshot in the terms of MTConnect: execution, conditions and values in mm, degrees, mm/s, rpm and %."""
+"""Conversion of snapshots to the terms of MTConnect: execution, conditions and values.
+
+Values are in mm, degrees, mm/s, rpm and %.
+"""
 
 from __future__ import annotations
 
@@ -33,9 +36,10 @@ _DEFAULT_CONDITIONS = {_SERVO: SYSTEM, _TRAVEL: MOTION}  # conditions of alarms 
 
 
 def list_condition_keys(machine: Machine) -> frozenset[str]:
-    """Return the names of all conditions of a machine: those of each axis with its own drive, and the others.
+    """Return the names of all conditions of a machine.
 
-    On a lathe the spindle is also the C axis, unless C has its own drive.
+    They are the conditions of each axis with its own drive, and the other conditions. On a lathe the
+    spindle is also the C axis, unless C has its own drive.
     """
     turns_c = machine.kind == "lathe" and machine.spindle_is_c
     axes = [axis.name for axis in machine.axes if not (turns_c and axis.rotary and axis.name == "C")]
@@ -44,9 +48,10 @@ def list_condition_keys(machine: Machine) -> frozenset[str]:
 
 
 def find_conditions(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tuple[ConditionEntry, ...]]:
-    """Return the active entries of each condition; () means normal.
+    """Return the active entries of each condition.
 
-    A hold that the operator did not request is a warning of the system, with the reason shown on the screen.
+    An empty tuple means normal. A hold that the operator did not request is a warning of the system, with
+    the reason shown on the screen.
     """
     active: dict[str, list[ConditionEntry]] = {key: [] for key in keys}
     for alarm in snapshot.alarms:
@@ -110,10 +115,10 @@ _MODE_BY_STATE = {
 
 @dataclass(slots=True)
 class ExecutionTracker:
-    """State machine that also detects the end of a program.
+    """State machine that finds the execution state, and also detects the end of a program.
 
-    ``inputs`` are the names and terminals of inputs for which a program can wait. Other waits of a cycle,
-    such as a dwell, the spindle or a proof, count as active execution.
+    ``input_names`` are the names and terminals of inputs for which a program can wait. Other waits of a
+    cycle, such as a dwell, the spindle or a proof, count as active execution.
     """
 
     input_names: frozenset[str] = frozenset()
@@ -123,7 +128,10 @@ class ExecutionTracker:
     _completed: bool = False
 
     def update(self, snapshot: Snapshot) -> str:
-        """Return the execution state; call it for every published snapshot."""
+        """Return the execution state.
+
+        Call this for every published snapshot.
+        """
         ended = self._ends is not None and snapshot.ends > self._ends
         elsewhere = (snapshot.program, snapshot.lines) != (self._program, self._lines)
         if ended:
@@ -158,7 +166,10 @@ class ExecutionTracker:
 
 
 def find_controller_mode(snapshot: Snapshot) -> str:
-    """Return the controller mode: the kind of run that Cycle Start begins. The control has no mode switch."""
+    """Return the controller mode, which is the kind of run that Cycle Start begins.
+
+    The control has no mode switch.
+    """
     if snapshot.state in {MachineState.JOG, MachineState.HOME}:
         return MANUAL
     if snapshot.starts in MDI_ACTIONS:
@@ -175,7 +186,10 @@ _AVAILABLE, _UNAVAILABLE = "AVAILABLE", "UNAVAILABLE"
 
 @dataclass(frozen=True, slots=True)
 class MachineReading:
-    """Values and conditions of the machine at one time; empty if nothing is known."""
+    """Values and conditions of the machine at one time.
+
+    Both are empty if nothing is known.
+    """
 
     values: Mapping[str, ReadingValue]
     conditions: Mapping[str, tuple[ConditionEntry, ...]] = field(default_factory=dict)
@@ -183,12 +197,12 @@ class MachineReading:
     alarms: tuple[Alarm, ...] = ()  # catalog entries of the active alarms
 
     def find_alarm(self, code: str) -> Alarm | None:
-        """Return the alarm of a condition by its code; None if the catalog does not contain it."""
+        """Return the alarm of a condition by its code, or None if the reading does not contain it."""
         return next((alarm for alarm in self.alarms if str(alarm.number) == code), None)
 
     @property
     def is_available(self) -> bool:
-        """Whether the control responds."""
+        """Return whether the control responds."""
         return self.values.get("avail") == _AVAILABLE
 
 
@@ -197,7 +211,10 @@ UNKNOWN_READING = MachineReading({"avail": _UNAVAILABLE})
 
 @dataclass(slots=True)
 class MachineReader:
-    """Converter of the snapshots of one machine; ``clock`` in s detects that snapshots stop."""
+    """Converter of the snapshots of one machine.
+
+    ``clock``, in seconds, is used to detect that no new snapshots arrive.
+    """
 
     machine: Machine
     clock: Callable[[], float]
@@ -212,7 +229,7 @@ class MachineReader:
         self._keys = list_condition_keys(self.machine)
 
     def read_snapshot(self, snapshot: Snapshot) -> MachineReading:
-        """Return the present values and conditions; UNKNOWN if the control is silent."""
+        """Return the current values and conditions, or ``UNKNOWN_READING`` if the control is silent."""
         if self._pulse.check_silence(snapshot.t, self.clock()):
             return UNKNOWN_READING
         values: dict[str, ReadingValue] = {
@@ -231,7 +248,7 @@ class MachineReader:
         return MachineReading(values, find_conditions(snapshot, self._keys), snapshot.interrupted, alarms)
 
     def _read_axes(self, snapshot: Snapshot) -> dict[str, ReadingValue]:
-        """Return the axis positions in machine coordinates, X as a radius.
+        """Return the axis positions in machine coordinates, with X as a radius.
 
         The position of an axis that is not homed is None.
         """
@@ -257,7 +274,10 @@ class MachineReader:
         }
 
     def _read_wired(self, snapshot: Snapshot) -> dict[str, ReadingValue]:
-        """Return the states of switches; None if a switch is not wired."""
+        """Return the states of the switches.
+
+        The state of a switch that is not wired is None.
+        """
 
         def told(name: str, on: str, off: str) -> ReadingValue:
             if name not in self.machine.inputs or UnknownPart.INPUTS in snapshot.unknown:

@@ -1,4 +1,4 @@
-"""The state of the machine in a small JSON file, for scripts and spreadsheets."""
+"""State of the machine in a small JSON file, for scripts and spreadsheets."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ StatusDocument = dict[str, object]
 
 
 def make_status(machine: str, reading: MachineReading) -> StatusDocument:
-    """Return the status of the machine for the file: state, program, parts and alarms."""
+    """Return the status of the machine for the file, with state, program, parts and alarms."""
     values = reading.values
     return {
         "machine": machine,
@@ -51,19 +51,22 @@ def make_status(machine: str, reading: MachineReading) -> StatusDocument:
 
 
 def _round_load(load: ReadingValue) -> int | None:
-    """Return the load in % rounded to 5, to limit the number of writes."""
+    """Return the load in %, rounded to a multiple of 5 to limit the number of writes."""
     return round(load / _LOAD_STEP_PERCENT) * _LOAD_STEP_PERCENT if isinstance(load, float) else None
 
 
 def _make_interrupted(found: InterruptedJob | None) -> StatusDocument | None:
-    """Return the interrupted job; ``at`` is UTC in ISO 8601 format."""
+    """Return the interrupted job as an entry of the file.
+
+    ``at`` is in UTC and in ISO 8601 format.
+    """
     if found is None:
         return None
     return {"line": found.line, "tool": found.tool, "part": found.part, "at": found.at}
 
 
 def _make_alarm_entry(alarm: Alarm | None) -> StatusDocument:
-    """Return number, cause and remedy of an alarm as shown on the screen."""
+    """Return the number, cause and remedy of an alarm as shown on the screen."""
     if alarm is None:
         return {"number": None, "cause": "", "remedy": "", "line": None}
     line = alarm.line or None
@@ -71,7 +74,10 @@ def _make_alarm_entry(alarm: Alarm | None) -> StatusDocument:
 
 
 class StatusFileWriter:
-    """The status file, which is always replaced as a whole. ``read_utc`` returns the time as text."""
+    """Writer of the status file, which is always replaced as a whole.
+
+    ``read_utc`` returns the time as text.
+    """
 
     def __init__(self, path: Path, read_utc: Callable[[], str]) -> None:
         self._path, self._utc = path, read_utc
@@ -81,7 +87,10 @@ class StatusFileWriter:
         self._failed = False
 
     def write_status(self, status: StatusDocument) -> None:
-        """Write the status if it has changed or the file is too old. A failed write is tried again."""
+        """Write the status if it has changed or the file is too old.
+
+        A failed write is tried again.
+        """
         self._looks += 1
         if status == self._written and self._looks < _MAX_UNCHANGED_CHECKS:
             return
@@ -100,7 +109,10 @@ class StatusFileWriter:
 
 
 class StatusFileUpdater(RepeatingThread):
-    """Thread that updates the status file once per second, so that a slow disk delays no other thread."""
+    """Thread that updates the status file once per second.
+
+    The separate thread prevents a slow disk from delaying other threads.
+    """
 
     def __init__(
         self,
@@ -108,7 +120,10 @@ class StatusFileUpdater(RepeatingThread):
         action: Callable[[], StatusDocument],
         final_status: StatusDocument,
     ) -> None:
-        """Create the thread; ``final_status`` is the status that is written last."""
+        """Create the thread.
+
+        ``final_status`` is the status that is written last.
+        """
         super().__init__("status", self._show, _UPDATE_INTERVAL_S)
         self._file, self._status, self._gone = status_file, action, final_status
         self._last: StatusDocument = {}

@@ -1,1 +1,1 @@
-"""Page SPECIAL FUNCTIONS (F10): model and view."""
+"""Model and view of the SPECIAL FUNCTIONS page (F10)."""

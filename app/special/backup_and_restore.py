@@ -1,4 +1,4 @@
-"""Backup and restore of all stored data: offsets, versions, counts, settings and log."""
+"""Backup and restore of all stored data, which are offsets, versions, counts, settings and the log."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ class BackupPlace:
 
 
 class BackupFunction(SpecialFunction):
-    """Special function for backups: Enter on a folder makes a backup, and Enter on a backup restores it."""
+    """Special function for backups.
+
+    Enter on a folder makes a backup, and Enter on a backup restores it.
+    """
 
     name = "BACKUP AND RESTORE"
     use = "offsets, versions, settings, log"
@@ -57,7 +60,7 @@ class BackupFunction(SpecialFunction):
     ) -> None:
         """Create the function.
 
-        ``daily`` is the folder of daily backups if it differs from ``folder``.
+        ``daily_folder`` is the folder of daily backups if it differs from ``folder``.
         """
         super().__init__(desk)
         self.persistence, self.worker, self.backup_folder, self.list_media = (
@@ -75,7 +78,7 @@ class BackupFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of listed folders and backups."""
+        """Return the number of listed folders and backups."""
         return len(self.places)
 
     def on_open(self) -> None:
@@ -83,7 +86,10 @@ class BackupFunction(SpecialFunction):
         self.reload_places()
 
     def reload_places(self) -> None:
-        """List folders and backups again. The result arrives in a later frame."""
+        """List the folders and backups again.
+
+        The result is shown in a later frame.
+        """
         self.worker.enqueue(
             lambda: _list_places(self.backup_folder, self.list_media(), self.daily_folder),
             self._found,
@@ -99,7 +105,10 @@ class BackupFunction(SpecialFunction):
                 self.worker.enqueue(partial(self._check_place, place), self._judge, self._not_judged)
 
     def _check_place(self, place: BackupPlace) -> tuple[BackupPlace, BackupVerdict]:
-        """Check a backup on the worker. Raises StoreError."""
+        """Check a backup on the worker.
+
+        Raise StoreError on failure.
+        """
         return place, self.persistence.check_backup(place.path)
 
     def _judge(self, found: tuple[BackupPlace, BackupVerdict]) -> None:
@@ -144,7 +153,10 @@ class BackupFunction(SpecialFunction):
         return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.first_problem else "RESTORE (BACKUP IS INTACT)"
 
     def _make_notes(self) -> tuple[str, ...]:
-        """Return the notes about the selected backup: its damage, or the effect of a restore."""
+        """Return the notes about the selected backup.
+
+        The notes describe its damage or the effect of a restore.
+        """
         kept = (
             "When a backup is restored, a copy of the replaced data is saved in the same folder "
             "as the new data."
@@ -160,11 +172,11 @@ class BackupFunction(SpecialFunction):
         return (tr(differs if what else "The backup and the current data are the same."), kept)
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return F4, which looks for media again."""
+        """Return the function key F4, which searches for media again."""
         return {"F4": FunctionKey("REFRESH", self.reload_places)}
 
     def execute_row(self) -> bool:
-        """Make or restore the selected backup."""
+        """Make a backup in the selected folder, or restore the selected backup."""
         if self.task_text:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
         elif self.places:
@@ -252,12 +264,15 @@ class BackupFunction(SpecialFunction):
         self.desk.show_refusal(why)
 
     def prompt_text(self) -> str:
-        """Return the prompt about Enter."""
+        """Return the prompt about the Enter key."""
         return "ENTER OR TAP: BACK UP OR RESTORE   F4: LOOK FOR USB STICKS"
 
 
 def _describe_differences(verdict: BackupVerdict) -> str:
-    """Return the number of rows per table that a restore would change, as text; empty for no change."""
+    """Return, as text, how many rows of each table a restore would change.
+
+    The text is empty if a restore would not change anything.
+    """
     told = [f"{tr(name)} {count}" for name, count in verdict.difference_counts]
     if verdict.is_older:
         told.append(tr("other data was not compared because the backup is from an older version"))
@@ -265,7 +280,10 @@ def _describe_differences(verdict: BackupVerdict) -> str:
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupPlace, ...]:
-    """Return the control's folder and the media, each followed by its backups, newest first."""
+    """Return the control's folder and the media, each followed by its backups.
+
+    The newest backup is the first.
+    """
     found: list[BackupPlace] = []
     kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in media)):

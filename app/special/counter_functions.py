@@ -49,24 +49,24 @@ class ToolLifeFunction(NumericFunction):
         self.limit_kind = LIMIT_FIELDS[0]
 
     def list_tools(self) -> tuple[ToolLife, ...]:
-        """Return the displayed tools in the order of T numbers."""
+        """Return the displayed tools in the order of their T numbers."""
         lives = self.parts_watch.tool_life_watch.read_lives()
         numbers = sorted({*lives, *self.desk.offset_book.tools} & set(OFFSET_NUMBERS))
         return tuple(lives.get(number, ToolLife(number)) for number in numbers)
 
     @property
     def row_count(self) -> int:
-        """Number of displayed tools."""
+        """Return the number of displayed tools."""
         return len(self.list_tools())
 
     @property
     def selected_tool(self) -> ToolLife | None:
-        """Selected tool, or None."""
+        """Return the selected tool, or None if no tool is listed."""
         tools = self.list_tools()
         return tools[self.marked] if self.marked < len(tools) else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with limits, use, remaining life and stop."""
+        """Return the table with limits, use, remaining life and stop setting."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
         rows = tuple(self._row(each) for each in self.list_tools())
         tool = self.selected_tool
@@ -103,11 +103,14 @@ class ToolLifeFunction(NumericFunction):
         return TableRow(cells, life.state is not ToolLifeState.NO_LIMIT, tone, bar)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows move the selection, and other keys edit the entry."""
+        """Handle a key.
+
+        Arrow keys move the selection, and other keys edit the entry.
+        """
         return self.move_selection(key) or super().handle_key(key)
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for the type of limit, the stop and a new insert."""
+        """Return the function keys for the type of limit, the stop setting and a new insert."""
         return {
             "F2": FunctionKey(_LABELS[following(LIMIT_FIELDS, self.limit_kind)], self._next_limit),
             "F3": FunctionKey("STOP", self.toggle_stop),
@@ -119,7 +122,10 @@ class ToolLifeFunction(NumericFunction):
         self.entry.text, self.limit_kind = "", following(LIMIT_FIELDS, self.limit_kind)
 
     def take(self, text: str) -> bool:
-        """Set a limit of the selected tool. Raises EntryError."""
+        """Set a limit of the selected tool.
+
+        Raise EntryError for an invalid value.
+        """
         tool = self.selected_tool
         if tool is None:
             self.desk.say(tr("NO TOOL HAS OFFSETS YET"))
@@ -161,14 +167,14 @@ class ToolLifeFunction(NumericFunction):
         return True
 
     def toggle_stop(self) -> None:
-        """Turn the stop at the end of tool life on or off (F3)."""
+        """Handle F3: turn the stop at the end of tool life on or off."""
         tool = self.selected_tool
         if tool is not None:
             self.desk.clear_prompt_line()
             self._set(replace(tool, stops=not tool.stops))
 
     def confirm_new_insert(self) -> None:
-        """Record a new insert in the holder, after confirmation (F4)."""
+        """Handle F4: record a new insert in the holder after the operator confirms."""
         tool = self.selected_tool
         if tool is None:
             return
@@ -179,7 +185,7 @@ class ToolLifeFunction(NumericFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt, or the reason why changes are not possible."""
+        """Return the prompt, or why changes are not possible."""
         return self.parts_watch.parts_book.lock_reason or (
             "TYPE THE LIFE LIMIT. F2: NEXT LIMIT   F4: NEW INSERT"
         )
@@ -197,7 +203,7 @@ class PartsCounterFunction(NumericFunction):
 
     @property
     def part_counter(self) -> PartCounter:
-        """Parts counter of the loaded program."""
+        """Return the parts counter of the loaded program."""
         return self.desk.program_runs.part_counter
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
@@ -239,7 +245,7 @@ class PartsCounterFunction(NumericFunction):
         )
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for corrections, the reset and cycles that are not counted."""
+        """Return the function keys for corrections, for the reset, and for cycles that are not counted."""
         return {
             "F2": FunctionKey("COUNT +1", partial(self.correct_count, 1)),
             "F3": FunctionKey("COUNT -1", partial(self.correct_count, -1)),
@@ -248,7 +254,7 @@ class PartsCounterFunction(NumericFunction):
         }
 
     def correct_count(self, change: int) -> None:
-        """Correct the count by one part that was not counted or is scrap."""
+        """Correct the count by a part that was not counted or that is scrap."""
         if not self.part_counter.program:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
@@ -260,7 +266,7 @@ class PartsCounterFunction(NumericFunction):
             self.desk.try_save(lambda: self.part_counter.correct_count(change))
 
     def confirm_reset(self) -> None:
-        """Reset the count to zero, after confirmation."""
+        """Reset the count to zero after the operator confirms."""
         if not self.part_counter.program:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
@@ -271,7 +277,10 @@ class PartsCounterFunction(NumericFunction):
             self.desk.ask_operator(RESET, partial(self.desk.try_save, self.part_counter.reset_count))
 
     def take(self, text: str) -> bool:
-        """Set the target number of parts. 0 removes the target. Raises EntryError."""
+        """Set the target number of parts.
+
+        A value of 0 removes the target. Raise EntryError for an invalid value.
+        """
         if not self.part_counter.program:
             self.desk.say(NO_PROGRAM_LOADED)
             return False
@@ -297,7 +306,10 @@ class PartsCounterFunction(NumericFunction):
 
 
 def parse_part_count(text: str) -> int:
-    """Return a typed number of parts as an integer. Raises EntryError."""
+    """Return a typed number of parts as an integer.
+
+    Raise EntryError for an invalid number.
+    """
     value = evaluate_expression(text)
     if value != int(value) or not 0 <= value <= MAX_COUNT:
         raise EntryError(

@@ -1,6 +1,6 @@
 """Live states of drives, inputs, outputs and lamps.
 
-Outputs can be switched manually at rest only.
+Outputs can be switched manually only while the machine is at rest.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _OWN_CODES_OF_OMNITURN = {"coolant": ("M08", "M09"), "collet": ("M12", "M13")}
 
 
 class SignalListKind(StrEnum):
-    """List of signals."""
+    """The lists of signals that the function can show."""
 
     OUTPUTS = "OUTPUTS"
     INPUTS = "INPUTS"
@@ -48,7 +48,10 @@ class SignalListKind(StrEnum):
 
 
 class SignalsFunction(SpecialFunction):
-    """Special function for signals: F4 selects the list, and Enter switches an output after confirmation."""
+    """Special function for signals.
+
+    F4 selects the list, and Enter switches an output after the operator confirms.
+    """
 
     name = "INPUTS AND OUTPUTS"
     use = "live signals, manual outputs, lamps"
@@ -61,14 +64,14 @@ class SignalsFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of rows of the displayed list."""
+        """Return the number of rows of the displayed list."""
         if self.list_kind is SignalListKind.OUTPUTS:
             return len(self.machine.outputs)
         return len(self.machine.inputs) if self.list_kind is SignalListKind.INPUTS else 0
 
     @property
     def _is_simulated(self) -> bool:
-        """Whether inputs can be switched, as on a simulated machine."""
+        """Return whether inputs can be switched, which is possible on a simulated machine."""
         return self.desk.desk_control.set_input is not None
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
@@ -131,7 +134,7 @@ class SignalsFunction(SpecialFunction):
         return _PROGRAM_INPUT_USERS.get(name, f"M97I{name}" if name.isdigit() else "")
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return F4, which shows the next list."""
+        """Return the function key F4, which shows the next list."""
         labels = {
             SignalListKind.OUTPUTS: "OUTPUTS",
             SignalListKind.INPUTS: "INPUTS",
@@ -213,7 +216,7 @@ class SignalsFunction(SpecialFunction):
             )
 
     def prompt_text(self) -> str:
-        """Return the prompt about Enter."""
+        """Return the prompt about the Enter key."""
         if self.list_kind is SignalListKind.INPUTS and self._is_simulated:
             return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
         if self.list_kind is not SignalListKind.OUTPUTS:
@@ -228,7 +231,10 @@ def _state(on: bool) -> str:
 
 
 def _map_codes(machine: Machine) -> dict[str, str]:
-    """Return the M codes of each output, on before off, in the notation of the machine's language."""
+    """Return the M codes of each output in the notation of the machine's language.
+
+    Codes that switch an output on precede those that switch it off.
+    """
     omniturn = machine.language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
     form = "M{:02d}" if omniturn else "M{}"
@@ -245,7 +251,10 @@ SPINDLE_ALARMS = frozenset({"spindle", "at-speed", "ignores-stop", "spindle-stil
 
 
 class DriveStatusFunction(SpecialFunction):
-    """Special function for the drives, in machine coordinates from home with X as a radius."""
+    """Special function for the drives.
+
+    Positions are in machine coordinates from home, with X as a radius.
+    """
 
     name = "DRIVE STATUS"
     use = "power, home, following error, faults"
@@ -255,7 +264,7 @@ class DriveStatusFunction(SpecialFunction):
         self.machine = machine
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table with one row per axis and one for the spindle."""
+        """Return the table with one row per axis and one row for the spindle."""
         metric = self.desk.settings_store.display_units.metric(snapshot.modal.metric)
         on = snapshot.powered
         rows = [self._axis(snapshot, number, metric, on) for number in range(len(snapshot.axes))]
@@ -317,7 +326,7 @@ class DriveStatusFunction(SpecialFunction):
 def _find_fault(alarms: tuple[Alarm, ...], codes: frozenset[str], axis: Axis | None) -> str:
     """Return the number of the alarm of an axis or the spindle.
 
-    An alarm without an axis applies to all.
+    An alarm that names no axis applies to all axes.
     """
     for alarm in reversed(alarms):
         named = AXIS_LETTERS & set(alarm.cause.split())

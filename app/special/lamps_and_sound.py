@@ -28,7 +28,10 @@ EVENT_KINDS = tuple(MACHINE_SIGNALS)
 
 @dataclass(slots=True)
 class EventSounds:
-    """Sounds for new events, with ``volume`` 0 by default. The kinds in ``silent`` are muted."""
+    """Player of sounds for new events.
+
+    ``volume_percent`` is 0 by default. The kinds in ``muted_kinds`` are muted.
+    """
 
     desk: Desk
     persistence: Persistence
@@ -41,7 +44,10 @@ class EventSounds:
     _read: bool = False
 
     def play_new_events(self, snapshot: Snapshot) -> None:
-        """Play the sounds of events that began since the last frame. The first frame is silent."""
+        """Play the sounds of events that have begun since the last frame.
+
+        No sounds are played in the first frame.
+        """
         self.load_settings()
         kinds = self._signals.update_signals(
             snapshot.state, snapshot.ends, next_part_blocked=bool(snapshot.next_barred)
@@ -65,12 +71,12 @@ class EventSounds:
         self._told = why or self._told
 
     def play_test_sound(self) -> None:
-        """Play the test sound and report a repeated error again."""
+        """Play the test sound, and report an error even if it has been reported before."""
         self._told = self.sound_player.error_text = ""
         self.sound_player.play_tones(MACHINE_SIGNALS["part"].tones_hz, self.volume_percent)
 
     def load_settings(self) -> None:
-        """Load the stored settings once."""
+        """Load the stored settings if they have not been loaded yet."""
         if self._read:
             return
         self._read = True
@@ -83,7 +89,10 @@ class EventSounds:
                 self.volume_percent, self.muted_kinds = max(0, min(100, volume)), frozenset(map(str, silent))
 
     def save_settings(self, volume_percent: int, muted_kinds: frozenset[str]) -> None:
-        """Store the volume and the muted kinds. Raises StoreError."""
+        """Store the volume and the muted kinds.
+
+        Raise StoreError on failure.
+        """
         before, self.volume_percent, self.muted_kinds = (
             self.volume_percent,
             max(0, min(100, volume_percent)),
@@ -106,7 +115,7 @@ class EventSounds:
 
 
 class LampsAndSoundFunction(SpecialFunction):
-    """Special function with one row per event: its lamp, if fitted, and its sound."""
+    """Special function with one row per event, which shows its lamp, if fitted, and its sound."""
 
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"
@@ -117,7 +126,7 @@ class LampsAndSoundFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of events."""
+        """Return the number of events."""
         return len(EVENT_KINDS)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
@@ -175,7 +184,7 @@ class LampsAndSoundFunction(SpecialFunction):
             self.desk.try_save(lambda: self.event_sounds.save_settings(volume, silent))
 
     def play_part_sound(self) -> None:
-        """Play the sound of a finished part at the present volume."""
+        """Play the sound of a finished part at the current volume."""
         if not self.event_sounds.volume_percent:
             self.desk.say("VOLUME IS ZERO. F3: LOUDER")
         else:
@@ -183,7 +192,7 @@ class LampsAndSoundFunction(SpecialFunction):
             self.event_sounds.play_test_sound()
 
     def test_lamps(self) -> None:
-        """Turn all lamps on for 2 s, at rest."""
+        """Turn all lamps on for 2 s while the machine is at rest."""
         if not self.machine.lamp_outputs:
             self.desk.say("THIS MACHINE HAS NO LAMPS. DEFINE THEM UNDER [io.out] IN THE MACHINE FILE")
         else:
@@ -191,5 +200,5 @@ class LampsAndSoundFunction(SpecialFunction):
             self.desk.post(ForceOutput(self.machine.lamp_outputs[0], True))
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         return "ENTER: SOUND ON/OFF   F3: LOUDER   F4: TRY   ESC: BACK"

@@ -31,9 +31,9 @@ EVENT_FILTERS: Mapping[str, frozenset[str]] = {
 
 
 class EventLogFunction(SpecialFunction):
-    """Special function for the event log: F4 searches, F5 filters.
+    """Special function for the event log.
 
-    All letters belong to an active search.
+    F4 searches, and F5 filters. While a search is active, all letters are added to the search text.
     """
 
     name = "EVENT LOG"
@@ -52,7 +52,7 @@ class EventLogFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of events found."""
+        """Return the number of events that were found."""
         return len(self.found_events)
 
     def on_open(self) -> None:
@@ -61,7 +61,7 @@ class EventLogFunction(SpecialFunction):
         self.marked = 0
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of events, updated every second while the log is open."""
+        """Return the table of events, which is updated every second while the log is open."""
         now = self.desk.clock.read_seconds()
         if now >= self._next and not self.worker.is_busy:
             self._next = now + RELOAD_INTERVAL_S
@@ -87,7 +87,7 @@ class EventLogFunction(SpecialFunction):
     def query_store(self) -> None:
         """Query the store.
 
-        The result arrives in a later frame, and only the last of several queries counts.
+        The result arrives in a later frame. Only the last of several queries is used.
         """
         search, kinds = self.search_field.text.strip(), EVENT_FILTERS[self.filter_name]
         self.worker.request(
@@ -122,7 +122,10 @@ class EventLogFunction(SpecialFunction):
         return self.is_searching and self.search_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: letters edit the search text, and arrows scroll the log."""
+        """Handle a key.
+
+        Letters edit the search text, and arrow keys scroll the log.
+        """
         if self.move_selection(key):
             return True
         if not self.is_searching:
@@ -137,13 +140,13 @@ class EventLogFunction(SpecialFunction):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.is_searching:
             return "TYPE THE SEARCH TEXT   ENTER: ACCEPT   ESC: CLEAR"
         return "F4: SEARCH   F5: FILTER   PAGE UP/DOWN: SCROLL   ESC: BACK"
 
     def handle_escape(self) -> bool:
-        """Clear the search. Return False without a search."""
+        """Clear the search, or return False if there is no search."""
         open_before = self.is_searching or bool(self.search_field.text)
         if open_before:
             self.is_searching, self.search_field.text, self.marked = False, "", 0
@@ -156,7 +159,7 @@ class EventLogFunction(SpecialFunction):
 
 
 def make_event_row(event: EventRow) -> TableRow:
-    """Return the row of an event: time, kind, translated text and program line."""
+    """Return the table row of an event, with time, kind, translated text and program line."""
     at = format_local_time(event.at)
     line = str(event.line) if event.line else ""
     alarm = event.kind == "alarm"
@@ -170,7 +173,10 @@ _OFF_STATES = frozenset({MachineState.DISABLED, MachineState.ESTOP, MachineState
 
 
 class MachineFileFunction(SpecialFunction):
-    """Special function to accept the machine file: F2 accepts after confirmation and enables the drives."""
+    """Special function that accepts the machine file.
+
+    F2 accepts the file after the operator confirms, and enables the drives.
+    """
 
     name = "MACHINE FILE"
     use = "changes in the machine file since the file was last accepted"
@@ -181,11 +187,11 @@ class MachineFileFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of changed keys of the file."""
+        """Return the number of changed keys of the file."""
         return len(self.changes.changes)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with one row per changed key: key, old value, new value."""
+        """Return the table with one row per changed key, with key, old value and new value."""
         rows = tuple(TableRow(tuple(change), None, Tone.WAIT) for change in self.changes.changes)
         note = (
             tr("Press F2 to accept; the drives stay off until then.")
@@ -203,7 +209,7 @@ class MachineFileFunction(SpecialFunction):
         )
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return F2 if there are changes to accept."""
+        """Return the function key F2 if there are changes to accept."""
         return {"F2": FunctionKey("ACCEPT", self._accept)} if self.changes.changes else {}
 
     def _accept(self) -> None:
@@ -221,7 +227,7 @@ class MachineFileFunction(SpecialFunction):
         self.desk.show_success(tr("ACCEPTED: THE DRIVES CAN BE SWITCHED ON"))
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.changes.changes:
             return tr("ARROWS: SCROLL THE CHANGES   F2: ACCEPT ALL   ESC: BACK")
         return super().prompt_text()

@@ -52,11 +52,14 @@ class RParametersFunction(NumericFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of R parameters (R0 to R299)."""
+        """Return the number of R parameters (R0 to R299)."""
         return MAX_R_NUMBER + 1
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of all parameters. A dash means not set, which counts as 0."""
+        """Return the table of all parameters.
+
+        A dash means that the parameter is not set and counts as 0.
+        """
         values = self.parameter_values
         rows = tuple(
             TableRow((f"R{number}", f"{values[number]:.9g}" if number in values else "–"), number in values)
@@ -81,11 +84,14 @@ class RParametersFunction(NumericFunction):
         )
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return F4, which clears the selected parameter."""
+        """Return the function key F4, which clears the selected parameter."""
         return {"F4": FunctionKey("CLEAR", self.clear_selected)}
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: digits edit the entry, and arrows move the selection."""
+        """Handle a key.
+
+        Digits edit the entry, and arrow keys move the selection.
+        """
         return super().handle_key(key) or self.move_selection(key)
 
     def clear_selected(self) -> None:
@@ -93,7 +99,10 @@ class RParametersFunction(NumericFunction):
         self._save_value(self.marked, None)
 
     def take(self, text: str) -> bool:
-        """Set the selected parameter to the typed value. Raises EntryError outside the permitted range."""
+        """Set the selected parameter to the typed value.
+
+        Raise EntryError if the value is outside the permitted range.
+        """
         value = evaluate_expression(text)
         low, high = VALUE_RANGES["R"]
         if not low <= value <= high:
@@ -103,7 +112,10 @@ class RParametersFunction(NumericFunction):
         return self._save_value(self.marked, value)
 
     def _save_value(self, number: int, value: float | None) -> bool:
-        """Store and log a value, then prove the loaded program. Return False while a program runs."""
+        """Store and log a value, then prove the loaded program.
+
+        Return False if a program is running.
+        """
         if self.desk.is_refused(ProtectedChange.ZEROS):
             return False
         if self.desk.read_snapshot().state in ACTIVE_STATES:
@@ -122,7 +134,7 @@ class RParametersFunction(NumericFunction):
         return True
 
     def _handle_saved(self, message: str) -> None:
-        """Log the change and prove the loaded program again."""
+        """Log the change, and prove the loaded program again."""
         self._persistence.log_change(message)
         now = self.desk.program_loader.loaded
         if now.path is None or now.job is None:
@@ -157,18 +169,21 @@ VALUE_NAMES = {"en": "ENGLISH", "es": "ESPAÑOL", "dark": "DARK", "light": "LIGH
 
 
 class ScreenSettingsFunction(SpecialFunction):
-    """Special function for screen settings. Enter or a touch selects the next choice."""
+    """Special function for screen settings.
+
+    Enter or a touch selects the next choice of a setting.
+    """
 
     name = "SCREEN"
     use = "units, language, operator station, window"
 
     @property
     def row_count(self) -> int:
-        """Number of settings."""
+        """Return the number of settings."""
         return len(SETTING_NAMES)
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table with the present choice of each setting."""
+        """Return the table with the selected choice of each setting."""
         now = self.desk.settings_store.current
         rows = tuple(
             TableRow((words, _in_words(name, getattr(now, name)))) for name, words in SETTING_NAMES.items()
@@ -215,7 +230,7 @@ class ScreenSettingsFunction(SpecialFunction):
         self.desk.apply_setting(name, settings.find_next_choice(name))
 
     def prompt_text(self) -> str:
-        """Return the prompt about Enter."""
+        """Return the prompt about the Enter key."""
         return "ENTER OR TAP: NEXT CHOICE   ESC: BACK TO THE LIST"
 
 
@@ -239,7 +254,7 @@ class SpindleLimitFunction(NumericFunction):
         self.spindle = spindle
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table with the machine maximum, the limit and the present speeds."""
+        """Return the table with the machine maximum, the limit and the current speeds."""
         limit = snapshot.spindle_limit_rpm
         rows = (
             TableRow(("MACHINE MAXIMUM", formats.rpm(self.spindle.max_rpm), "rpm")),
@@ -265,11 +280,11 @@ class SpindleLimitFunction(NumericFunction):
         )
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return F4, which removes the limit."""
+        """Return the function key F4, which removes the limit."""
         return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
 
     def confirm_remove_limit(self) -> None:
-        """Remove the limit after confirmation, because a workpiece can be in the chuck."""
+        """Remove the limit after the operator confirms, because there may be a workpiece in the chuck."""
         if not self.desk.read_snapshot().spindle_limit_rpm:
             self.desk.say("NO SPINDLE SPEED LIMIT IS ACTIVE")
         elif not self.desk.is_refused(ProtectedChange.SPINDLE_LIMIT):
@@ -288,7 +303,10 @@ class SpindleLimitFunction(NumericFunction):
         self.desk.user_access.persistence.log_change(Message("spindle speed limit: {details}", details=told))
 
     def take(self, text: str) -> bool:
-        """Set the limit in rpm. Raises EntryError outside the range of the spindle."""
+        """Set the limit in rpm.
+
+        Raise EntryError if the limit is outside the range of the spindle.
+        """
         rpm = evaluate_expression(text)
         low, high = self.spindle.min_rpm, self.spindle.max_rpm
         if not low <= rpm <= high:

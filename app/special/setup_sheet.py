@@ -1,4 +1,7 @@
-"""Setup sheet of a program for lathe or mill: tools, offsets, stock, chuck, stops and time per part."""
+"""Setup sheet of a program for a lathe or a mill.
+
+It contains tools, offsets, stock, chuck, stops and time per part.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +31,10 @@ FormatLength = Callable[[float], str]
 
 @dataclass(frozen=True, slots=True)
 class MillSetup:
-    """Setup of a mill: ``blank`` contains the corners of BLK FORM in mm.
+    """Setup data of a mill.
 
-    The rest is from the tool table.
+    ``blank_corners`` contains the corners of BLK FORM in mm. The other values are from the preset and tool
+    tables.
     """
 
     blank_corners: BlankCorners | None
@@ -40,7 +44,7 @@ class MillSetup:
     mill_tools: Mapping[int, MillTool]
 
     def format_stock(self, format_length: FormatLength) -> str:
-        """Return length, width and height of the blank as text."""
+        """Return the length, width and height of the blank as text."""
         if self.blank_corners is None:
             return tr("stock not specified because the program has no BLK FORM")
         low, high = self.blank_corners
@@ -64,7 +68,7 @@ class MillSetup:
         return f"{self.preset_number}   " + "   ".join((*places, *turned, *rotation))
 
     def describe_tool(self, number: int) -> str:
-        """Return name, point angle and number of teeth of a tool as text."""
+        """Return the name, point angle and number of teeth of a tool as text."""
         row = self.mill_tools.get(number, MillTool())
         words = (
             self.tool_names.get(number, ""),
@@ -84,7 +88,7 @@ def make_mill_setup(setup: Setup, blank: BlankCorners | None) -> MillSetup | Non
 
 
 def format_tool_offset(offset: ToolOffset, format_length: FormatLength) -> str:
-    """Return tool length L and radius R as text, including DL and DR."""
+    """Return the tool length L and the radius R as text, including the oversizes DL and DR."""
     return f"L {format_length(offset.z)}   R {format_length(offset.nose_radius)}"
 
 
@@ -95,7 +99,7 @@ _MM_PER_INCH = 25.4
 class SetupTool:
     """Tool of the setup sheet.
 
-    ``is_assumed`` means an incomplete shape, and ``offset`` is None if not measured.
+    ``is_assumed`` means that the shape is incomplete. ``tool_offset`` is None if the tool was not measured.
     """
 
     tool_number: int
@@ -107,7 +111,7 @@ class SetupTool:
 
 @dataclass(frozen=True, slots=True)
 class SetupSheet:
-    """Setup data for starting a program, in mm and seconds."""
+    """Data needed to set up the machine for a program, in mm and seconds."""
 
     is_metric: bool
     cycle_time_s: float
@@ -125,17 +129,17 @@ class SetupSheet:
 
     @property
     def error_count(self) -> int:
-        """Number of errors, which prevent a run."""
+        """Return the number of errors, which prevent the program from running."""
         return sum(each.severity is Severity.ERROR for each in self.diagnostics)
 
     @property
     def warning_count(self) -> int:
-        """Number of warnings."""
+        """Return the number of warnings."""
         return sum(each.severity is Severity.WARNING for each in self.diagnostics)
 
     @property
     def summary(self) -> str:
-        """Summary of errors and warnings as text, or an empty string without them."""
+        """Return a summary of the errors and warnings as text, or an empty string if there are none."""
         if self.error_count == 1:
             return tr("1 ERROR: this program will not run as it is")
         if self.error_count:
@@ -147,7 +151,7 @@ class SetupSheet:
         return ""
 
     def format_length(self, mm: float) -> str:
-        """Return a length with its unit, in the unit of the program."""
+        """Return a length in mm as text with its unit, in the unit of the program."""
         return (
             Message("{unit} mm", unit=f"{mm:.3f}")
             if self.is_metric
@@ -156,7 +160,7 @@ class SetupSheet:
 
     @property
     def stock_text(self) -> str:
-        """Stock as text."""
+        """Return the stock as text."""
         if self.mill_setup is not None:
             return self.mill_setup.format_stock(self.format_length)
         stock = self.stock
@@ -173,7 +177,10 @@ class SetupSheet:
 
     @property
     def clamping_texts(self) -> tuple[tuple[str, str], ...]:
-        """Stick-out and clamping as pairs of name and text; on a mill, the preset."""
+        """Return stick-out and clamping as pairs of name and text.
+
+        On a mill, return the preset instead.
+        """
         if self.mill_setup is not None:
             return ((tr("PRESET"), self.mill_setup.format_preset(self.format_length)),)
         held = self.clamping
@@ -218,7 +225,10 @@ class SetupSheet:
         yield f"{tr('TIP')} {shape.tip}" if shape.tip else ""
 
     def format_offset(self, tool: SetupTool) -> str:
-        """Return the offset of a tool as text: X as a radius and Z, or on a mill length and radius."""
+        """Return the offset of a tool as text.
+
+        The text contains X as a radius and Z, or length and radius on a mill.
+        """
         if tool.tool_offset is None:
             return tr("NOT SET")
         if self.mill_setup is not None:
@@ -241,9 +251,9 @@ def make_setup_sheet(
     setting: PartSettings,
     watch: ReportProgress | None = None,
 ) -> SetupSheet:
-    """Prove the program and return its setup sheet.
+    """Prove the program, and return its setup sheet.
 
-    ``watch`` is called during the proof and may raise an exception to cancel.
+    ``watch`` is called during the proof. It may raise an exception to cancel.
     """
     record = RunRecorder(setting)
     report, part = prove_with_part(program, setup, machine, setting, watch, on_span=record.add_span)

@@ -1,4 +1,4 @@
-"""Setup sheet of the loaded program on F10: rows, notes, and saving as a file."""
+"""Setup sheet of the loaded program on F10, with rows, notes, and saving as a file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,10 @@ _COLUMN_SHARES = (0.15, 0.63, 0.22)
 
 
 class SetupSheetFunction(SpecialFunction):
-    """Special function for the setup sheet and its notes. F6 lists the places for saving."""
+    """Special function for the setup sheet and its notes.
+
+    F6 lists the locations for saving.
+    """
 
     name = "SETUP SHEET"
     use = "tools, stock, stops, notes; printable"
@@ -65,12 +68,12 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def program_name(self) -> str:
-        """Name of the loaded program, or an empty string."""
+        """Return the name of the loaded program, or an empty string."""
         return self.desk.program_loader.loaded.name
 
     @property
     def notes(self) -> list[str]:
-        """Notes about the program."""
+        """Return the notes about the program."""
         program = self.program_name
         if self._notes_of[0] != program:
             self._notes_of = (
@@ -87,7 +90,10 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def paper_size(self) -> PaperSize:
-        """Paper size of the PDF: the stored choice, or else the default for the program's unit."""
+        """Return the paper size of the PDF.
+
+        This is the stored choice, or the default for the program's unit if no choice is stored.
+        """
         if self._paper is None:
             kept = self._kept(_PAPER_SETTING)
             usual = PaperSize.A4 if self.desk.read_snapshot().modal.metric else PaperSize.LETTER
@@ -96,11 +102,11 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of rows that can be selected."""
+        """Return the number of rows that can be selected."""
         return len(self.save_places) if self.save_places else len(list(self._rows()))
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the sheet or of the places for saving."""
+        """Return the table of the sheet, or of the locations for saving."""
         self._make_if_changed()
         if self.save_places:
             return self._sheet_of_places()
@@ -187,11 +193,11 @@ class SetupSheetFunction(SpecialFunction):
         return self.note_field.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is text of a note."""
+        """Return whether a character can be entered as text of a note."""
         return self.note_field is not None and self.note_field.accepts_key(key)
 
     def handle_escape(self) -> bool:
-        """Cancel the note entry or the list of places."""
+        """Cancel the note entry or the list of locations."""
         open_ = self.note_field is not None or bool(self.save_places)
         self.note_field, self.save_places = None, ()
         return open_
@@ -201,7 +207,7 @@ class SetupSheetFunction(SpecialFunction):
         self.note_field, self.save_places = None, ()
 
     def execute_row(self) -> bool:
-        """Change the selected note, or save to the selected place."""
+        """Change the selected note, or save to the selected location."""
         if self.save_places:
             self._write(self.save_places[min(self.marked, len(self.save_places) - 1)])
         elif (at := self._selected_note_index) is not None:
@@ -212,7 +218,7 @@ class SetupSheetFunction(SpecialFunction):
 
     @property
     def _selected_note_index(self) -> int | None:
-        """Index of the selected note, or None."""
+        """Return the index of the selected note, or None if no note is selected."""
         at = self.marked - (self.row_count - len(self.notes))
         return at if 0 <= at < len(self.notes) else None
 
@@ -229,7 +235,7 @@ class SetupSheetFunction(SpecialFunction):
             self._changing, self.note_field = None, InputField(words=True)
 
     def confirm_delete_note(self) -> None:
-        """Delete the selected note after confirmation."""
+        """Delete the selected note after the operator confirms."""
         at = self._selected_note_index
         if at is None:
             self.desk.say("SELECT A NOTE FIRST")
@@ -284,7 +290,7 @@ class SetupSheetFunction(SpecialFunction):
         self.desk.try_save(save)
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.note_field is not None:
             return "TYPE THE NOTE   ENTER: SAVE   ESC: EXIT WITHOUT SAVING"
         if self.save_places:
@@ -298,7 +304,7 @@ class SetupSheetFunction(SpecialFunction):
         self._notes_of, self._paper = ("", []), None
 
     def _make_if_changed(self) -> None:
-        """Prepare the sheet when the job has changed."""
+        """Prepare the sheet if the job has changed."""
         loaded = self.desk.program_loader.loaded
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
@@ -318,7 +324,10 @@ class SetupSheetFunction(SpecialFunction):
     # --- saving --------------------------------------------------------------------------------------
 
     def reload_places(self) -> None:
-        """List the places for saving. The result arrives in a later frame."""
+        """List the locations for saving.
+
+        The result is shown in a later frame.
+        """
         self.desk.clear_prompt_line()
         if self.made_sheet is None or not self.program_name:
             self.desk.say(
@@ -366,7 +375,7 @@ class SetupSheetFunction(SpecialFunction):
 
 
 def _parse_texts(stored: object) -> list[str]:
-    """Return the stored notes, ignoring values of other types."""
+    """Return the stored notes, and ignore values of other types."""
     return [each for each in stored if isinstance(each, str)] if isinstance(stored, list) else []
 
 

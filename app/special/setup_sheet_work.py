@@ -1,4 +1,7 @@
-"""Slow work of the setup sheet: proof, rows, page and files; imported only when needed."""
+"""Slow work of the setup sheet, which is the proof, the rows, the page and the files.
+
+This module is imported only when it is needed.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,7 @@ def make_sheet_html(
 ) -> str:
     """Return the body of the HTML page.
 
-    ``fact_rows`` are the first rows, and ``remarks`` are the remarks about tools by number.
+    ``fact_rows`` are the first rows. ``remarks`` are the remarks about tools, by tool number.
     """
     rows = [
         *fact_rows,
@@ -137,7 +140,7 @@ class PreparedSheet:
 
 
 def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iterator[TableRow]:
-    """Yield the rows of the sheet: time, stock, clamping, tools, offsets and stops."""
+    """Yield the rows of the sheet, with time, stock, clamping, tools, offsets and stops."""
     sheet = prepared.setup_sheet
     if sheet.summary:
         yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.summary, ""))
@@ -166,7 +169,10 @@ def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iter
 def prepare_sheet(
     job: Job, machine: Machine, setting: PartSettings | None, watch: WorkRequest
 ) -> PreparedSheet:
-    """Prepare the sheet of a job; runs on a worker."""
+    """Prepare the sheet of a job.
+
+    This runs on a worker.
+    """
     sheet = make_setup_sheet(job.shared_program, job.setup, machine, setting or PartSettings(), watch)
     return PreparedSheet(
         job, sheet, {tool.tool_number: _outline(tool.tool_shape) for tool in sheet.setup_tools}
@@ -183,7 +189,7 @@ def _outline(shape: ToolShape | None) -> ToolOutline | None:
 def make_sheet_page(
     prepared: PreparedSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
 ) -> tuple[str, str, str]:
-    """Return title, date and body of the page."""
+    """Return the title, date and body of the page."""
     facts = [
         (tr("MACHINE"), machine.name),
         (tr("PROGRAM CHECKSUM (SHA-256)"), hash_text(prepared.job.source)),
@@ -194,9 +200,9 @@ def make_sheet_page(
 
 
 def write_sheet_files(page: tuple[str, str, str], program: str, folder: Path, paper_size: PaperSize) -> str:
-    """Write the sheet as PDF and HTML on the worker, and return the PDF's name.
+    """Write the sheet as PDF and HTML on the worker, and return the name of the PDF.
 
-    Each file is replaced atomically. Raises FileError.
+    Each file is replaced atomically. Raise FileOperationError on failure.
     """
     title, made, body = page
     name = f"{program}-setup"

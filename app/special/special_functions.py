@@ -1,4 +1,4 @@
-"""Special functions of F10: their interface to the page, their list, and the function that is open."""
+"""Special functions of F10, with their interface to the page, their list, and the function that is open."""
 
 from __future__ import annotations
 
@@ -17,7 +17,10 @@ from core.message import Message
 
 
 class SpecialFunction(ABC):
-    """Special function of F10. No method waits, and ``desk.say`` reports rejected actions."""
+    """Special function of F10.
+
+    No method waits. ``desk.say`` reports rejected actions.
+    """
 
     name: ClassVar[str]
     use: ClassVar[str]
@@ -32,19 +35,25 @@ class SpecialFunction(ABC):
         """Return the table for a snapshot."""
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function's keys, F2 to F10 without F7."""
+        """Return the function keys of this function, which can be F2 to F10 except F7."""
         return {}
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False to leave it to the window."""
+        """Handle a key.
+
+        Return False to let the window handle the key.
+        """
         return (key == "Enter" and self.execute_row()) or self.move_selection(key)
 
     def execute_row(self) -> bool:
-        """Execute the selected row. Return False if the row has no action."""
+        """Execute the selected row.
+
+        Return False if the row has no action.
+        """
         return False
 
     def accepts_key(self, _key: str) -> bool:
-        """Return whether a character is text now."""
+        """Return whether a character is text input now."""
         return False
 
     def prompt_text(self) -> str:
@@ -52,26 +61,35 @@ class SpecialFunction(ABC):
         return "ESC: BACK TO THE LIST"
 
     def handle_escape(self) -> bool:
-        """Close the innermost open part. Return False if nothing was open."""
+        """Close the innermost open part.
+
+        Return False if nothing was open.
+        """
         return False
 
     def on_open(self) -> None:
-        """Prepare the function for display."""
+        """Prepare the function for display.
+
+        The base class does nothing.
+        """
 
     def on_close(self) -> None:
         """Cancel entries and questions when the function closes."""
 
     def process_wire_input(self, *, is_displayed: bool) -> None:
-        """Process input from a wire, called once per frame.
+        """Process input that arrives over a wire.
 
-        ``is_displayed`` is set while the function is displayed.
+        This is called once a frame. ``is_displayed`` is set while the function is displayed.
         """
 
     def close(self) -> None:
         """Finish pending work when TurnDesk closes."""
 
     def choose(self, row: int) -> None:
-        """Select the touched row. A touch on the selected row executes it."""
+        """Select the touched row.
+
+        A touch on the row that is already selected executes it.
+        """
         if row != self.marked:
             self.desk.clear_prompt_line()
             self.marked = row
@@ -80,11 +98,11 @@ class SpecialFunction(ABC):
 
     @property
     def row_count(self) -> int:
-        """Number of rows that can be selected."""
+        """Return the number of rows that can be selected."""
         return 0
 
     def move_selection(self, key: str) -> bool:
-        """Move the selection by a key, and return whether the key does so."""
+        """Move the selection if the key is a selection key, and return whether it is."""
         if key not in ROW_STEPS or not self.row_count:
             return False
         self.desk.clear_prompt_line()
@@ -93,13 +111,16 @@ class SpecialFunction(ABC):
 
 
 class PageFunction(SpecialFunction):
-    """Special function with a separate page: shows a few facts, and opens the page with Enter or a touch."""
+    """Special function with a separate page.
+
+    It shows a few facts. Enter or a touch opens the page.
+    """
 
     key_hint: ClassVar[str]  # description of other keys that open the page
 
     @abstractmethod
     def make_fact_rows(self) -> tuple[TableRow, ...]:
-        """Return the rows of facts in the list."""
+        """Return the rows with the facts that the table shows."""
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of facts."""
@@ -122,11 +143,11 @@ class NumericFunction(SpecialFunction):
     def take(self, text: str) -> bool:
         """Accept the typed text.
 
-        Return False if it was rejected with a message. Raises EntryError.
+        Return False if it was rejected with a message. Raise EntryError for an invalid entry.
         """
 
     def submit_entry(self) -> None:
-        """Accept the typed text, or show the reason for its rejection."""
+        """Accept the typed text, or show why it was rejected."""
         try:
             if self.take(self.entry.text):
                 self.entry.text = ""
@@ -149,7 +170,10 @@ class NumericFunction(SpecialFunction):
         return False
 
     def handle_escape(self) -> bool:
-        """Clear the entry. Return False if it was empty."""
+        """Clear the entry.
+
+        Return False if it was empty.
+        """
         begun, self.entry.text = bool(self.entry.text), ""
         return begun
 
@@ -162,7 +186,7 @@ class NumericFunction(SpecialFunction):
 class SpecialFunctionList:
     """List of special functions.
 
-    ``at`` is the displayed one, which has the keys while ``inside`` is set.
+    ``at`` is the index of the displayed function, which receives the keys while ``inside`` is set.
     """
 
     functions: Sequence[SpecialFunction]
@@ -173,7 +197,7 @@ class SpecialFunctionList:
 
     @property
     def shown_function(self) -> SpecialFunction:
-        """Displayed function."""
+        """Return the displayed function."""
         return self.functions[self.at]
 
     def show_function(self, index: int) -> None:
@@ -192,7 +216,10 @@ class SpecialFunctionList:
         self.inside = True
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: select a function by arrows or number, open it with Enter, or pass the key to it."""
+        """Handle a key.
+
+        Arrow keys or a number select a function, and Enter opens it. An open function receives all keys.
+        """
         if self.inside:
             return self.shown_function.handle_key(key)
         if key in {"Up", "Down"}:
@@ -206,7 +233,10 @@ class SpecialFunctionList:
         return True
 
     def _add_digit(self, digit: str) -> None:
-        """Select the function of the typed number. A digit that does not fit starts a new number."""
+        """Select the function with the typed number.
+
+        A digit that does not fit starts a new number.
+        """
         numbers = range(1, len(self.functions) + 1)
         typed = next((each for each in (self.number + digit, digit) if int(each) in numbers), "")
         if not typed:
@@ -219,11 +249,14 @@ class SpecialFunctionList:
         self.number = typed
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is text now."""
+        """Return whether a character is text input now."""
         return self.shown_function.accepts_key(key) if self.inside else key.isascii() and key.isdigit()
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False from the list."""
+        """Go back one step.
+
+        Return False if only the list is open.
+        """
         shown = self.shown_function
         if not self.inside:
             return False
@@ -245,16 +278,19 @@ class SpecialFunctionList:
         self.shown_function.on_open()
 
     def on_close(self) -> None:
-        """Close the function when the page closes."""
+        """Close the displayed function when the page closes."""
         self.shown_function.on_close()
         self.inside = False
 
     def poll(self) -> None:
-        """Process the results of the worker; called once per frame."""
+        """Process the results of the worker.
+
+        This is called once a frame.
+        """
         self.worker.poll()
 
     def close(self) -> None:
-        """Finish pending work of all functions and stop the worker."""
+        """Finish pending work of all functions, and stop the worker."""
         for function in self.functions:
             function.close()
         self.worker.close()

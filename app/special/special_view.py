@@ -1,4 +1,4 @@
-"""Page of the special functions (F10): list on the left, displayed function on the right."""
+"""Page of the special functions (F10), with the list on the left and the displayed function on the right."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ ROW, GAP = 7.0, 0.4  # units: height of a row and the gap below it
 
 
 class FunctionList(RowPanel):
-    """List of functions. The displayed function is highlighted and has a wide bar while it has the keys.
+    """List of functions.
 
-    Rows are at least a fingertip high. If not all rows fit, the list scrolls with two keys and the wheel.
+    The displayed function is highlighted. It has a wide bar while it receives the keys. Rows are at least
+    as high as a fingertip. If not all rows fit, the list can be scrolled with two keys and the wheel.
     """
 
     title = "SPECIAL FUNCTIONS"
@@ -46,7 +47,7 @@ class FunctionList(RowPanel):
 
     @property
     def _high(self) -> float:
-        """Height of a row in pixels, at least that of a fingertip with the gap."""
+        """Return the height of a row in pixels, which is at least that of a fingertip with the gap."""
         return max(ROW * self.theme.u, FINGERTIP_PX + GAP * self.theme.u)
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -80,7 +81,7 @@ LETTER_PAD_HEIGHT = 24.0  # units: height of the letter pad
 
 
 class SpecialPage(ListPage):
-    """Page of the special functions: shows the models and passes the keys to them."""
+    """Page of the special functions, which shows the models and passes the keys to them."""
 
     NAME = page_table.SPECIAL
     model: SpecialFunctionList
@@ -97,7 +98,10 @@ class SpecialPage(ListPage):
         self._page_instead()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key as in every list. A function with a separate page opens that page."""
+        """Handle a key as in every list.
+
+        A function with a separate page opens its page.
+        """
         taken = super().handle_key(key)
         if taken:
             self._page_instead()
@@ -124,16 +128,19 @@ class SpecialPage(ListPage):
         return self.model.shown_function.function_keys()
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the displayed function and of the page."""
+        """Return the key labels of the displayed function and of the page."""
         return self.make_labels({}, self.function_keys())
 
     def key_actions(self) -> KeyActions:
-        """Return the key actions of the displayed function. Pressing one opens the function."""
+        """Return the key actions of the displayed function.
+
+        Pressing one of these keys opens the function.
+        """
         keys = self.model.shown_function.function_keys()
         return {name: partial(self._do, name) for name in keys}
 
     def has_text_field(self) -> bool:
-        """Return whether an open function has an entry."""
+        """Return whether an open function has a text entry."""
         return self.model.inside and self.model.shown_function.accepts_key("1")
 
     def _do(self, name: str) -> None:
@@ -141,7 +148,7 @@ class SpecialPage(ListPage):
         self.model.shown_function.function_keys()[name].action()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Show the table for a snapshot."""
+        """Show the tables for a snapshot."""
         self.model.poll()
         shown = self.model.shown_function
         sheet = shown.make_table(snapshot)
@@ -155,7 +162,7 @@ class SpecialPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange list, table and pads."""
+        """Arrange the list, the table and the pads."""
         self._lay_out()
 
     def _lay_out(self) -> None:

@@ -1,1 +1,1 @@
-"""RS-232: sending and receiving programs over the serial line."""
+"""Sending and receiving of programs over the RS-232 serial line."""

@@ -1,4 +1,7 @@
-"""Interfaces of a serial transfer. The implementation is provided from outside."""
+"""Interfaces of a serial transfer.
+
+The implementation is provided by the caller.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +19,10 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class TransferProgress(Protocol):
-    """Progress of a transfer. ``total_bytes`` is 0 while unknown.
+    """Progress of a transfer.
 
-    ``wait_reason`` names the reason for waiting: held, dc1, sender, frame, noise or empty. ``received_text``
-    is the data received while the first % of a program is expected.
+    ``total_bytes`` is 0 while the size is unknown. ``wait_reason`` names the reason for waiting: held, dc1,
+    sender, frame, noise or empty. ``received_text`` is the data received before the first % of a program.
     """
 
     @property
@@ -40,10 +43,10 @@ class TransferProgress(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ReceivedProgram:
-    """Complete received program that was proved but not stored yet.
+    """Complete received program that has been proved but not yet stored.
 
-    ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 of
-    ``program_bytes``. ``is_seven_bit`` means that it arrived with 7 data bits although 8 are set.
+    ``name`` is the file name from the program, with an extension. ``sha256`` is the SHA-256 hash of
+    ``program_bytes``. ``is_seven_bit`` means that the program arrived with 7 data bits although 8 are set.
     ``finding_texts`` are the errors of the proof.
     """
 
@@ -60,34 +63,49 @@ class ReceivedProgram:
 class SerialLineTransfer(Protocol[T_co]):
     """Transfer over the serial line.
 
-    ``run_transfer`` blocks and is called on a worker. All other members are callable from any thread.
+    ``run_transfer`` blocks and is called on a worker. All other members can be called from any thread.
     """
 
     @property
     def progress(self) -> TransferProgress: ...
 
     def cancel(self) -> None:
-        """Cancel the transfer. ``run_transfer`` then raises an error, and nothing is stored."""
+        """Cancel the transfer.
+
+        ``run_transfer`` then raises an error, and nothing is stored.
+        """
         ...
 
     def run_transfer(self) -> T_co:
-        """Execute the transfer. Raises DriverError or FileError with a message for the operator."""
+        """Execute the transfer.
+
+        Raise DriverError or FileOperationError with a message for the operator on failure.
+        """
         ...
 
 
 class SerialPorts(Protocol):
-    """Serial ports and transfers over them."""
+    """Serial ports, and transfers over them."""
 
     def list_ports(self) -> Sequence[tuple[str, str]]:
-        """Return device and description of each port. Raises DriverError."""
+        """Return the device and the description of each port.
+
+        Raise DriverError on failure.
+        """
         ...
 
     def make_send_transfer(self, settings: SerialLineModel, path: Path) -> SerialLineTransfer[int]:
-        """Return a transfer that sends a program. Its ``run_transfer`` returns the number of bytes."""
+        """Return a transfer that sends a program.
+
+        Its ``run_transfer`` returns the number of bytes sent.
+        """
         ...
 
     def make_receive_transfer(self, settings: SerialLineModel) -> SerialLineTransfer[ReceivedProgram]:
-        """Return a transfer that receives a program. Its ``run_transfer`` returns the program."""
+        """Return a transfer that receives a program.
+
+        Its ``run_transfer`` returns the received program.
+        """
         ...
 
 
@@ -95,10 +113,10 @@ class SerialPorts(Protocol):
 
 
 def store_received(received: ReceivedProgram, folder: Path, name: str) -> Path:
-    """Store a received program as a new file and return its path.
+    """Store a received program as a new file, and return its path.
 
-    ``name`` gets the extension of the received program if it has none. Raises FileError if the name is
-    invalid or exists, or if the disk rejects the file.
+    If ``name`` has no extension, the extension of the received program is added. Raise FileOperationError
+    if the name is invalid or exists, or if the disk rejects the file.
     """
     name = check_name(name, Path(received.name))
     if other := find_same_name(folder, name):
@@ -108,7 +126,7 @@ def store_received(received: ReceivedProgram, folder: Path, name: str) -> Path:
 
 
 def find_unused_name(folder: Path, name: str) -> str:
-    """Return ``name``, or the first unused name of ``name-2``, ``name-3`` and so on."""
+    """Return ``name``, or the first unused name in the series ``name-2``, ``name-3`` and so on."""
     base = Path(name)
     tried, number = name, 1
     while find_same_name(folder, tried):

@@ -1,4 +1,4 @@
-"""Special function RS-232: settings, sending and receiving.
+"""Special function RS-232, with settings, sending and receiving.
 
 A received program is stored but never started.
 """
@@ -95,12 +95,12 @@ SETTING_ROWS: tuple[SettingRow, ...] = (
 
 
 def make_stored_settings(model: SerialLineModel) -> dict[str, object]:
-    """Return the settings in the form for the store."""
+    """Return the settings in the form in which they are stored."""
     return asdict(model)
 
 
 def read_settings(stored: object, default: SerialLineModel) -> SerialLineModel:
-    """Return the valid stored settings, or the settings of the machine file."""
+    """Return the stored settings if they are valid, or the settings of the machine file."""
     if not isinstance(stored, dict):
         return default
     good = {
@@ -170,7 +170,7 @@ def make_progress_table(
 
 
 def _describe_wait(what: str) -> str:
-    """Return the text for a reason for waiting."""
+    """Return the text for the reason of a wait."""
     words = {
         "held": tr("STOPPED BY THE OTHER DEVICE (XOFF)"),
         "dc1": tr("WAITING FOR DC1 FROM THE OTHER DEVICE"),
@@ -182,7 +182,7 @@ def _describe_wait(what: str) -> str:
 
 
 def make_received_table(received: ReceivedProgram, name: str) -> TableContent:
-    """Return the table of a received program: completeness, proof and name."""
+    """Return the table of a received program, with completeness, proof and name."""
     code = tr("7 BITS, EVEN PARITY (DETECTED)") if received.is_seven_bit else tr("SAME AS SETTINGS")
     errors = len(received.finding_texts)
     some = tr("1 ERROR") if errors == 1 else tr(Message("{count} ERRORS", count=errors))
@@ -221,7 +221,10 @@ CONFIRM_DISCARD = "PRESS Y TO DISCARD THE RECEIVED PROGRAM, N TO KEEP IT"
 
 
 class SerialTransferFunction(SpecialFunction):
-    """Special function RS-232 with three states: settings, transfer, and naming of a received program."""
+    """Special function for transfers over RS-232.
+
+    It has three states, which are settings, transfer, and naming of a received program.
+    """
 
     name = "RS-232"
     use = "send and receive programs over the serial port"
@@ -247,7 +250,7 @@ class SerialTransferFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of settings, or 0 during a transfer."""
+        """Return the number of settings, or 0 during a transfer."""
         return 0 if self.running_transfer or self.received_program else len(SETTING_ROWS)
 
     def on_open(self) -> None:
@@ -262,7 +265,7 @@ class SerialTransferFunction(SpecialFunction):
         self.port_names = ports
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the present state."""
+        """Return the table of the current state."""
         self.worker.poll()
         if self.received_program is not None:
             return make_received_table(self.received_program, self.name_field.text)
@@ -271,7 +274,7 @@ class SerialTransferFunction(SpecialFunction):
         return make_settings_table(self.line_settings, self.marked, self._chosen(), self.last_result)
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the present function keys."""
+        """Return the function keys that are available now."""
         if self.received_program is not None:
             return {"F6": FunctionKey("DISCARD", self.confirm_discard)}
         if self.running_transfer is not None:
@@ -306,7 +309,7 @@ class SerialTransferFunction(SpecialFunction):
             super().choose(row)
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt for the keys that are available now."""
         if self.received_program is not None:
             return "ENTER: SAVE AS A NEW PROGRAM (DOES NOT START)   F6: DISCARD"
         if self.running_transfer is not None:
@@ -314,7 +317,7 @@ class SerialTransferFunction(SpecialFunction):
         return "ENTER: CHANGE VALUE   F4: SEND LOADED PROGRAM   F5: RECEIVE"
 
     def close(self) -> None:
-        """Cancel the transfer and stop the worker when TurnDesk closes."""
+        """Cancel the transfer, and stop the worker when TurnDesk closes."""
         self.cancel_transfer()
         self.worker.close()
 
@@ -324,7 +327,7 @@ class SerialTransferFunction(SpecialFunction):
         return self.desk.program_loader.loaded.path
 
     def send_program(self) -> None:
-        """Send the loaded program (F4)."""
+        """Handle F4: send the loaded program."""
         path = self._chosen()
         if path is None:
             self.desk.say("NO PROGRAM LOADED. F2: LOAD THE PROGRAM TO SEND")
@@ -335,7 +338,7 @@ class SerialTransferFunction(SpecialFunction):
             self.worker.enqueue(carrying.run_transfer, self._sent, self._failed)
 
     def receive_program(self) -> None:
-        """Receive a program (F5)."""
+        """Handle F5: receive a program."""
         if self.desk.is_refused(ProtectedChange.PROGRAMS):
             return
         if self._ready():
@@ -345,7 +348,10 @@ class SerialTransferFunction(SpecialFunction):
             self.worker.enqueue(carrying.run_transfer, self._came, self._failed)
 
     def cancel_transfer(self) -> None:
-        """Cancel the transfer. The worker reports the end."""
+        """Cancel the transfer.
+
+        The worker reports when it has ended.
+        """
         if self.running_transfer is not None:
             self.running_transfer.cancel()
 
@@ -402,7 +408,7 @@ class SerialTransferFunction(SpecialFunction):
         self._done(tr(Message("SAVED AS A NEW PROGRAM: {name}. NOTHING WAS STARTED", name=path.name)))
 
     def confirm_discard(self) -> None:
-        """Discard the received program after confirmation."""
+        """Discard the received program after the operator confirms."""
         self.desk.ask_operator(CONFIRM_DISCARD, self._discarded)
 
     def _discarded(self) -> None:

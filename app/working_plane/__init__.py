@@ -1,1 +1,1 @@
-"""3D view of a mill with rotary axes: table, blank, working plane and tool."""
+"""3D view of a mill with rotary axes, which shows table, blank, working plane and tool."""

@@ -1,7 +1,7 @@
 """Drawing of the mill at one instant, as lines and faces in pixels.
 
-Points in the workpiece system pass through the chain of axes at the angles of the instant. The faces are
-sorted with the farthest first, so that nearer faces cover them.
+Points in the workpiece system are transformed through the chain of axes at the angles of the instant. The
+faces are sorted with the farthest first, so that nearer faces cover them.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ _PAN_STEP = 0.15  # ratio of the picture's smaller side
 class ViewAspect:
     """View direction in degrees.
 
-    ``azimuth_deg`` is the rotation about Z from the front (negative Y) to the right, and ``elevation_deg``
-    is the elevation.
+    ``azimuth_deg`` is the rotation about Z from the front (negative Y) to the right. ``elevation_deg`` is
+    the angle above the horizontal.
     """
 
     name: str
@@ -48,9 +48,9 @@ VIEW_ASPECTS = (
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """View of ``center`` (mm, machine).
+    """Camera that looks at ``center``, in mm and in machine coordinates.
 
-    A ``radius_mm`` in mm around it fills the picture at ``zoom_factor`` 1.
+    At ``zoom_factor`` 1, a sphere with the radius ``radius_mm`` around the center fills the picture.
     """
 
     center: tuple[float, float, float]
@@ -62,11 +62,11 @@ class Camera:
 
     @property
     def view_aspect(self) -> ViewAspect:
-        """Selected view direction."""
+        """Return the selected view direction."""
         return VIEW_ASPECTS[self.aspect_index % len(VIEW_ASPECTS)]
 
     def with_next_aspect(self) -> Camera:
-        """Return the camera for the next view direction, showing everything."""
+        """Return the camera for the next view direction, which shows everything."""
         return replace(
             self,
             aspect_index=(self.aspect_index + 1) % len(VIEW_ASPECTS),
@@ -76,11 +76,11 @@ class Camera:
         )
 
     def with_full_view(self) -> Camera:
-        """Return the camera that shows everything."""
+        """Return the camera zoomed and panned so that everything is visible."""
         return replace(self, zoom_factor=1.0, offset_right=0.0, offset_down=0.0)
 
     def with_zoom(self, steps: int) -> Camera:
-        """Return the camera zoomed in by ``steps``."""
+        """Return the camera zoomed in by a number of steps."""
         return replace(self, zoom_factor=min(40.0, max(0.2, self.zoom_factor * _ZOOM_STEP**steps)))
 
     def with_pan(self, across: int, down: int) -> Camera:
@@ -93,7 +93,10 @@ class Camera:
 
     @property
     def view_axes(self) -> FloatArray:
-        """Unit vectors right, down and towards the viewer as rows, in machine coordinates."""
+        """Return the unit vectors right, down and towards the viewer.
+
+        They are the rows of a matrix, in machine coordinates.
+        """
         around, above = (
             math.radians(self.view_aspect.azimuth_deg),
             math.radians(self.view_aspect.elevation_deg),
@@ -104,7 +107,10 @@ class Camera:
         return np.array((right, down, eye))
 
     def project_points(self, points: FloatArray, width: float, height: float) -> FloatArray:
-        """Return pixel x, pixel y and depth towards the viewer (n, 3) of machine points (n, 3)."""
+        """Return pixel x, pixel y and depth of points in machine coordinates.
+
+        The shape of the points and of the result is (n, 3). Depth increases towards the viewer.
+        """
         size = min(width, height)
         scale = self.zoom_factor * size / (2.0 * self.radius_mm)
         found = (points - np.array(self.center)) @ self.view_axes.T * scale
@@ -120,7 +126,10 @@ _RIM_POINTS = 48  # corners of a circle
 
 
 def find_convex_outline(camera: Camera, points: FloatArray) -> FloatArray:
-    """Return the convex outline of points (n, 3) as seen by the camera (Andrew's monotone chain)."""
+    """Return the convex outline of points (n, 3) as seen by the camera.
+
+    The method is Andrew's monotone chain.
+    """
     flat = points @ camera.view_axes[:2].T
     order = np.lexsort((flat[:, 1], flat[:, 0])).tolist()
     half: list[list[int]] = []
@@ -140,12 +149,15 @@ def _turns_back(flat: FloatArray, a: int, b: int, c: int) -> bool:
 
 
 def transform_points(system: FrameTransform, points: FloatArray) -> FloatArray:
-    """Return the machine positions (n, 3) of points (n, 3) in the system of ``place``, in mm."""
+    """Return the machine positions (n, 3), in mm, of points (n, 3) in the coordinate system ``system``."""
     return np.asarray(points @ np.array(system.rotation).T + np.array(system.translation))
 
 
 def find_blank_corners(scene: MillScene) -> FloatArray:
-    """Return the eight corners (8, 3) of the blank in the workpiece system, with x varying fastest."""
+    """Return the eight corners (8, 3) of the blank in the workpiece system.
+
+    x varies fastest.
+    """
     (x0, y0, z0), (x1, y1, z1) = scene.blank_corners
     return np.array([(x, y, z) for z in (z0, z1) for y in (y0, y1) for x in (x0, x1)])
 
@@ -166,7 +178,8 @@ def find_blank_diagonal(scene: MillScene) -> float:
 def make_table_rim(scene: MillScene) -> FloatArray:
     """Return the rim of the table (n, 3) in machine coordinates with all axes at 0.
 
-    The rim is a circle below the blank, around the axis of the first table and wide enough for the blank.
+    The rim is a circle below the blank. It is centered on the axis of the first table, and wide enough for
+    the blank.
     """
     place = scene.kinematics.make_transform({}, scene.kinematics.workpiece_rotation)
     corners = transform_points(place, find_blank_corners(scene))
@@ -178,7 +191,7 @@ def make_table_rim(scene: MillScene) -> FloatArray:
 
 
 def _find_table_center(kinematics: Kinematics, middle: FloatArray) -> FloatArray:
-    """Return a point on a table axis parallel to Z, or the center of the blank without such an axis."""
+    """Return a point on a table axis parallel to Z, or the center of the blank if there is no such axis."""
     for axis in kinematics.rotary_axes:
         if axis.is_table and abs(axis.direction[2]) > 0.5:
             return np.array(axis.point)
@@ -186,7 +199,7 @@ def _find_table_center(kinematics: Kinematics, middle: FloatArray) -> FloatArray
 
 
 def convert_to_tuple(row: FloatArray) -> tuple[float, float, float]:
-    """Return one row as a tuple of coordinates."""
+    """Return a row of an array as a tuple of three coordinates."""
     x, y, z = row.tolist()
     return x, y, z
 
@@ -203,7 +216,10 @@ _FACE_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DrawnFace:
-    """Filled polygon (n, 2). ``role`` is table, table-under, blank, blank-top, plane or tool."""
+    """Filled polygon with the corners ``points`` (n, 2).
+
+    ``role`` is table, table-under, blank, blank-top, plane or tool.
+    """
 
     role: str
     points: FloatArray
@@ -211,7 +227,10 @@ class DrawnFace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DrawnStroke:
-    """Line (n, 2). ``role`` is rapid, cut, done, x, y, z, axis or edge, and ``name`` labels its end."""
+    """Line through the points ``points`` (n, 2).
+
+    ``role`` is rapid, cut, done, x, y, z, axis or edge. ``name`` is the label at its end.
+    """
 
     role: str
     points: FloatArray
@@ -220,14 +239,17 @@ class DrawnStroke:
 
 @dataclass(frozen=True, slots=True)
 class SceneDrawing:
-    """Picture that is ready to paint: faces, then strokes."""
+    """Picture that is ready to paint.
+
+    The faces are painted before the strokes.
+    """
 
     faces: tuple[DrawnFace, ...] = ()
     strokes: tuple[DrawnStroke, ...] = ()
 
 
 def make_camera(scene: MillScene) -> Camera:
-    """Return a camera that shows the whole table with the blank and the tool at any tilt."""
+    """Return a camera that shows the whole table, with the blank and the tool, at any tilt."""
     table = make_table_rim(scene)
     at = scene.kinematics.make_transform({}).to_machine_position(find_blank_center(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
@@ -276,9 +298,10 @@ class _ScenePicture:
         self._part = chain.make_transform(self._tables, chain.workpiece_rotation)
 
     def make_table_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return the table disc: painted first when seen from above, and last when seen from below.
+        """Return the table disk.
 
-        The depth of its center is not sufficient, because a small blank near the far rim is farther away.
+        The disk is painted first when it is seen from above, and last when it is seen from below. The depth
+        of its center is not sufficient for sorting, because a small blank near the far rim is farther away.
         """
         machine_parallel = self._scene.kinematics.make_transform(self._tables)
         zero = self._scene.kinematics.make_transform({})
@@ -292,7 +315,7 @@ class _ScenePicture:
         return [(math.inf, self._face("table-under", flat)[1])]
 
     def make_blank_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return the faces of the blank that are turned towards the viewer."""
+        """Return the faces of the blank that face the viewer."""
         corners = transform_points(self._part, find_blank_corners(self._scene))
         middle = corners.mean(axis=0)
         eye = self._camera.view_axes[2]
@@ -314,7 +337,7 @@ class _ScenePicture:
         return [self._face("plane", transform_points(self._part, o + square @ r.T))]
 
     def make_tool_faces(self) -> list[tuple[float, DrawnFace]]:
-        """Return a cutter at the tool tip along the present tool axis."""
+        """Return a cutter at the tool tip along the current tool axis."""
         chain, axes = self._scene.kinematics, self._instant.axis_positions
         length = self._instant.swivel.system.tool_length_mm if self._instant.swivel is not None else 0.0
         slides = axes["X"], axes["Y"], axes["Z"]
@@ -336,7 +359,10 @@ class _ScenePicture:
         return faces
 
     def make_path_strokes(self) -> list[DrawnStroke]:
-        """Return the path of the tip on the workpiece, with finished and remaining moves separate."""
+        """Return the path of the tip on the workpiece.
+
+        Finished and remaining moves are separate strokes.
+        """
         scene = self._scene
         if not len(scene.points):
             return []
@@ -349,7 +375,7 @@ class _ScenePicture:
     def make_axis_strokes(self) -> list[DrawnStroke]:
         """Return the axes of the working plane at its datum.
 
-        Without a tilted plane, they are the axes of the workpiece.
+        If the plane is not tilted, these are the axes of the workpiece.
         """
         swivel = self._instant.swivel
         r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
@@ -367,7 +393,7 @@ class _ScenePicture:
         return found
 
     def make_rotation_strokes(self) -> list[DrawnStroke]:
-        """Return the rotation axes of the tables in their present position."""
+        """Return the rotation axes of the tables in their current position."""
         scene, found = self._scene, []
         reach = 0.75 * find_blank_diagonal(scene)
         rotaries = scene.kinematics.rotary_axes
@@ -397,7 +423,7 @@ class _ScenePicture:
 def _make_strokes(
     seen: FloatArray, styles: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]
 ) -> list[DrawnStroke]:
-    """Return the lines of the path, split where the drawing style changes."""
+    """Return the lines of the path, which are split where the drawing style changes."""
     role = np.where(
         styles == MoveStyle.CUT, np.where(behind, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
     )

@@ -1,4 +1,4 @@
-"""Instant of the 3D view: from a snapshot or from the line under the cursor."""
+"""Instant of the 3D view, taken from a snapshot or from the line under the cursor."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class SceneInstant:
 
 
 def make_run_instant(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
-    """Return the instant of a snapshot."""
+    """Return the instant that a snapshot shows."""
     axes = dict(zip(snapshot.axes, snapshot.actual, strict=True))
     axes |= {name: 0.0 for name in scene.kinematics.axis_names if name not in axes}
     return SceneInstant(axes, snapshot.swivel, snapshot.block)
@@ -47,7 +47,7 @@ def make_line_instant(scene: MillScene, line: int) -> SceneInstant:
 
 
 def make_view_title(kinematics: Kinematics) -> str:
-    """Return the title of the view, which names the displayed parts: head, table or both."""
+    """Return the title of the view, which names the displayed parts (head, table or both)."""
     heads = any(not axis.is_table for axis in kinematics.rotary_axes)
     if not heads:
         return "TABLE AND PLANE"

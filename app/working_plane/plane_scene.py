@@ -1,6 +1,7 @@
-"""Scene of a mill program: tool path and planes on the workpiece, collected once on a worker thread.
+"""Scene of a mill program, with the tool path and the planes on the workpiece.
 
-Points are in the workpiece system in mm, so that they turn with the table.
+The scene is collected once, on a worker thread. Points are in the workpiece system in mm, so that they turn
+with the table.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _EMPTY: BlankCorners = ((-20.0, -20.0, -20.0), (20.0, 20.0, 0.0))
 
 
 class MoveStyle(IntEnum):
-    """Drawing style of the move to a point."""
+    """The drawing styles of the move to a point."""
 
     NO_LINE = 0  # not drawn: a new line starts at this point
     RAPID = 1
@@ -40,10 +41,12 @@ class MoveStyle(IntEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MillScene:
-    """Points (n, 3) of the tip, with the ``ink`` (n,) of the move to each and the ``block`` (n,) number.
+    """Tool path and planes of a mill program.
 
-    ``line_swivels`` maps a source line to the plane after its first pass, and ``sorted_lines`` contains its
-    sorted keys. ``blank_corners`` are those of the blank, or a default if the program does not define one.
+    ``points`` (n, 3) are the points of the tip. ``move_styles`` (n,) are the styles of the moves to each
+    point, and ``block_numbers`` (n,) are their block numbers. ``line_swivels`` maps a source line to the
+    plane after its first execution. ``sorted_lines`` contains its sorted keys. ``blank_corners`` are the
+    corners of the blank, or default corners if the program does not define a blank.
     """
 
     kinematics: Kinematics
@@ -56,17 +59,20 @@ class MillScene:
     planes: frozenset[int] = frozenset()  # lines of PLANE blocks
 
     def find_swivel(self, line: int) -> PlanePosition | None:
-        """Return the plane after a source line, or after the nearest earlier line that makes a block."""
+        """Return the plane after a source line, or after the nearest earlier line that generates a block."""
         at = bisect_right(self.sorted_lines, line)
         return self.line_swivels[self.sorted_lines[at - 1]] if at else None
 
     def count_finished_points(self, block: int) -> int:
-        """Return the number of points that are finished after a block, counted from 1."""
+        """Return the number of points that are finished after a block.
+
+        Blocks are counted from 1.
+        """
         return int(np.searchsorted(self.block_numbers, block, side="right"))
 
 
 class SceneBuilder:
-    """Collects blocks that contain a position in a working plane."""
+    """Builder that collects blocks with a position in a working plane."""
 
     def __init__(self) -> None:
         self._points, self._ink, self._block = array("d"), array("b"), array("q")
@@ -75,7 +81,7 @@ class SceneBuilder:
         self._last: PlanePosition | None = None
 
     def add_block(self, block: Block, swivel: PlanePosition) -> None:
-        """Append a block with its position in the working plane."""
+        """Append a block that has a position in a working plane."""
         self._last = swivel
         self._by_line.setdefault(block.line, swivel)
         if block.kind is BlockKind.PLANE:
@@ -112,7 +118,10 @@ class SceneBuilder:
 
 
 def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
-    """Return the points of a block in the working plane up to its end, with arcs as chords."""
+    """Return the points of a block in the working plane up to its end.
+
+    Arcs are replaced by chords.
+    """
     way = None if block.travel is None else block.travel.way
     if not isinstance(way, HelixMove):
         return [swivel.end]
@@ -123,5 +132,5 @@ def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
 
 
 def _map_to_part(swivel: PlanePosition, q: Vector) -> Vector:
-    """Convert a point from the system of the working plane to that of the workpiece."""
+    """Convert a point from the system of the working plane to the system of the workpiece."""
     return add_vectors(swivel.system.datum, apply_matrix(swivel.system.frame, q))

@@ -1,4 +1,7 @@
-"""3D view of a mill: table, workpiece, working plane and tool, drawn from ``plane_drawing``."""
+"""3D view of a mill with table, workpiece, working plane and tool.
+
+``plane_drawing`` calculates the drawing.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,7 @@ _DRAG_STEP = 60.0  # pixels of a drag per panning step
 class WorkingPlaneView(Panel):
     """View of a scene at an instant.
 
-    A button, a key or a tap on its name selects the next direction.
+    A button, a key or a tap on the name of the view direction selects the next direction.
     """
 
     title = "TABLE AND PLANE"
@@ -60,21 +63,24 @@ class WorkingPlaneView(Panel):
 
     @property
     def scene(self) -> MillScene | None:
-        """Displayed scene, or None."""
+        """Return the displayed scene, or None if there is no scene."""
         return self._scene
 
     @property
     def instant(self) -> SceneInstant | None:
-        """Displayed axis positions, plane and active block, or None."""
+        """Return the displayed axis positions, plane and active block, or None if there are none."""
         return self._instant
 
     @property
     def camera(self) -> Camera | None:
-        """Camera of the view, or None without a scene."""
+        """Return the camera of the view, or None without a scene."""
         return self._camera
 
     def show_scene(self, scene: MillScene | None) -> None:
-        """Show the scene of another program. The view direction remains."""
+        """Show the scene of another program.
+
+        The view direction does not change.
+        """
         if scene is self._scene:
             return
         aspect = self._camera.aspect_index if self._camera is not None else 0
@@ -102,11 +108,14 @@ class WorkingPlaneView(Panel):
         self._look(self._camera.with_full_view() if self._camera else None)
 
     def zoom_view(self, steps: int) -> None:
-        """Zoom in by a number of steps. Negative steps zoom out."""
+        """Zoom in by a number of steps.
+
+        Negative steps zoom out.
+        """
         self._look(self._camera.with_zoom(steps) if self._camera else None)
 
     def pan_view(self, across: int, down: int) -> None:
-        """Move the visible area to the right and down by a number of steps."""
+        """Move the visible area by a number of steps to the right and down."""
         self._look(self._camera.with_pan(across, down) if self._camera else None)
 
     def _look(self, camera: Camera | None) -> None:

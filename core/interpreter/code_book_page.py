@@ -1,6 +1,7 @@
-"""Generator of ``docs/klartext-codes.md`` and ``docs/sinumerik-codes.md`` from the code books.
+"""Generator of the pages ``docs/klartext-codes.md`` and ``docs/sinumerik-codes.md``.
 
-``python -m core.interpreter.code_book_page klartext > docs/klartext-codes.md`` writes one page.
+The pages are generated from the code books. For example, ``python -m core.interpreter.code_book_page
+klartext > docs/klartext-codes.md`` writes the Klartext page.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ Each code has an example. "Rejected" gives an example that is rejected, with a p
 
 
 def render_code_book(dialect: Dialect) -> str:
-    """Return the text of the page."""
+    """Return the reference page of a dialect as Markdown text."""
     book = get_code_book(dialect)
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(map(_entry, entries)) for title, entries in book.chapters
@@ -41,7 +42,7 @@ def _frame(book: CodeBook) -> str:
 
 
 def _parameter_table(book: CodeBook) -> str:
-    """Return the table of the cycle parameters, or an empty text for a language without them."""
+    """Return the table of cycle parameters, or an empty string for a dialect without cycle parameters."""
     rows = "".join(f"| `{word}` | {what} |\n" for word, what in book.meanings.items())
     return f"\n## Cycle parameters\n\n| word | means |\n|---|---|\n{rows}" if rows else ""
 

@@ -1,4 +1,7 @@
-"""Entry point to the interpreters of all dialects, from text and setup to elementary blocks."""
+"""Interface to the interpreters of all dialects.
+
+An interpreter generates elementary blocks from a program text and a setup.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ def _omniturn(source: ProgramSource, strict: bool) -> PassFactory:
 
 
 class _OmniTurn:
-    """An OmniTurn program that has been read."""
+    """A parsed OmniTurn program that can start passes."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
@@ -42,7 +45,9 @@ class _OmniTurn:
 
 
 def interpret_mdi_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
-    """Return a pass through one line of MDI in the machine's language, from the state of ``setup.begin``."""
+    """Return a pass through one MDI line in the machine's dialect, starting from the state
+    ``setup.begin``.
+    """
     if refused := _refusal(source.dialect, setup):
         return refused
     return _LINE_INTERPRETERS[source.dialect](source, setup)
@@ -96,7 +101,7 @@ def _klartext(source: ProgramSource, _strict: bool) -> PassFactory:
 
 
 def _refusal(dialect: Dialect, setup: Setup) -> RejectedPass | None:
-    """Return a rejected pass if this machine cannot run the dialect; otherwise None."""
+    """Return a rejected pass if this machine cannot run the dialect, or None otherwise."""
     lathe = len(setup.start) == _LATHE_AXES
     if dialect is Dialect.OMNITURN and not lathe:
         why = "An OmniTurn program needs a lathe with X, Z and C; this machine has other axes."
@@ -119,7 +124,7 @@ DIALECT_NAMES = {Dialect.OMNITURN: "OmniTurn", Dialect.SINUMERIK: "SINUMERIK", D
 
 @cache
 def get_code_book(dialect: Dialect) -> CodeBook:
-    """Return the code book of a language, which is read on first use."""
+    """Return the code book of a dialect, and read it on first use."""
     if dialect is Dialect.OMNITURN:
         from core.interpreter.omniturn.codes.omniturn_book import build_code_book
 
@@ -138,10 +143,10 @@ _READERS: Mapping[Dialect, Callable[[ProgramSource, bool], PassFactory]] = {
 
 
 class SharedProgram:
-    """A program text that is read with its first pass and then shared by all passes.
+    """A program that is parsed for its first pass and then shared by all passes.
 
-    Reading a million blocks takes almost a second, which the executor cannot wait. Passes can be created in
-    several threads at the same time.
+    Parsing a million blocks takes almost a second, which is too long for the executor to wait. Several
+    threads can start passes at the same time.
     """
 
     def __init__(self, source: ProgramSource, *, strict: bool = False) -> None:
@@ -149,19 +154,21 @@ class SharedProgram:
         self._strict = strict
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the pickle data: the text, which the other process reads again."""
+        """Return the pickle data, which contain only the program text; the receiving process parses the
+        text again.
+        """
         return _unread, (self.source, self._strict)
 
     def read(self) -> None:
-        """Read the text now, so that the first pass does not have to."""
+        """Parse the program now, so that the first pass does not have to parse it."""
         _ = self._begin
 
     def has_same_source(self, other: SharedProgram) -> bool:
-        """Return whether the other program has the same text, read in the same mode."""
+        """Return whether the other program has the same text and is parsed in the same mode."""
         return self.source == other.source and self._strict == other._strict
 
     def start_pass(self, setup: Setup) -> InterpreterPass:
-        """Return a new pass with this setup."""
+        """Return a new pass through the program with this setup."""
         dialect = self.source.dialect
         if refused := _refusal(dialect, setup):
             return refused
@@ -170,7 +177,10 @@ class SharedProgram:
         return self._begin(setup)
 
     def start_branching_pass(self, setup: Setup, guide: BranchRecord) -> BranchingPass | None:
-        """Return a pass that ``guide`` can send to both branches; None if the program reads no input."""
+        """Return a pass that can execute both branches of conditional calls, as directed by ``guide``.
+
+        Returns None if the program does not read any inputs.
+        """
         if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.is_mdi_line):
             return None
         read = self._begin
@@ -182,7 +192,7 @@ class SharedProgram:
 
     @property
     def program(self) -> Program | None:
-        """The OmniTurn program ready for execution; None for other languages."""
+        """Return the OmniTurn program ready for execution, or None for other dialects."""
         read = self._begin
         return read.program if isinstance(read, _OmniTurn) else None
 
@@ -196,5 +206,5 @@ def _unread(source: ProgramSource, strict: bool) -> SharedProgram:
 
 
 def interpret_program(source: ProgramSource, setup: Setup) -> InterpreterPass:
-    """Return one pass through a program that is read only for this pass."""
+    """Return a single pass through a program that is not shared with other passes."""
     return SharedProgram(source, strict=setup.strict).start_pass(setup)

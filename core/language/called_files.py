@@ -1,6 +1,6 @@
 """Loading of called programs together with the main program.
 
-The text that was proved is therefore the text that is executed.
+The executed text is therefore the same as the proved text.
 """
 
 from __future__ import annotations
@@ -15,10 +15,11 @@ _MAX_FILES = 500
 
 
 def load_called_files(source: ProgramSource, folders: Sequence[Path]) -> ProgramSource:
-    """Return the source with all programs that it calls, directly or indirectly.
+    """Return the source with all programs that it calls directly or indirectly.
 
-    Files that are missing or not text are left out; the call then causes an error in the program. OmniTurn
-    programs do not call other files. A source that already has its programs is returned unchanged.
+    Files that are missing or are not text are omitted, so that the call causes an error in the program.
+    OmniTurn programs do not call other files. A source that already contains its called programs is
+    returned unchanged.
     """
     called = _call_finder(source.dialect)
     if called is None or source.subprograms:
@@ -34,7 +35,9 @@ def load_called_files(source: ProgramSource, folders: Sequence[Path]) -> Program
 
 
 def _call_finder(dialect: Dialect) -> Callable[[ProgramSource], Iterator[str]] | None:
-    """Return the function that yields the file names, in capitals, that a source of this dialect calls."""
+    """Return the function that yields the names (in capitals) of the files that a source of this dialect
+    calls.
+    """
     if dialect is Dialect.SINUMERIK:
         from core.language.sinumerik.subprogram_files import find_called_files
 
@@ -57,7 +60,7 @@ def _read(name: str, folders: Sequence[Path], dialect: Dialect) -> ProgramSource
 
 
 def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> Iterator[Path]:
-    """Yield the possible paths of a file, the most likely one first.
+    """Yield the possible paths of a file, starting with the most likely path.
 
     Folders are therefore listed only if necessary.
     """
@@ -68,12 +71,14 @@ def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> It
 
 
 def _alternative_names(name: str, dialect: Dialect) -> tuple[str, ...]:
-    """Return other file names for a call; SINUMERIK can also call a main program by its name."""
+    """Return other possible file names for a call, because SINUMERIK can also call a main program by its
+    name.
+    """
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 
 
 def _same_name(folder: Path, name: str) -> list[Path]:
-    """Return the files in the folder with this name in any case."""
+    """Return the files in the folder that have this name, without regard to case."""
     try:
         return [path for path in folder.iterdir() if path.name.upper() == name]
     except OSError:

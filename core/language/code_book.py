@@ -1,7 +1,7 @@
-"""Code book of a language: all codes, words and cycles with their meanings, examples and error examples.
+"""Code book of a dialect, with the meanings, examples and error examples of all codes, words and cycles.
 
-The editor uses the code book to explain and complete words. Pages of ``docs`` are generated from it, and
-tests prove its examples and error examples.
+The editor uses the code book to explain and complete words. Pages of ``docs`` are generated from the code
+book, and tests prove its examples and error examples.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ _NO_LETTER_BEFORE = r"(?<![A-Z_$])"
 
 @dataclass(frozen=True, slots=True)
 class CodeBookEntry:
-    """One code of the code book: its ``head`` and the ``words`` that follow it, as the book shows them.
+    """One code of the code book, with its ``head`` and the ``words`` that follow it.
 
-    ``example`` are lines that use the code. They are a complete program if ``whole`` is True; otherwise they
-    are put between ``head`` and ``tail`` of the book. ``behind`` follows the end of the program, and
-    ``files`` are other programs in the same folder (name and text). ``refused`` are lines that cause an error
-    in place of the example, and ``why`` is part of the error message. ``insert`` is the completion if it is
-    longer than the head.
+    ``example`` contains lines that use the code. If ``whole`` is True, they are a complete program.
+    Otherwise, they are inserted between ``head`` and ``tail`` of the book. ``behind`` contains the lines
+    after the program end. ``files`` contains other programs in the same folder (name and text). ``refused``
+    contains lines that cause an error when they replace the example, and ``why`` is part of the error
+    message. ``insert`` is the completion if it is longer than the head.
     """
 
     head: str
@@ -45,22 +45,23 @@ class CodeBookEntry:
 
     @property
     def form(self) -> str:
-        """The code with its words."""
+        """Return the code together with its words."""
         joined = self.words[:1] in _ATTACHED_PREFIXES or self.head[-1] in "=("
         return self.head + self.words if joined else f"{self.head} {self.words}"
 
     @property
     def written(self) -> str:
-        """The text that completion inserts."""
+        """Return the text that completion inserts."""
         return self.insert or self.head
 
 
 @dataclass(frozen=True)
 class CodeBook:
-    """Chapters of entries. ``head`` and ``tail`` are the lines before and after each example.
+    """Code book of one dialect, with its chapters of entries.
 
-    ``comment_sign`` is the character that starts a comment. ``meanings`` explains the words of codes, for all
-    codes (``R``) or for one code (``G83.R``). The pattern ``word_pattern`` finds these words.
+    ``head`` and ``tail`` are the lines before and after each example. ``comment_sign`` is the character
+    that starts a comment. ``meanings`` explains the words of codes, either for all codes (``R``) or for one
+    code (``G83.R``). The pattern ``word_pattern`` finds these words.
     """
 
     chapters: tuple[tuple[str, tuple[CodeBookEntry, ...]], ...]
@@ -71,7 +72,7 @@ class CodeBook:
     word_pattern: str = r"[A-Z_][A-Z0-9_]*"
 
     def list_words(self, entry: CodeBookEntry) -> tuple[tuple[str, str], ...]:
-        """Return each word of a code with its meaning, if the book has one."""
+        """Return each word of a code that has a meaning in the book, together with this meaning."""
         found = dict.fromkeys(re.findall(self.word_pattern, f"{entry.words} {entry.insert}".strip()))
         said = (
             (word, self.meanings.get(f"{entry.head}.{word}", self.meanings.get(word, ""))) for word in found
@@ -80,15 +81,15 @@ class CodeBook:
 
     @cached_property
     def entries(self) -> tuple[CodeBookEntry, ...]:
-        """All entries in the order of the book."""
+        """Return all entries in the order of the book."""
         return tuple(entry for _, entries in self.chapters for entry in entries)
 
     def at(self, line: str, column: int) -> CodeBookEntry | None:
         """Return the entry of the code at the cursor.
 
-        Otherwise, return the entry of the nearest code to the left of the cursor, or of the first code in the
-        line. ``column`` counts from 1 and may be one past the end of the line. Returns None in a comment and
-        if the line has no known code.
+        If the cursor is not at a code, the entry of the nearest code to its left is returned, or of the
+        first code in the line. ``column`` counts from 1 and may be one past the end of the line. Returns
+        None in a comment and in a line without a known code.
         """
         code = line.upper().split(self.comment_sign, 1)[0]
         if column - 1 > len(code):
@@ -98,9 +99,9 @@ class CodeBook:
         return before[-1][2] if before else found[0][2] if found else None
 
     def _find_codes(self, code: str) -> Iterator[tuple[int, int, CodeBookEntry]]:
-        """Yield start, end and entry of each code in a line.
+        """Yield the start, end and entry of each code in a line.
 
-        If two codes have the same start, the longer code counts.
+        If two codes have the same start, the longer code is used.
         """
         longest: dict[int, tuple[int, CodeBookEntry]] = {}
         for pattern, by_number in self._patterns:
@@ -117,7 +118,9 @@ class CodeBook:
 
     @cached_property
     def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, CodeBookEntry]], ...]:
-        """A pattern for each group of heads that differ only in their number, with its entries by number."""
+        """Return a pattern for each group of heads that differ only in their number, with the entries by
+        number.
+        """
         families: dict[tuple[str, bool], dict[str, CodeBookEntry]] = {}
         for entry in self.entries:
             numbered = _NUMBERED.fullmatch(entry.head)
@@ -126,10 +129,10 @@ class CodeBook:
         return tuple((_pattern(*family), by_number) for family, by_number in families.items())
 
     def find_completions(self, line: str, column: int) -> tuple[int, tuple[CodeBookEntry, ...]]:
-        """Return the column where the incomplete code starts, and the entries that can complete it.
+        """Return the column where the incomplete code starts, and the entries that can complete the code.
 
-        The entries are in book order. The longest matching text before the cursor is used. There are no
-        entries in a comment or after a blank.
+        The entries are in book order. The longest matching text before the cursor is used. The result has
+        no entries in a comment or after a blank.
         """
         typed = line[: column - 1].upper()
         if self.comment_sign in typed or not typed or typed[-1].isspace():
@@ -154,22 +157,22 @@ class CodeBook:
         return tuple((each, _normalize(each.head)) for each in self.entries)
 
     def find_chapter(self, entry: CodeBookEntry | None) -> int:
-        """Return the index of the chapter that contains an entry; 0 for None."""
+        """Return the index of the chapter that contains an entry, or 0 for None."""
         return next((n for n, (_, entries) in enumerate(self.chapters) if entry in entries), 0)
 
     def with_compiled_patterns(self) -> CodeBook:
-        """Return the book after computing its patterns, which takes some milliseconds."""
+        """Compile the patterns of the book, which takes some milliseconds, and return the book."""
         _ = self._patterns, self._heads
         return self
 
 
 def _normalize(written: str) -> str:
-    """Return a code in its normal form: capitals, single blanks, and no leading zeros in numbers."""
+    """Return a code in normal form: in capitals, with single blanks, and without leading zeros in numbers."""
     return _NUMBER.sub(r"\1", " ".join(written.upper().split()))
 
 
 def _pattern(stem: str, numbered: bool) -> re.Pattern[str]:
-    """Return a pattern that finds a code in a line. Its group is the number, or empty without one."""
+    """Return a pattern that finds a code in a line, whose group is the number or an empty text."""
     words = r"\s*".join(map(re.escape, stem.split()))
     last = _NO_DIGIT_AFTER if stem[-1].isdigit() else _NO_LETTER_AFTER if stem[-1].isalpha() else ""
     before = _NO_LETTER_BEFORE if stem[0].isalpha() else ""

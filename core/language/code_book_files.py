@@ -1,12 +1,11 @@
 """Reader of code books.
 
-A folder ``code_books/LANGUAGE`` contains ``book.toml`` and one TOML file per subject.
-
-Each table ``[["Title of the chapter"]]`` is one entry, with the keys of ``Entry``. A chapter may continue in
-the next file. ``heads`` in place of ``head`` makes one entry for each head. ``{name}`` in a text is replaced
-by the text with that name in ``[parts]`` or by the text of that key of the entry. ``[usual]`` has the default
-texts of the entries. ``refused`` may be a table of replacements: the example with these texts replaced is
-rejected. ``[meanings]`` explains the words that follow codes.
+A folder ``code_books/LANGUAGE`` contains ``book.toml`` and one TOML file per subject. Each table ``[["Title
+of the chapter"]]`` is one entry with the fields of ``CodeBookEntry`` as keys. A chapter may continue in the
+next file. ``heads`` instead of ``head`` makes one entry for each head. ``{name}`` in a text is replaced by
+the text with that name in ``[parts]``, or by the text of that key of the entry. ``[usual]`` contains
+default texts of the entries. ``refused`` may be a table of replacements. The example with these
+replacements must then be rejected. ``[meanings]`` explains the words that follow codes.
 """
 
 from __future__ import annotations
@@ -36,7 +35,10 @@ _PLACEHOLDER = re.compile(r"\{(\w+)\}")
 
 
 def read_book(folder: Path) -> CodeBook:
-    """Return the code book of a folder. Raises ValueError with file and code if an entry is invalid."""
+    """Return the code book of a folder.
+
+    Raises ValueError with the file and the code if an entry is invalid.
+    """
     frame = tomllib.loads((folder / "book.toml").read_text(encoding="utf-8"))
     chapters: dict[str, list[CodeBookEntry]] = {}
     meanings: dict[str, str] = {}
@@ -56,7 +58,7 @@ def read_book(folder: Path) -> CodeBook:
 
 
 def _read_subject(text: str, chapters: dict[str, list[CodeBookEntry]], meanings: dict[str, str]) -> None:
-    """Add the entries and meanings of a file to those of the book."""
+    """Add the entries and meanings of a file to the book."""
     tables = tomllib.loads(text)
     parts, usual = tables.pop("parts", {}), tables.pop("usual", {})
     meanings |= tables.pop("meanings", {})
@@ -94,7 +96,7 @@ def _entry(row: dict[str, Any], parts: dict[str, str]) -> CodeBookEntry:
 
 
 def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
-    """Return a text with its parts inserted and without line breaks at its ends."""
+    """Return a text with its placeholders replaced and without line breaks at its start and end."""
     if "{" not in text:
         return text.strip("\n")
 
@@ -108,7 +110,10 @@ def _fill_placeholders(text: str, known: Mapping[str, Any]) -> str:
 
 
 def _replace_pieces(example: str, pieces: Mapping[str, str]) -> str:
-    """Return the example with each of the pieces replaced. Raises ValueError if the example lacks a piece."""
+    """Return the example with each of these texts replaced.
+
+    Raises ValueError if the example does not contain one of the texts.
+    """
     for before, after in pieces.items():
         if before not in example:
             raise ValueError(f"the example does not contain {before}")
@@ -117,11 +122,11 @@ def _replace_pieces(example: str, pieces: Mapping[str, str]) -> str:
 
 
 def _program(text: str) -> str:
-    """Return the lines of a program, each with a line break."""
+    """Return the lines of a program as one text that ends with a line break."""
     return text.strip("\n") + "\n" if text else ""
 
 
 def _check_once(heads: list[str]) -> None:
-    """Raise ValueError if a code has two entries."""
+    """Raise ValueError if a code has more than one entry."""
     if twice := [head for head, times in Counter(heads).items() if times > 1]:
         raise ValueError(f"{', '.join(twice)}: each code must have only one entry")

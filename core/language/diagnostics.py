@@ -1,4 +1,4 @@
-"""Diagnostics of a program: location, severity, text and remedy."""
+"""Diagnostics of a program, with location, severity, text and remedy."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from core.message import Message
 
 
 class Severity(StrEnum):
-    """Severity of a diagnostic. An error prevents the run, a warning is shown, and a note informs."""
+    """Severity of a diagnostic.
+
+    An error prevents the run. A warning is shown to the operator. A note only gives information.
+    """
 
     ERROR = "error"
     WARNING = "warning"
@@ -18,12 +21,13 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding. Lines and columns count from 1. Column 0 means the whole line, and line 0 the whole file.
+    """One finding in a program.
 
-    ``check_name`` is the name of the check that made the finding, and ``block_number`` is the elementary
-    block (0 for none). A repeated finding has its first location and its ``occurrence_count``. ``assumed``
-    names the assumptions of the finding (``stock``, ``T3``). ``downgrade_reason`` is the reason why the
-    finding is only a note.
+    Lines and columns count from 1. Column 0 refers to the whole line, and line 0 refers to the whole file.
+    ``check_name`` is the name of the check that made the finding. ``block_number`` is the elementary block,
+    or 0 without a block. A repeated finding has its first location and its ``occurrence_count``.
+    ``assumptions`` are the assumptions on which the finding depends (``stock``, ``T3``).
+    ``downgrade_reason`` is the reason why the finding is only a note.
     """
 
     line: int
@@ -40,7 +44,7 @@ class Diagnostic:
 
     @property
     def text(self) -> str:
-        """The message, followed by the number of repetitions if the finding is repeated."""
+        """Return the message, with the number of occurrences if the finding is repeated."""
         return (
             self.message
             if self.occurrence_count == 1
@@ -48,7 +52,7 @@ class Diagnostic:
         )
 
     def format_one_line(self, name: str) -> str:
-        """Return the finding as one line: location, severity, message, code and remedy."""
+        """Return the finding as one line with location, severity, message, code and remedy."""
         place = f"{name}:{self.line}:{max(self.column, 1)}" if self.line else name
         hint = Message(" — {hint}", hint=self.hint) if self.hint else ""
         return Message(
@@ -74,15 +78,15 @@ PROGRAM_STOP_ASSUMPTION = "axis position after a program stop"
 
 
 def add_assumptions(finding: Diagnostic, *assumed: str) -> Diagnostic:
-    """Return the finding with further assumptions on which it depends."""
+    """Return the finding with additional assumptions on which it depends."""
     return replace(finding, assumptions=(*finding.assumptions, *assumed))
 
 
 def make_error_diagnostic(line: int, column: int, code: str, message: str, hint: str = "") -> Diagnostic:
-    """Return a diagnostic with the severity error."""
+    """Return a diagnostic with the severity ``error``."""
     return Diagnostic(line, column, Severity.ERROR, code, message, hint)
 
 
 def make_program_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """Return the exception for an error diagnostic."""
+    """Return a ProgramError with an error diagnostic."""
     return ProgramError(make_error_diagnostic(line, column, code, message, hint))

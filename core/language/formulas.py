@@ -1,7 +1,7 @@
-"""Formulas of programs: numbers, parameters, operators with precedence, and functions.
+"""Formulas of programs, with numbers, parameters, operators with precedence, and functions.
 
-Each language defines its own ``FormulaGrammar``. The parsed formulas are the same for all languages and are
-evaluated by ``core.interpreter.shared.formula_values``.
+Each dialect defines its own ``FormulaGrammar``. The parsed formulas have the same form in all dialects and
+are evaluated by ``core.interpreter.shared.formula_values``.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from core.language.line_reading import LineReader
 
 
 class Number(NamedTuple):
-    """A number of the program."""
+    """A number in a formula."""
 
     value: float
 
 
 class Parameter(NamedTuple):
-    """A parameter with its letters, its number or index if any, and its column from 1.
+    """A parameter in a formula, with its letters, its number or index if any, and its column from 1.
 
     The letters are ``Q``, ``R`` or the name of a variable.
     """
@@ -32,7 +32,7 @@ class Parameter(NamedTuple):
 
 
 class Operation(NamedTuple):
-    """An operator or function with its operands; ``name`` is a key of ``OPERATIONS``."""
+    """An operator or function with its operands, whose ``name`` is a key of ``OPERATIONS``."""
 
     name: str
     operands: tuple[Formula, ...]
@@ -57,12 +57,15 @@ FUNCTION_OPERATIONS = {
 
 
 def split_index(index: Formula) -> tuple[Formula, ...]:
-    """Return the formulas of an index in square brackets, one for each dimension."""
+    """Return the formulas of an index in square brackets, with one formula for each dimension."""
     return index.operands if isinstance(index, Operation) and index.name == INDEX_OPERATION else (index,)
 
 
 class FormulaError(Exception):
-    """A syntax error in a formula. ``index`` is the index in the text, and ``str()`` is the message."""
+    """Error for invalid syntax in a formula.
+
+    ``index`` is the index of the error in the text, and ``str()`` returns the message.
+    """
 
     def __init__(self, index: int, message: str, hint: str) -> None:
         super().__init__(message)
@@ -72,12 +75,13 @@ class FormulaError(Exception):
 
 @dataclass(frozen=True)
 class FormulaGrammar:
-    """Notation of formulas in a language, in capitals.
+    """The notation of formulas in a dialect, in capitals.
 
-    ``number`` and ``parameter_pattern`` match one operand; the groups of a parameter are its letters and its
-    number. ``operators`` maps each operator to its precedence (higher binds tighter) and name, ``functions``
-    maps functions to names, and ``constants`` maps constants to values. ``operand_separator`` separates the
-    operands of a function. If it is empty, functions have one operand without parentheses.
+    ``number_pattern`` and ``parameter_pattern`` match one operand. The groups of a parameter are its
+    letters and its number. ``operators`` maps each operator to its precedence (a higher value binds more
+    tightly) and name. ``functions`` maps functions to names, and ``constants`` maps constants to values.
+    ``operand_separator`` separates the operands of a function. If it is empty, functions have one operand
+    without parentheses.
     """
 
     number_pattern: re.Pattern[str]
@@ -114,7 +118,7 @@ class FormulaGrammar:
 
 
 def _any_of(words: Mapping[str, object]) -> re.Pattern[str]:
-    """Return a pattern for the longest of these words; no letter may follow a word."""
+    """Return a pattern for the longest of these words that is not followed by a letter."""
     if not words:
         return re.compile(r"(?!)")
     ordered = sorted(words, key=len, reverse=True)
@@ -136,7 +140,7 @@ _MAX_DEPTH = 40
 class FormulaReader(LineReader):
     """Parser of one formula in ``uppercase_text``, which starts at ``index``.
 
-    After reading, ``index`` is the index that follows.
+    After parsing, ``index`` is the index after the formula.
     """
 
     def __init__(self, grammar: FormulaGrammar, uppercase_text: str, index: int) -> None:
@@ -145,7 +149,7 @@ class FormulaReader(LineReader):
         self._depth = 0
 
     def read_formula(self) -> Formula:
-        """Read and return the formula. Raises FormulaError if it is incomplete or invalid."""
+        """Read and return the formula. Raises FormulaError if the formula is incomplete or invalid."""
         return self._expression(0)
 
     def _expression(self, weakest: int) -> Formula:
@@ -182,7 +186,7 @@ class FormulaReader(LineReader):
         return self._word(at) or self._parameter_or_number(at)
 
     def _word(self, index: int) -> Formula | None:
-        """Read a function with its operands, or a constant; return None for any other text."""
+        """Read a function with its operands or a constant, or return None for any other text."""
         grammar = self._grammar
         if word := grammar.find_function(self.uppercase_text, index):
             self.index += len(word)
@@ -211,8 +215,8 @@ class FormulaReader(LineReader):
     def read_index(self) -> Formula:
         """Read the index in square brackets at the current position.
 
-        Several indices are returned as one operation INDICES. Raises FormulaError if the bracket is
-        incomplete.
+        Several indices are returned as one operation ``INDEX_OPERATION``. Raises FormulaError if the
+        closing bracket is missing.
         """
         self.index += 1
         column, found = self.index, [self._expression(0)]
@@ -232,7 +236,7 @@ class FormulaReader(LineReader):
     def _function_operands(self) -> tuple[Formula, ...]:
         """Read the operands of a function.
 
-        These are one operand, or a list in parentheses if the language has a separator.
+        A function has one operand, or a list in parentheses if the dialect has a separator.
         """
         self.skip_blanks()
         if not self._grammar.operand_separator or not self._takes("("):

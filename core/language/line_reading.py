@@ -1,4 +1,4 @@
-"""Helpers for the readers of all languages: position, blanks, comments and numbers."""
+"""Helpers for the parsers of all dialects, with positions, blanks, comments and numbers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,10 @@ SIGNED_NUMBER = rf"[+-]?{UNSIGNED_NUMBER}"
 
 
 class LineReader:
-    """A position in a line at which patterns are matched. ``uppercase_text`` is the line in capitals."""
+    """A position in a line at which patterns are matched.
+
+    ``uppercase_text`` is the line in capitals.
+    """
 
     def __init__(self, uppercase_text: str, index: int = 0) -> None:
         self.uppercase_text = uppercase_text
@@ -19,7 +22,7 @@ class LineReader:
 
     @property
     def is_at_end(self) -> bool:
-        """Whether only blanks follow."""
+        """Return whether only blanks follow the position."""
         return not self.uppercase_text[self.index :].strip()
 
     def skip_blanks(self) -> None:
@@ -28,7 +31,9 @@ class LineReader:
             self.index = find_non_blank(self.uppercase_text, self.index)
 
     def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """Return the match of the pattern at this position and move past it; None without a match."""
+        """Return the match of the pattern at this position and move past it, or return None without a
+        match.
+        """
         match = pattern.match(self.uppercase_text, self.index)
         if match is not None:
             self.index = match.end()
@@ -44,9 +49,9 @@ def find_non_blank(text: str, index: int) -> int:
 
 
 def find_comment_start(text: str) -> int:
-    """Return the index of the semicolon that begins the comment, or the length of the text without a comment.
+    """Return the index of the semicolon that starts the comment, or the length of a text without a comment.
 
-    A semicolon in a quoted text does not begin a comment.
+    A semicolon in a quoted text does not start a comment.
     """
     at = text.find(";")
     while at >= 0 and text.count('"', 0, at) % 2:
@@ -55,7 +60,7 @@ def find_comment_start(text: str) -> int:
 
 
 def skip_characters(text: str, index: int, count: int) -> int:
-    """Return the index after this number of characters that are not blanks."""
+    """Return the index after ``count`` characters that are not blanks."""
     while count and index < len(text):
         count -= not text[index].isspace()
         index += 1
@@ -90,5 +95,7 @@ def describe_typographic_character(character: str) -> tuple[str, str] | None:
 
 
 def to_ascii_upper(text: str) -> str:
-    """Return the text in capitals with the same length; non-ASCII characters such as ``ß`` are unchanged."""
+    """Return the text in capitals with the same length, without a change of non-ASCII characters such as
+    ``ß``.
+    """
     return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

@@ -1,4 +1,7 @@
-"""Lazy line sequence for long texts, because a list of a million lines takes 70 MB and 0.1 s."""
+"""Lazy sequence of the lines of a long text.
+
+A list of a million lines would take 70 MB and 0.1 s.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ _NEW_LINE = ord("\n")
 
 
 class LazyLines(Sequence[str]):
-    """The lines of an ASCII text without line ends, split on access.
+    """The lines of an ASCII text without line ends, which are split only when they are accessed.
 
     An empty line after the final line end does not count.
     """
@@ -41,7 +44,9 @@ class LazyLines(Sequence[str]):
         return self.join_lines(there).split("\n") if there else []
 
     def join_lines(self, lines: range) -> str:
-        """Return these lines, at least one, as one text with line ends; faster than joining single lines."""
+        """Return one or more lines as one text with line ends, which is faster than joining individual
+        lines.
+        """
         return self._text[self._starts[lines.start] : self._starts[lines.stop] - 1]
 
     def __iter__(self) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Entry point for the syntax coloring of all languages."""
+"""Interface to the syntax coloring of all dialects."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ def color_program_line(
 ) -> tuple[list[ColoredSpan], int]:
     """Return the colored spans of a line, with errors last, and the state for the next line.
 
-    ``state_before`` is the state that the previous line returned. The module of a language is imported on
-    first use.
+    ``state_before`` is the state that was returned for the previous line. The module of a dialect is
+    imported on first use.
     """
     if dialect is Dialect.KLARTEXT:
         from core.language.klartext import klartext_colors

@@ -1,4 +1,4 @@
-"""Program text: name, dialect, and lines that count from 1."""
+"""Program text, with its name, its dialect and its lines, which count from 1."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from core.message import CodedError, Message
 
 
 class Dialect(StrEnum):
-    """Language of a program. The values are those of the command line and of the JSON output."""
+    """Dialect of a program, whose values are used on the command line and in the JSON output."""
 
     OMNITURN = "omniturn"
     KLARTEXT = "klartext"
@@ -35,7 +35,7 @@ def default_extension(dialect: Dialect) -> str:
 
 
 def guess_dialect(name: str) -> Dialect:
-    """Return the default dialect of a file name, which depends on its extension."""
+    """Return the default dialect for the extension of a file name."""
     return _DIALECT_BY_EXTENSION.get(PurePath(name).suffix.lower(), Dialect.OMNITURN)
 
 
@@ -50,12 +50,11 @@ _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
 @dataclass(frozen=True)
 class ProgramSource:
-    """Program text.
+    """The text of a program.
 
-    ``name`` is used in messages and on the screen; ``specified_dialect`` is the specified dialect, or None.
-
-    ``subprograms`` are the called files, which are read together with the program, so that the executed text
-    is the proved text.
+    ``name`` is used in messages and on the screen. ``specified_dialect`` is the dialect if it is specified,
+    or None. ``subprograms`` contains the called files, which are read together with the program, so that
+    the executed text is the proved text.
     """
 
     name: str
@@ -64,17 +63,17 @@ class ProgramSource:
     subprograms: tuple[ProgramSource, ...] = ()
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the pickle data without the lines, which the other process splits again."""
+        """Return the pickle data without the lines, which the receiving process splits again."""
         return ProgramSource, (self.name, self.text, self.specified_dialect, self.subprograms)
 
     @property
     def dialect(self) -> Dialect:
-        """The language of the program."""
+        """Return the dialect of the program."""
         return self.specified_dialect or guess_dialect(self.name)
 
     @cached_property
     def lines(self) -> Sequence[str]:
-        """The lines without line ends; an empty line after the final line end does not count."""
+        """Return the lines without line ends, and without an empty line after the final line end."""
         if len(self.text) >= _LONG and self.text.isascii() and "\r" not in self.text:
             from core.language.long_lines import LazyLines  # noqa: PLC0415  with numpy
 
@@ -86,7 +85,9 @@ class ProgramSource:
 
 
 class SourceError(CodedError):
-    """A file is not a readable program text; ``str()`` is the message for the operator."""
+    """Error for a file that is not a readable program text; ``str()`` returns the message for
+    the operator.
+    """
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message, diagnostic.code)
@@ -113,7 +114,10 @@ def load_source(path: Path, specified_dialect: Dialect | None = None) -> Program
 
 
 def decode_source(name: str, data: bytes, specified_dialect: Dialect | None = None) -> ProgramSource:
-    """Return the source of these bytes with this name. Raises SourceError if the bytes are not text."""
+    """Decode the bytes of a program file and return its source.
+
+    Raises SourceError if the bytes are not text.
+    """
     if len(data) > MAX_FILE_SIZE:
         raise _too_large(name)
     return ProgramSource(name, _decoded(name, data), specified_dialect)
@@ -151,7 +155,7 @@ def _characters(data: bytes) -> str:
 
 
 def _lines(text: str) -> list[str]:
-    """Return the lines without line ends; the last line is empty if the text ends with a line end."""
+    """Return the lines without line ends, with an empty last line if the text ends with a line end."""
     return _LINE_END.split(text) if "\r" in text else text.split("\n")
 
 
@@ -175,7 +179,7 @@ def _check_line_lengths(name: str, text: str) -> None:
 
 
 def _may_contain_long_line(text: str) -> bool:
-    """Return whether a line may be too long, searching line ends at the maximum distance."""
+    """Return whether a line may be too long, by a search for line ends at the maximum distance."""
     at = 0
     while len(text) - at > _MAX_LINE_LENGTH:
         end = text.rfind("\n", at, at + _MAX_LINE_LENGTH + 1)

@@ -1,4 +1,4 @@
-"""Keys of the axis tables [axis.…] of a machine file, with their ranges in the model's units."""
+"""Keys of the axis tables [axis.…] of a machine file, with their ranges in the units of the machine model."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _THIRD_NAME: Any = declare_key(
 
 
 class LinearAxisKeys:
-    """Keys of a linear axis."""
+    """The keys of a linear axis."""
 
     travel: Pair = declare_key(
         KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
@@ -81,7 +81,7 @@ class LinearAxisKeys:
 
 
 class HomingKeys:
-    """Keys for homing of a linear axis."""
+    """The keys for homing of a linear axis."""
 
     order: int = declare_key(
         KeyRange(1, 9),
@@ -105,7 +105,7 @@ class HomingKeys:
 
 
 class RotaryHomingKeys:
-    """Keys for homing of a rotary axis."""
+    """The keys for homing of a rotary axis."""
 
     order: int = HomingKeys.order
     speed: float = declare_key(
@@ -125,7 +125,7 @@ class RotaryHomingKeys:
 
 
 class LatheCAxisKeys:
-    """Keys of the C axis of a lathe."""
+    """The keys of the C axis of a lathe."""
 
     enabled: bool = declare_key(
         default=False, meaning="true: the machine has a C axis. `vmax` and `count` are then required."
@@ -188,7 +188,7 @@ class LatheCAxisKeys:
 
 
 class LinearThirdAxisKeys:
-    """Keys of a linear third axis of a lathe, in mm where C has degrees."""
+    """The keys of a linear third axis of a lathe, with mm instead of the degrees of C."""
 
     travel: Pair = LinearAxisKeys.travel
     vmax: float = LinearAxisKeys.vmax
@@ -224,7 +224,7 @@ class LinearThirdAxisKeys:
 
 
 class RotaryAxisKeys:
-    """Keys of a rotary axis of a mill."""
+    """The keys of a rotary axis of a mill."""
 
     travel: Pair = declare_key(
         KeyRange(-36000.0, 36000.0, FileUnit.DEGREES),

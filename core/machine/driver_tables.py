@@ -1,4 +1,7 @@
-"""Tables that drivers add to a machine file, and pots: reading, checks and construction of the model."""
+"""Driver tables and analog inputs of a machine file.
+
+This module parses and checks the tables and builds the hardware model.
+"""
 
 from __future__ import annotations
 
@@ -24,18 +27,18 @@ _AXES = "XYZABC"
 
 
 def all_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTable, ...]:
-    """Return the tables of all drivers, in the order of the drivers."""
+    """Return the tables of all drivers in the order of the drivers."""
     return tuple(table for driver in drivers for table in driver.tables)
 
 
 def driver_subtables(drivers: Sequence[DriverDeclaration], path: str) -> tuple[str, ...]:
-    """Return the names of the tables that drivers add inside one of the control's own tables."""
+    """Return the names of the tables that drivers add to the table ``path`` of the control."""
     parted = (table.path.rpartition(".") for table in all_driver_tables(drivers))
     return tuple(name for parent, _, name in parted if parent == path)
 
 
 class DriverReading:
-    """Reads the drivers' tables of a machine file; ``findings`` contains the errors in them."""
+    """Parser of the driver tables of a machine file; ``findings`` contains the errors in these tables."""
 
     def __init__(self, file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> None:
         self.file = file
@@ -49,7 +52,10 @@ class DriverReading:
         self.findings += _read_analog(file)
 
     def build_hardware(self, outputs: Sequence[str]) -> Hardware:
-        """Return the hardware model in the model's units. The file must not have findings."""
+        """Return the hardware model in the model's units.
+
+        Call this method only if the file has no findings.
+        """
         file, values = self.file, self.file.values
         refreshed = {name: values.read_number(f"io.out.{name}.refresh_ms") for name in outputs}
         return Hardware(
@@ -71,7 +77,7 @@ class DriverReading:
 
 
 def existing_tables(file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
-    """Return the paths of the drivers' tables that a file has, or that always exist."""
+    """Return the paths of the driver tables that a file contains or that always exist."""
     return tuple(
         table.path
         for table in all_driver_tables(drivers)
@@ -93,7 +99,7 @@ def _read_analog(file: MachineFileReading) -> Iterator[FileFinding]:
 def check_driver_tables(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
-    """Yield findings about backend, spindle driver, ports, refreshed outputs and the driver tables."""
+    """Yield findings about the backend, spindle driver, ports, refreshed outputs and driver tables."""
     yield from _backend(file, drivers)
     yield from _spindle(file, drivers)
     yield from _check_orientation(file, drivers)
@@ -155,7 +161,7 @@ def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
 def _check_orientation(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
-    """Check that an oriented spindle has a driver for it and is not the C axis."""
+    """Check that a spindle with orientation has a driver that supports it and is not the C axis."""
     values, path = file.values, "spindle.oriented"
     if not values.has_values(path, "spindle.driver") or not values.read_flag(path):
         return
@@ -179,7 +185,7 @@ def _check_orientation(
 
 
 def _check_count_rates(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    """Check the counts per second of each axis against the limit of the backend."""
+    """Check that the counts per second of each axis do not exceed the limit of the backend."""
     rates = {driver.backend: driver.count_rate for driver in drivers}
     for axis in _AXES:
         path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
@@ -235,7 +241,7 @@ def _guard(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_serial_ports(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    """Check that no serial port is used twice."""
+    """Check that each serial port is used only once."""
     taken: dict[str, str] = {}
     for path in (table.serial_port_key for table in all_driver_tables(drivers) if table.serial_port_key):
         if values.has_values(path):

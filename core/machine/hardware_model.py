@@ -1,4 +1,4 @@
-"""Wiring of the machine: pots, homing, tables of the drivers, signal tower and sounds."""
+"""Hardware model of the machine: analog inputs, homing, driver tables, signal tower and sounds."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ BLINK_HALF_PERIOD_S = 0.5  # s that a blinking lamp is on, and off
 
 @make_key_table
 class AnalogInputModel:
-    """A pot or a handwheel.
+    """A potentiometer or a handwheel.
 
-    ``range`` gives the values at both ends of the signal. ``switch`` is the name of the input of its switch.
+    ``range`` contains the values at both ends of the signal. ``switch`` is the name of the input of its
+    AUTO/OFF switch.
     """
 
     name: str
@@ -49,18 +50,21 @@ class AnalogInputModel:
 
     @property
     def low_value(self) -> float:
-        """The value at the lower end of the signal."""
+        """Return the value at the lower end of the signal."""
         return self.range[0]
 
     @property
     def high_value(self) -> float:
-        """The value at the upper end of the signal."""
+        """Return the value at the upper end of the signal."""
         return self.range[1]
 
 
 @dataclass(frozen=True, slots=True)
 class HomingModel:
-    """Homing of a real drive: CiA 402 method, slow speed, and position of home from the reference mark."""
+    """The homing parameters of a real drive.
+
+    They are the CiA 402 method, the slow speed, and the position of home relative to the reference mark.
+    """
 
     method: int = 0  # 0: not specified
     latch: float = 0.0  # mm/s
@@ -69,7 +73,7 @@ class HomingModel:
 
 @dataclass(frozen=True, slots=True)
 class Hardware:
-    """The wiring of the machine and the tables of its drivers."""
+    """The wiring of the machine, and the tables of its drivers."""
 
     uses_driver_host: bool = False  # the drivers run in a separate process
     continues_without_screen: bool = False  # the cycle continues while the screen does not respond
@@ -82,15 +86,18 @@ class Hardware:
     )  # output name → s after which the output switches off if it is not refreshed
 
     def find_driver_table(self, kind: type[_Table]) -> _Table | None:
-        """Return the model of the driver table of this type, or None if the file has no such table."""
+        """Return the model of the driver table of this type, or None if the file does not contain the
+        table.
+        """
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
 
 
 class MachineSignal(NamedTuple):
     """A machine signal with its lamp, buzzer and sounds.
 
-    ``buzzer_time_s`` is the time in seconds for which the buzzer sounds at the start, in step with a
-    blinking lamp. ``tones_hz`` are the frequencies in Hz that the computer plays, 0.2 s each.
+    ``buzzer_time_s`` is the time in seconds for which the buzzer sounds at the start; with a blinking lamp,
+    the buzzer is synchronized with the lamp. ``tones_hz`` are the frequencies in Hz of the tones that the
+    computer plays for 0.2 s each.
     """
 
     lamp: str

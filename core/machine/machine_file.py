@@ -1,4 +1,4 @@
-"""Reading of a machine file with all its errors in one pass, and comparison of two machine files."""
+"""Parsing of a machine file, which reports all errors in one pass, and comparison of two machine files."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ MISSING_VALUE = "—"
 
 
 def read_machine_text(path: Path) -> str:
-    """Return the text of a machine file. Raises MachineFileError if it cannot be read."""
+    """Return the text of a machine file. Raises MachineFileError if the file cannot be read."""
     try:
         return read_input_text(path, _MAX_BYTES)
     except OSError as error:
@@ -75,7 +75,7 @@ def read_machine_text(path: Path) -> str:
 
 
 def parse_machine(text: str, source: str, drivers: Sequence[DriverDeclaration]) -> Machine:
-    """Return the machine described by the TOML ``text`` and the given drivers; ``source`` is its file name.
+    """Return the machine that the TOML ``text`` and the drivers describe; ``source`` is the file name.
 
     Raises MachineFileError with all findings if the text has errors.
     """
@@ -83,7 +83,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[DriverDeclaration]) 
 
 
 def parse_tables(text: str, source: str) -> dict[str, object]:
-    """Return the tables of a machine file. Raises MachineFileError if ``text`` is not TOML."""
+    """Return the tables of a machine file. Raises MachineFileError if ``text`` is not valid TOML."""
     try:
         return parse_toml(text)
     except ValueError as error:
@@ -93,7 +93,7 @@ def parse_tables(text: str, source: str) -> dict[str, object]:
 def machine_of(
     data: Mapping[str, object], text: str, source: str, drivers: Sequence[DriverDeclaration]
 ) -> Machine:
-    """Return the machine described by parsed tables, as ``parse_machine`` does."""
+    """Return the machine that parsed tables describe; ``parse_machine`` does the same for a text."""
     reading = MachineReading(data, drivers)
     untold = [*machine_reading.fill_missing_values(reading)]
     axes, said = _axis_names(reading), signal_rules.terminals_by_signal(reading)
@@ -175,7 +175,7 @@ def _axis_names(reading: MachineReading) -> tuple[str, ...]:
 
 
 def _c_axis_flag(reading: MachineReading, key: str) -> bool:
-    """Return a flag of the C axis of a lathe; False for a mill."""
+    """Return a flag of the C axis of a lathe, or False for a mill."""
     return reading.kind == "lathe" and reading.values.read_flag(f"axis.C.{key}")
 
 
@@ -204,7 +204,10 @@ def _axis(reading: MachineReading, name: str) -> Axis:
 
 
 class KeyChange(NamedTuple):
-    """A changed key with its old and new value; ``MISSING_VALUE`` if the key is missing on that side."""
+    """A changed key with its old and new value.
+
+    A value is ``MISSING_VALUE`` if the key is missing in that file.
+    """
 
     path: str
     old: str
@@ -215,7 +218,7 @@ class KeyChange(NamedTuple):
 
 
 def compare_machine_files(old: str, new: str) -> tuple[KeyChange, ...]:
-    """Return every key whose value differs, in the order of the new file, then the removed keys.
+    """Return every key whose value differs, in the order of the new file, followed by the removed keys.
 
     Raises ValueError if a text is not valid TOML.
     """
@@ -229,7 +232,10 @@ def compare_machine_files(old: str, new: str) -> tuple[KeyChange, ...]:
 
 
 def _differ(old: object, new: object) -> bool:
-    """Return whether two values differ. 1 and 1.0 are equal, but true is not equal to 1."""
+    """Return whether two values differ.
+
+    1 and 1.0 are equal, but true is not equal to 1.
+    """
     return old != new or isinstance(old, bool) is not isinstance(new, bool)
 
 

@@ -1,4 +1,7 @@
-"""The machine as described by its file: immutable, in mm, seconds and degrees, with X as a radius."""
+"""Immutable model of the machine that a machine file describes.
+
+Values are in mm, seconds and degrees, with X as a radius.
+"""
 
 from __future__ import annotations
 
@@ -37,14 +40,14 @@ class Axis:
 
     @property
     def travel_with_margin(self) -> tuple[float, float]:
-        """The travel plus a rounding margin, so that a word exactly at the limit is accepted."""
+        """Return the travel plus a rounding margin, so that a position exactly at the limit is accepted."""
         low, high = self.travel or (-inf, inf)
         return low - _ROUNDING, high + _ROUNDING
 
     def max_following_error(self, speed: float) -> float:
         """Return the permitted following error at a commanded speed.
 
-        The limit rises linearly from the standstill tolerance to ``following_window`` at ``vmax``.
+        The limit increases linearly from the standstill tolerance to ``following_window`` at ``vmax``.
         """
         share = min(abs(speed) / self.vmax, 1.0)
         return self.still_window + (self.following_window - self.still_window) * share
@@ -52,7 +55,7 @@ class Axis:
 
 @make_key_table
 class SpindleModel:
-    """The main spindle, in rpm, rpm/s and W."""
+    """The main spindle, with values in rpm, rpm/s and W."""
 
     _: KW_ONLY
     rpm: Pair = declare_key(KeyRange(1.0, 20000.0, FileUnit.RPM), meaning="Lowest and highest speed.")
@@ -119,18 +122,20 @@ class SpindleModel:
 
     @property
     def min_rpm(self) -> float:
-        """The lowest speed in rpm."""
+        """Return the lowest speed in rpm."""
         return self.rpm[0]
 
     @property
     def max_rpm(self) -> float:
-        """The highest speed in rpm, and the only one of a spindle that is not ``controlled``."""
+        """Return the highest speed in rpm, which is the only speed of a spindle that is not
+        ``controlled``.
+        """
         return self.rpm[1]
 
 
 @make_key_table
 class OutputModel:
-    """An output with its terminal and its safe state."""
+    """An output, with its terminal and its safe state."""
 
     name: str
     terminal: str = declare_key(
@@ -154,13 +159,13 @@ class OutputModel:
 
     @property
     def safe_state(self) -> bool | None:
-        """The state of the output after an E-stop; None if the output remains unchanged."""
+        """Return the state of the output after an E-stop, or None if the output does not change."""
         return None if self.stated_safe == "keep" else self.stated_safe is True
 
 
 @make_key_table
 class InputModel:
-    """An input. Programs and interlocks use its name."""
+    """An input, whose name is used by programs and interlocks."""
 
     name: str
     terminal: str = declare_key(
@@ -176,13 +181,13 @@ class InputModel:
 
     @property
     def is_active_low(self) -> bool:
-        """True if the input is on when it has no voltage."""
+        """Return whether the input is on when it has no voltage."""
         return self.active == "low"
 
 
 @make_key_table
 class Timing:
-    """Times of the control, in seconds."""
+    """The times of the control in seconds."""
 
     commit: float = declare_key(
         KeyRange(0.001, 0.2, FileUnit.MILLISECONDS),
@@ -216,7 +221,7 @@ class Timing:
 
 @make_key_table
 class Interlocks:
-    """Interlocks of section 10 of the OmniTurn manual, and two-hand start."""
+    """The interlocks of section 10 of the OmniTurn manual, and the two-hand start."""
 
     spindle_with_collet_open: bool = declare_key(
         default=False,
@@ -242,10 +247,10 @@ class Interlocks:
 
 @make_key_table
 class ClampingModel:
-    """Chuck or collet in mm and rpm, where 0 means not specified.
+    """The chuck or collet and the tailstock, in mm and rpm, where 0 means not specified.
 
-    ``stick_out`` is measured from its front to part zero. A tailstock has a quill. The tip of its center,
-    with the included angle ``centre_point`` in degrees, is at Z ``centre_at``.
+    ``stick_out`` is measured from the front of the chuck or collet to part zero. A tailstock has a quill.
+    The tip of its center, with the included angle ``centre_point`` in degrees, is at Z ``centre_at``.
     """
 
     diameter: float = declare_key(
@@ -293,7 +298,7 @@ class ClampingModel:
 
 @make_key_table
 class LimitsModel:
-    """Limits that apply to all axes, in mm and mm/s. The resolution of X is a radius."""
+    """The limits that apply to all axes, in mm and mm/s. The resolution of X is a radius."""
 
     max_feed: float = declare_key(
         KeyRange(0.1, 1000.0, FileUnit.FEED),
@@ -329,7 +334,7 @@ class LimitsModel:
 
 @make_key_table
 class ColletModel:
-    """Times of the collet, in seconds."""
+    """The opening and closing times of the collet in seconds."""
 
     _: KW_ONLY
     open_time: float = declare_key(
@@ -350,9 +355,9 @@ class ColletModel:
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """The complete machine.
+    """The complete model of the machine.
 
-    ``axes`` contains the linear axes first, then the rotary axes. On a lathe the order is X, Z, C.
+    ``axes`` contains the linear axes followed by the rotary axes. On a lathe, the order is X, Z, C.
     """
 
     name: str
@@ -391,31 +396,34 @@ class Machine:
 
     @property
     def live_tool_output(self) -> str:
-        """The output that turns on the live tool, or an empty string."""
+        """Return the name of the output that turns on the live tool, or an empty string."""
         return min((name for name in self.outputs if name.startswith("live")), default="")
 
     @property
     def spindle_is_c(self) -> bool:
-        """True if the spindle is also the C axis, so that C cannot move while the spindle turns."""
+        """Return whether the spindle is also the C axis, so that C cannot move while the spindle turns."""
         return self.kind == "lathe" and not self.has_c_own_drive
 
     def displayed_axis_name(self, name: str) -> str:
-        """Return the name of an axis for the operator; C of a lathe may have another name."""
+        """Return the name of an axis as displayed to the operator.
+
+        The C axis of a lathe may have another name.
+        """
         return self.third_axis if self.kind == "lathe" and name == "C" else name
 
     @property
     def has_rotary_table(self) -> bool:
-        """True if at least one rotary axis of a mill turns its table; False if all turn the head."""
+        """Return whether at least one rotary axis of a mill turns its table, instead of the head."""
         chain = self.kinematics.chain if self.kinematics is not None else ()
         return not chain or any(axis.is_table for axis in chain)
 
     @property
     def lamp_outputs(self) -> tuple[str, ...]:
-        """The outputs that are lamps of the signal tower, which the control switches automatically."""
+        """Return the outputs that are lamps of the signal tower, which the control switches automatically."""
         return tuple(name for name in LAMP_NAMES if name in self.outputs)
 
     def find_axis(self, name: str) -> Axis:
-        """Return the axis with this name. Raises KeyError if the machine has no such axis."""
+        """Return the axis with this name. Raises KeyError if the machine does not have this axis."""
         for axis in self.axes:
             if axis.name == name:
                 return axis

@@ -1,7 +1,7 @@
-"""Reading of a parsed machine file by the declared tables, with defaults for missing values.
+"""Evaluation of a parsed machine file according to the declared tables, with defaults for missing values.
 
 The reason for each default is given at its rule. A file is rejected if it lacks a value that has no safe
-default. Units are those of the model.
+default. All values are in the units of the model.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ REQUIRED_KEYS = frozenset(("collet.close_s", "axis.C.vmax", "axis.C.count"))
 
 
 class MachineReading:
-    """Values and findings of one file, and the names of its signals and M codes."""
+    """The values and findings of one machine file, and the names of its signals and M codes."""
 
     def __init__(self, data: Mapping[str, object], drivers: Sequence[DriverDeclaration]) -> None:
         self.data = data
@@ -94,7 +94,7 @@ class MachineReading:
             self.findings += read_table(table, keys, path, self.values, children)
 
     def _read_parent_table(self, path: str, known: tuple[str, ...]) -> Mapping[str, object]:
-        """Return a table that contains tables, or an empty one if the entry is not a table."""
+        """Return a table that contains other tables, or an empty table if the entry is not a table."""
         table = self.data.get(path, {})
         if not isinstance(table, dict):
             self.findings.append(
@@ -147,14 +147,14 @@ class MachineReading:
             self._keys({}, path, machine_tables.LATHE_TABLES[path])
 
     def _read_m_codes(self, table: object) -> list[str]:
-        """Read the M codes that switch an output and those that are ignored; return their names."""
+        """Read the M codes that switch an output and the ignored M codes, and return their names."""
         ignored, switching = _split_ignored_codes(table)
         names = {*self._read_named_tables(ignored, "m_codes", machine_tables.IgnoredMCodeKeys)}
         names |= {*self._read_named_tables(switching, "m_codes", machine_tables.MCodeKeys)}
         return [name for name in table if name in names] if isinstance(table, dict) else []
 
     def _read_named_tables(self, table: object, path: str, keys: KeySchema) -> list[str]:
-        """Read tables with names chosen in the file; return the names."""
+        """Read tables whose names are chosen in the file, and return these names."""
         if not isinstance(table, dict):
             self._keys(table, path, ())
             return []
@@ -171,7 +171,7 @@ def _read_unit(data: Mapping[str, object]) -> bool | None:
 
 
 def _read_kind(data: Mapping[str, object]) -> str:
-    """Return the kind of machine; "lathe" if it is missing or invalid."""
+    """Return the kind of machine, or "lathe" if it is missing or invalid."""
     machine = data.get("machine")
     kind = machine.get("kind") if isinstance(machine, dict) else None
     return kind if isinstance(kind, str) and kind in machine_tables.MACHINE_KINDS else "lathe"
@@ -198,7 +198,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[File
 
 
 def _split_ignored_codes(table: object) -> tuple[dict[str, object], object]:
-    """Return the entries of ignored M codes, and the table without them."""
+    """Return the entries of ignored M codes, and the table without these entries."""
     if not isinstance(table, dict):
         return {}, table
     ignored: dict[str, object] = {}
@@ -209,7 +209,7 @@ def _split_ignored_codes(table: object) -> tuple[dict[str, object], object]:
 
 
 def _split_missing_outputs(outputs: object) -> tuple[list[str], object]:
-    """Return the names of outputs that the machine does not have, and the table without them."""
+    """Return the names of outputs that the machine lacks, and the table without these outputs."""
     if not isinstance(outputs, dict):
         return [], outputs
     absent = [name for name, entry in outputs.items() if isinstance(entry, dict) and entry.get("at") == _NONE]
@@ -217,9 +217,9 @@ def _split_missing_outputs(outputs: object) -> tuple[list[str], object]:
 
 
 def fill_missing_values(reading: MachineReading) -> Iterator[FileFinding]:
-    """Fill in the missing values; yield a finding for each value that has no default.
+    """Fill in the missing values, and yield a finding for each value that has no default.
 
-    A default that depends on an invalid value gives no second finding.
+    A default that depends on an invalid value does not cause a second finding.
     """
     values = reading.values
     for place, field in values.omitted_fields.items():
@@ -242,7 +242,7 @@ def _of_slides(values: FileValues, key: str) -> list[float]:
 
 
 def _slowest_axis_speed(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the speed of the slowest linear axis, because a feed may be in any direction."""
+    """Return the maximum speed of the slowest linear axis, because a feed may be in any direction."""
     return min(_of_slides(reading.values, "vmax"), default=None)
 
 
@@ -251,28 +251,31 @@ def _by_hand(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _coarsest_count(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the largest count, because a programmed step must be at least one count on every axis."""
+    """Return the largest count size, because a programmed step must be at least one count on every axis."""
     return max(_of_slides(reading.values, "count"), default=None)
 
 
 def _spindle_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the acceleration of the spindle.
+    """Return the acceleration of the spindle as the default for its deceleration.
 
-    Most spindles brake faster, and too long a time only adds a wait.
+    Most spindles decelerate faster than they accelerate. A deceleration time that is too long only causes a
+    wait.
     """
     return _number(reading.values, "spindle.accel_rpm_s")
 
 
 def _collet_close_time(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return the closing time of the collet.
+    """Return the closing time of the collet, which is 0.5 s if a switch confirms a closed collet.
 
-    It is 0.5 s if a switch confirms a closed collet. Otherwise, the file must specify it.
+    Otherwise, the file must specify the time.
     """
     return _COLLET_CLOSE_S if "collet_closed" in reading.inputs or reading.kind != "lathe" else None
 
 
 def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
-    """Return the same key of the first linear axis that has it, because axes usually have equal drives."""
+    """Return the same key of the first linear axis that has this key, because axes usually have equal
+    drives.
+    """
     _, name, key = place.split(".")
     said = [f"axis.{other}.{key}" for other in _LINEAR_AXIS_NAMES if name in _LINEAR_AXIS_NAMES]
     return next(
@@ -281,16 +284,16 @@ def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
 
 
 def _following_error_window(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the value of another axis, or twice the lag of a slow drive at full speed."""
+    """Return the value of another axis, or twice the following error of a slow drive at full speed."""
     values = reading.values
     vmax = _number(values, place.replace("fe_window", "vmax"))
     return _similar_axis_value(values, place) or (2.0 * _DRIVE_LAG_S * vmax if vmax else None)
 
 
 def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
-    """Return the value of another axis, or four counts, because a drive at rest moves by one or two.
+    """Return the value of another axis, or four counts, because a drive at rest moves by one or two counts.
 
-    For a coarse C, five counts are used.
+    Five counts are used for a rotary axis such as C, whose counts are coarser.
     """
     values = reading.values
     count = _number(values, place.replace("in_pos", "count"))
@@ -301,9 +304,8 @@ def _in_position_window(reading: MachineReading, place: str) -> DerivedValue:
 def _standstill_tolerance(reading: MachineReading, place: str) -> DerivedValue:
     """Return the standstill tolerance of another axis, or 0.2 mm (1 degree).
 
-    Cutting forces do not move an axis that far.
-
-    The result is at least four in-position windows and at most the following error window.
+    Cutting forces do not move an axis by this distance. The result is at least four in-position windows and
+    at most the following error window.
     """
     values = reading.values
     window = _number(values, place.replace("still_window", "fe_window"))
@@ -323,7 +325,10 @@ def _c_count(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _c_acceleration(reading: MachineReading, _place: str) -> DerivedValue:
-    """Return an acceleration to full speed in 1/3 s, limited by that of the spindle, which is C."""
+    """Return an acceleration that reaches full speed in 1/3 s.
+
+    The acceleration is limited to the acceleration of the spindle, which is also the C axis.
+    """
     values = reading.values
     spindle, vmax = _number(values, "spindle.accel_rpm_s"), _number(values, "axis.C.vmax")
     return min(6.0 * spindle, _C_ACCELERATION_RATE * vmax) if spindle and vmax else None

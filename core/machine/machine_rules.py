@@ -1,4 +1,4 @@
-"""Rules between the values of a machine file, each checked if its values are valid."""
+"""Rules for related values of a machine file, which are checked only if these values are valid."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from core.table_schema import FileFinding, FileValues
 
 
 class Rule(NamedTuple):
-    """A rule. ``find_error`` returns the error at ``path``, or an empty string, if all ``required_keys`` are
-    present.
+    """A rule for the value at ``key_path``.
+
+    The rule is checked if all ``required_keys`` are present. ``find_error`` then returns the error, or an
+    empty string.
     """
 
     key_path: str
@@ -23,14 +25,14 @@ class Rule(NamedTuple):
 
 
 def check_rules(values: FileValues) -> Iterator[FileFinding]:
-    """Yield a finding for every rule that the valid values break."""
+    """Yield a finding for every rule that valid values break."""
     for rule in VALUE_RULES:
         if values.has_values(rule.key_path, *rule.required_keys) and (expected := rule.find_error(values)):
             yield FileFinding(rule.key_path, "", expected, "broken-rule")
 
 
 def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> Rule:
-    """Return the rule that ``path`` must not exceed ``limit``."""
+    """Return the rule that the value at ``path`` must not exceed the value at ``limit``."""
 
     def wrong(values: FileValues) -> str:
         value, bound = values.read_number(path), values.read_number(limit)
@@ -87,7 +89,10 @@ def _fixed_points(axis: str) -> Rule:
 
 
 def _jog_overrun_rule(axis: str) -> Rule:
-    """Return the rule for the distance lease · vmax + vmax² / 2a that an axis travels after a lost jog."""
+    """Return the rule for the distance that an axis travels after the jog connection is lost.
+
+    The distance is lease · vmax + vmax² / 2a.
+    """
     vmax, amax = f"axis.{axis}.vmax", f"axis.{axis}.amax"
 
     def wrong(values: FileValues) -> str:
@@ -110,7 +115,7 @@ def _jog_overrun_rule(axis: str) -> Rule:
 
 
 def _corner_tolerance_rule(axis: str) -> Rule:
-    """Return the rule that the tolerance is at least the one count by which joints always move."""
+    """Return the rule that the tolerance must be at least one count, by which joints always move."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
     def wrong(values: FileValues) -> str:
@@ -147,7 +152,7 @@ def _homing(axis: str) -> Rule:
 
 
 def _home_order_rules() -> tuple[Rule, ...]:
-    """Return the rules that no two axes home at the same time."""
+    """Return the rules that two axes must not home at the same time."""
 
     def rule(one: str, other: str) -> Rule:
         def wrong(values: FileValues) -> str:
@@ -227,7 +232,10 @@ def _slide(axis: str) -> tuple[Rule, ...]:
 
 
 def _window_rules(axis: str, unit: FileUnit) -> tuple[Rule, ...]:
-    """Return the rules that count, in-position, standstill and following error windows increase in order."""
+    """Return the rules for the order of the tolerances of an axis.
+
+    The count, in-position, standstill and following error windows must increase in this order.
+    """
     count, arrived, still, window = (
         f"axis.{axis}.{key}" for key in ("count", "in_pos", "still_window", "fe_window")
     )
@@ -262,7 +270,7 @@ _QUEUE = "the setpoint queue would run empty"
 
 
 def _find_turret_error(values: FileValues) -> str:
-    """Reject a turret, because no driver indexes it and T2 would cut with another tool."""
+    """Return the error for a turret, which no driver can index, so that T2 would cut with another tool."""
     if values.text("tooling.kind") != "turret":
         return ""
     return (

@@ -1,4 +1,7 @@
-"""Keys of the control's own tables in a machine file, with ranges in the model's units: mm, s, degrees."""
+"""Keys of the control's own tables in a machine file.
+
+The ranges of the keys are in the units of the model, which are mm, s and degrees.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +36,7 @@ ROTARY_AXES = {"lathe": (), "mill": ("A", "B", "C")}
 
 
 class GeneralKeys:
-    """Keys of [machine], without its times."""
+    """The keys of [machine], except its times."""
 
     name: str = declare_key(meaning="Name of the machine, shown on the screen and in reports.")
     units: str = declare_key(
@@ -83,7 +86,7 @@ class GeneralKeys:
 
 
 class CAxisKeys:
-    """Keys of [c_axis] of a lathe."""
+    """The keys of [c_axis] of a lathe."""
 
     feedback: bool = declare_key(
         default=False,
@@ -93,7 +96,7 @@ class CAxisKeys:
 
 
 class ToolingKeys:
-    """Keys of [tooling]."""
+    """The keys of [tooling]."""
 
     kind: str = declare_key(
         default="single",
@@ -104,7 +107,7 @@ class ToolingKeys:
 
 
 class CheckKeys:
-    """Keys of [checks]."""
+    """The keys of [checks]."""
 
     silenced: Words = declare_key(
         default="",
@@ -114,7 +117,7 @@ class CheckKeys:
 
 
 class MCodeKeys:
-    """Keys of an M code that switches an output, [m_codes.…]."""
+    """The keys of an M code that switches an output, in [m_codes.…]."""
 
     output: str = declare_key(meaning="Name of the output in [io.out] that the code switches.")
     on: bool = declare_key(meaning="State to which the code switches the output.")
@@ -124,7 +127,7 @@ class MCodeKeys:
 
 
 class IgnoredMCodeKeys:
-    """Keys of an M code of another machine that has no effect on this one."""
+    """The keys of an M code of another machine that has no effect on this machine."""
 
     ignored: str = declare_key(
         choices=(True,),
@@ -145,22 +148,22 @@ class _SpindleDriver:
 
 
 def _add_driver_choices(keys: tuple[KeyField, ...], key: str, words: Iterable[str]) -> tuple[KeyField, ...]:
-    """Return the keys, one of them with the choices that the drivers provide."""
+    """Return the keys, in which the key ``key`` has the choices that the drivers provide."""
     choices = tuple(word for word in words if word)
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
 
 def machine_table_fields(drivers: Sequence[DriverDeclaration]) -> tuple[KeyField, ...]:
-    """Return the keys of [machine] with the backends of the drivers."""
+    """Return the keys of [machine], including the backends of the drivers."""
     keys = (*get_declared_keys(GeneralKeys), *get_declared_keys(Timing))
     return _add_driver_choices(keys, "backend", (driver.backend for driver in drivers))
 
 
 def tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tuple[str, KeySchema], ...]:
-    """Return paths and keys of the tables that contain no other tables.
+    """Return the paths and keys of the tables that do not contain other tables.
 
-    The tables axis, io and m_codes contain tables, some with names chosen in the file. The spindle drivers
-    come from the drivers.
+    The tables axis, io and m_codes contain other tables, some of which have names chosen in the file. The
+    names of the spindle drivers come from the drivers.
     """
     spindle = (*get_declared_keys(SpindleModel), *get_declared_keys(_SpindleDriver))
     return (
@@ -176,7 +179,7 @@ def tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tupl
 
 
 def top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
-    """Return the names of all tables that a file may have, in the order of the documentation."""
+    """Return the names of all tables that a file may contain, in the order of the documentation."""
     own = [table for table in all_driver_tables(drivers) if "." not in table.path]
     return (
         *(
@@ -200,7 +203,7 @@ def top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
 
 
 class _NoColletKeys:
-    """Keys of [collet] of a mill."""
+    """The empty set of keys of [collet] of a mill."""
 
     open_s: float = declare_key(
         KeyRange(0.0, 10.0, FileUnit.SECONDS), default=0.0, meaning="A mill has no collet."

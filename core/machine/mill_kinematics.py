@@ -1,4 +1,7 @@
-"""Table [kinematics] of a mill: positions and order of its rotary axes, and position of the workpiece."""
+"""Table [kinematics] of a mill.
+
+The table contains the positions and order of the rotary axes and the position of the workpiece.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ _AXIS_DIRECTIONS = {"A": "X", "B": "Y", "C": "Z"}
 
 @make_key_table
 class RotaryModel:
-    """One rotary axis, described with all rotary axes at 0."""
+    """One rotary axis, described in the position in which all rotary axes are at 0."""
 
     name: str
     side: str = declare_key(
@@ -49,20 +52,20 @@ class RotaryModel:
 
     @property
     def is_table(self) -> bool:
-        """True if the axis turns the table instead of the head."""
+        """Return whether the axis turns the table instead of the head."""
         return self.side == "table"
 
     @property
     def unit_vector(self) -> Triple:
-        """The direction of the axis of rotation, as a unit vector."""
+        """Return the direction of the axis of rotation as a unit vector."""
         return _DIRECTIONS[self.direction]
 
 
 @make_key_table
 class KinematicsModel:
-    """Position of the workpiece in mm and degrees, and the rotary axes.
+    """The position of the workpiece in mm and degrees, and the rotary axes of a mill.
 
-    ``chain`` is the order of the axes from the workpiece to the tool.
+    ``chain`` contains the axes in their order from the workpiece to the tool.
     """
 
     origin: Triple = declare_key(
@@ -78,7 +81,7 @@ class KinematicsModel:
 
 
 class KinematicsReading:
-    """Reads [kinematics] if the file has it; ``findings`` contains the errors in the table."""
+    """Parser of the optional table [kinematics]; ``findings`` contains the errors in the table."""
 
     def __init__(
         self, data: Mapping[str, object], values: FileValues, kind: str, rotary: Sequence[str]
@@ -91,7 +94,10 @@ class KinematicsReading:
             self._read(data[KINEMATICS_TABLE], kind, rotary)
 
     def build_model(self) -> KinematicsModel | None:
-        """Return the model of the table, or None without a table. There must be no findings."""
+        """Return the model of the table, or None without a table.
+
+        Call this method only if ``findings`` is empty.
+        """
         if not self._there:
             return None
         chain = (
@@ -133,7 +139,9 @@ class KinematicsReading:
         self.findings += [*self._check_rules()]
 
     def _check_rules(self) -> Iterator[FileFinding]:
-        """Yield findings about rules between the axes, each checked if its values are valid."""
+        """Yield findings about related values of the axes, which are checked only if these values are
+        valid.
+        """
         values = self._values
         if len(self._names) > MAX_ROTARY_AXES:
             yield FileFinding(

@@ -1,4 +1,4 @@
-"""Tables [backup] and [dnc] of the machine file: daily backups, and the serial line for programs."""
+"""Tables [backup] and [dnc] of the machine file, for daily backups and for the serial line for programs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DEFAULT_BACKUP_COUNT = 14
 
 @make_key_table
 class SerialLineModel:
-    """Settings of the serial line over which programs are sent and received."""
+    """The settings of the serial line over which programs are sent and received."""
 
     port: str = declare_key(meaning="Serial port, such as `/dev/serial/by-id/…`.")
     baud: int = BAUD_RATE_KEY
@@ -67,7 +67,7 @@ DNC_DRIVER = DriverDeclaration(
 
 @make_key_table
 class BackupTable:
-    """Folder and number of the daily backups."""
+    """The folder and the number of the daily backups."""
 
     folder: str = declare_key(
         default="",

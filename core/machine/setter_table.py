@@ -1,4 +1,4 @@
-"""Table [setter] of the machine file: a fixed tool setter or probe for touching off tools."""
+"""Table [setter] of the machine file, for a fixed tool setter or probe that is used to touch off tools."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ MAX_TOUCH_DELAY_S = 0.1  # s, longest time from the touch to the command to brak
 
 @make_key_table
 class SetterModel:
-    """Position of the stylus of a tool setter, and the motion of a touch-off.
+    """The position of the stylus of a tool setter, and the motion of a touch-off.
 
-    Units are mm and mm/s, with X as a radius. ``x z`` is the middle of the stylus, measured from part zero
-    and the spindle axis. ``width`` is its size, with the faces at half this distance from the middle.
-    ``overtravel`` is the distance by which it may be pushed. The tool searches at ``speed`` within
-    ``search``, retracts by ``back_off``, and touches again at ``slow``.
+    Values are in mm and mm/s, with X as a radius. ``x`` and ``z`` are the middle of the stylus, measured
+    from the spindle axis and part zero. ``width`` is the size of the stylus, whose faces are at half this
+    distance from the middle. ``overtravel`` is the distance by which the stylus may be pushed. The tool
+    searches for the stylus at ``speed`` within the distance ``search``, retracts by ``back_off``, and
+    touches the stylus again at ``slow``.
     """
 
     x: float = declare_key(
@@ -56,7 +57,7 @@ class SetterModel:
     )
 
     def touch_position(self, axis: str, sign: int) -> float:
-        """Return the tip position at which it touches the stylus in this direction, in mm from part zero."""
+        """Return the position at which the tip touches the stylus in this direction, in mm from part zero."""
         middle = self.x if axis == "X" else self.z
         return middle - sign * self.width / 2.0
 
@@ -100,9 +101,10 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def stopping_distance(speed: float, accel: float, commit: float) -> float:
-    """Return the largest distance from the touch to rest.
+    """Return the maximum distance from the touch to standstill, in mm.
 
-    It consists of the detection delay, the commit time and the braking distance.
+    The distance consists of the travel during the detection delay and the commit time, and the braking
+    distance.
     """
     return speed * (MAX_TOUCH_DELAY_S + commit) + speed * speed / (2.0 * accel)
 

@@ -40,7 +40,7 @@ def check_signals(reading: MachineReading) -> Iterator[FileFinding]:
 
 
 def terminals_by_signal(reading: MachineReading) -> dict[str, str]:
-    """Return the terminal of each signal by the path of the signal."""
+    """Return the terminal of each signal, by the key path of the signal."""
     paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
     values = reading.values
     return {path: values.text(f"{path}.at") for path in paths if values.has_values(f"{path}.at")}
@@ -105,7 +105,7 @@ def _m_codes(reading: MachineReading) -> Iterator[FileFinding]:
 
 
 def _mdi_language(reading: MachineReading) -> str:
-    """Return the MDI language, or the default of the machine's kind if it is invalid."""
+    """Return the MDI language, or the default language of the kind of machine if it is invalid."""
     said = str(reading.values.values_by_path.get("machine.language"))
     return said if said in FIXED_M_CODES else LANGUAGES[reading.kind][0]
 
@@ -119,7 +119,7 @@ def ignored_m_codes(reading: MachineReading) -> Iterator[int]:
 
 
 def enabled_m_codes(reading: MachineReading) -> Iterator[tuple[int, str, bool]]:
-    """Yield number, output and state of every complete and enabled M code."""
+    """Yield the number, output and output state of every complete and enabled M code."""
     values = reading.values
     for code in reading.m_codes:
         path = f"m_codes.{code}"
@@ -138,7 +138,10 @@ def disabled_m_codes(reading: MachineReading) -> Iterator[int]:
 
 
 def _check_outputs_turn_off(reading: MachineReading) -> Iterator[FileFinding]:
-    """Yield findings for outputs that an M code turns on but no code turns off; M12 handles the collet."""
+    """Yield findings for outputs that an M code turns on but no M code turns off.
+
+    The collet is an exception, because M12 and M13 switch it.
+    """
     if any(path.startswith("m_codes.") for path in reading.values.invalid_paths):
         return  # the invalid entry may be the missing code
     codes = list(enabled_m_codes(reading))
@@ -195,7 +198,10 @@ def _check_lamps(reading: MachineReading) -> Iterator[FileFinding]:
 def check_shared_terminals(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration]
 ) -> Iterator[FileFinding]:
-    """Yield a finding for every signal or pot on a terminal that is already used, in any spelling."""
+    """Yield a finding for every signal or analog input on a terminal that is already used.
+
+    Different spellings of the same terminal are recognized.
+    """
     taken: dict[object, str] = {}
     places = {f"{path}.at": terminal for path, terminal in file.terminals.items()}
     places |= {f"{path}.at": terminal for path, terminal in file.find_wired_pots().items()}
@@ -208,7 +214,7 @@ def check_shared_terminals(
 
 
 def check_pots(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
-    """Yield a finding for every pot with an invalid range or switch."""
+    """Yield a finding for every potentiometer with an invalid range or switch."""
     values = file.values
     there = (*file.terminals, *(path.removesuffix(".at") for path in values.invalid_paths))
     inputs = {path.removeprefix("io.in.") for path in there if path.startswith("io.in.")}
@@ -234,7 +240,7 @@ def check_pots(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -
 
 
 def check_missing_devices(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for each signal at a device that this TurnDesk cannot read.
+    """Yield a finding for each signal of a device that this TurnDesk cannot read.
 
     Without this rule, a stop button on the pendant would be an input that never turns on.
     """
@@ -256,14 +262,20 @@ def _backend(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Driver
 def _is_screen_button(
     switch: str, values: FileValues, drivers: Sequence[DriverDeclaration], inputs: Collection[str]
 ) -> bool:
-    """Return whether the switch is a button on the screen because no operator station is wired."""
+    """Return whether the switch is a button on the screen.
+
+    This is the case if no operator station is wired.
+    """
     backend = _backend(values, drivers)
     wired = backend is not None and backend.inputs is not None
     return switch == SPINDLE_SWITCH_INPUT and not (wired and any(name in inputs for name in _BUTTONS))
 
 
 def _suggest_line(file: MachineFileReading, drivers: Sequence[DriverDeclaration], switch: str) -> str:
-    """Return the message with the line to add. Without its input, the switch would always be on AUTO."""
+    """Return the message with the line to add for the input of the switch.
+
+    Without this input, the switch would always be on AUTO.
+    """
     backend = _backend(file.values, drivers)
     terminal = _free_input(file, drivers, backend) if backend is not None else "IN-…"
     key = switch if switch.replace("_", "").isalnum() else format_toml_value(switch)
@@ -287,7 +299,7 @@ def _free_input(
 def _normalize_terminal(
     file: MachineFileReading, drivers: Sequence[DriverDeclaration], terminal: str
 ) -> object:
-    """Return a value that is equal for two spellings of the same terminal."""
+    """Return a value that is equal for different spellings of the same terminal."""
     for driver in drivers:
         found = driver.normalize_terminal(file, terminal) if driver.normalize_terminal is not None else None
         if found is not None:

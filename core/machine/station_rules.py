@@ -1,4 +1,4 @@
-"""Rules for a handwheel and its switches, and for jog buttons. Wired palm buttons are rejected."""
+"""Rules for a handwheel with its switches, for jog buttons, and against wired palm buttons."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ JOG_RAPID_INPUT = "jog_rapid"  # pressed together with a jog button
 
 
 def axis_selector_input(axis_name: str) -> str:
-    """Return the name of the input that is on while the axis selector switch is at this axis."""
+    """Return the name of the input that is on while the axis selector switch selects this axis."""
     return f"wheel_{axis_name.lower()}"
 
 
 def jog_button_input(axis: str, sign: int) -> str:
-    """Return the name of the input of the machine's jog button for this axis and direction."""
+    """Return the name of the input of the jog button for this axis and direction."""
     return f"jog_{axis.lower()}_{'plus' if sign > 0 else 'minus'}"
 
 
@@ -39,7 +39,7 @@ def check_jog_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for every invalid count and every switch that is not a handwheel switch."""
+    """Yield a finding for every invalid handwheel count and every switch that is not a handwheel switch."""
     values, analog = file.values, file.list_table_keys("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
@@ -104,7 +104,9 @@ WHY = (
 
 
 def check_palm_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for every input that is one of two palm buttons."""
+    """Yield a finding for every input that is one of two palm buttons, because the control must not read
+    them.
+    """
     for name in file.list_table_keys("io.in"):
         if _PALM.fullmatch(name):
             yield FileFinding(f"io.in.{name}", "", WHY, "broken-rule")

@@ -1,4 +1,4 @@
-"""Speed and acceleration limits of the axes, on which the motion planner is based."""
+"""Speed and acceleration limits of the axes, which the motion planner uses."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from core.message import CodedError, Message
 
 
 class MotionError(CodedError):
-    """Raised when a motion cannot be planned. The message names the block, the fault and the remedy."""
+    """Error raised if a motion cannot be planned.
+
+    The message names the block, the fault and the remedy.
+    """
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -38,12 +41,13 @@ class AxisLike(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MotionLimits:
-    """Limits of the axes, linear axes first, in mm/s and mm/s² or degrees/s and degrees/s².
+    """The speed and acceleration limits of the axes, with the linear axes first.
 
-    A lathe has the order X, Z, C. ``interval`` (s) is the time between two setpoints. Within an interval an
-    axis changes its velocity by at most ``amax * interval``, which also limits the velocity step at a corner.
-    ``grain`` (mm) is the resolution of the programmed words. Joints of short chords may be moved by this
-    amount on each axis; 0 leaves every joint at its programmed position.
+    Units are mm/s and mm/s², or degrees/s and degrees/s². A lathe has the order X, Z, C. ``interval`` (s)
+    is the time between two setpoints. Within an interval, an axis changes its velocity by at most ``amax *
+    interval``, which also limits the velocity step at a corner. ``grain`` (mm) is the resolution of the
+    programmed words. Joints of short chords may be moved by this amount on each axis; 0 leaves every joint
+    at its programmed position.
 
     Raises MotionError if a value is not positive and finite.
     """
@@ -71,8 +75,8 @@ class MotionLimits:
     def of(cls, axes: Sequence[AxisLike], interval: float, corner_tolerance: float = 0.0) -> MotionLimits:
         """Return the limits of a machine's axes.
 
-        ``corner_tolerance`` (mm) is the distance by which a joint of chords may be moved in X and Z together.
-        Each axis may always move it by one encoder count.
+        ``corner_tolerance`` (mm) is the distance by which a joint between chords may be moved in X and Z
+        together. Each axis may always move the joint by one encoder count.
         """
         return cls(
             vmax=tuple(axis.vmax for axis in axes),
@@ -83,22 +87,28 @@ class MotionLimits:
 
     @property
     def speeds(self) -> FloatArray:
-        """``vmax`` as an array (axes,)."""
+        """Return ``vmax`` as an array of shape (axes,)."""
         return np.array(self.vmax)
 
     @property
     def acceleration_array(self) -> FloatArray:
-        """``amax`` as an array (axes,)."""
+        """Return ``amax`` as an array of shape (axes,)."""
         return np.array(self.amax)
 
     @property
     def plane_speed(self) -> float:
-        """The smaller ``vmax`` of X and Z of a lathe in mm/s, which an arc can use in all directions."""
+        """Return the speed in mm/s that a lathe can use in every direction of the XZ plane.
+
+        This is the smaller ``vmax`` of X and Z.
+        """
         return min(self.vmax[:2])
 
     @property
     def plane_acceleration(self) -> float:
-        """The smaller ``amax`` of X and Z of a lathe in mm/s²; see ``plane_speed``."""
+        """Return the acceleration in mm/s² that a lathe can use in every direction of the XZ plane.
+
+        This is the smaller ``amax`` of X and Z.
+        """
         return min(self.amax[:2])
 
 

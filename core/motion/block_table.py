@@ -1,6 +1,6 @@
 """Elementary blocks as a table of numbers for the motion planner, with one row per block.
 
-Blocks arrive singly or in rows, and are combined to batches that are planned together.
+Blocks arrive individually or as series, and are combined into batches that are planned together.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class ModalLike(Protocol):
     """The modal values that the planner uses.
 
-    These are the rpm limits of constant surface speed, the shift of C in degrees, and whether the spindle is
-    engaged as C.
+    The values are the rpm limits of constant surface speed, the shift of C in degrees, and whether the
+    spindle is engaged as the C axis.
     """
 
     @property
@@ -40,9 +40,9 @@ class ModalLike(Protocol):
 
 
 class MotionBlock(Protocol):
-    """An elementary block as the interpreter makes it.
+    """An elementary block as the interpreter creates it.
 
-    Units are mm with X as a radius, degrees, and mm/s or mm/rev.
+    Positions are in mm, with X as a radius, or in degrees. Feeds are in mm/s or mm/rev.
     """
 
     n: int
@@ -80,15 +80,16 @@ _read_columns = attrgetter(*_COLUMNS, "per_rev", "clockwise", "modal.offset_c", 
 
 @dataclass(frozen=True, slots=True)
 class BlockTable:
-    """m blocks as columns. ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) are in machine coordinates.
+    """A table of m blocks, with one array per column.
 
-    Positions are stored in memory axis by axis, because columns are faster than rows. ``axis`` (m,) is the
-    machine X of the spindle centerline, from which radii are measured. ``locked`` (m,) is True while the
-    spindle is engaged as the C axis, whose revolutions then count for a feed per revolution. ``surface lo
-    hi`` (m,) are the surface speed in mm/s, NaN without one, and the limits of its rpm. ``way`` has m curved
-    moves on which the axes are not proportional, such as those of the virtual mill, or None. ``length`` (m,)
-    is given for blocks that specify all axes. It is NaN for blocks of a lathe, whose length follows from X, Z
-    and C.
+    ``start`` and ``end`` (m, axes) and ``centre`` (m, 2) are in machine coordinates. Positions are stored
+    in memory axis by axis, because columns are faster than rows. ``axis`` (m,) is the machine X of the
+    spindle centerline, from which radii are measured. ``locked`` (m,) is True while the spindle is engaged
+    as the C axis; the revolutions of C then count for a feed per revolution. ``surface`` (m,) is the
+    surface speed in mm/s, or NaN without a surface speed. ``min_rpm`` and ``max_rpm`` (m,) are the limits
+    of the spindle speed for this surface speed. ``way`` has m entries: a curved move on which the axes are
+    not proportional, such as a move of the virtual mill, or None. ``length`` (m,) is specified for blocks
+    that contain all axes. It is NaN for blocks of a lathe, whose length follows from X, Z and C.
     """
 
     n: FloatArray
@@ -112,9 +113,10 @@ class BlockTable:
 
 
 def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
-    """Return the table of blocks that move. ``rpm_max`` is the maximum spindle speed.
+    """Return the table of blocks that move.
 
-    Raises MotionError with the number of the block if its kind cannot be planned or a value is not a number.
+    ``rpm_max`` is the maximum spindle speed. Raises MotionError with the block number if the kind of a
+    block cannot be planned or a value is not a number.
     """
     width = len(_COLUMNS) + 4
     table = np.fromiter(chain.from_iterable(map(_read_columns, blocks)), np.float64).reshape(-1, width)
@@ -153,7 +155,7 @@ def read_blocks(blocks: Sequence[MotionBlock], rpm_max: float) -> BlockTable:
 
 
 def _find_rapids(blocks: Sequence[MotionBlock], kinds: FloatArray) -> BoolArray:
-    """Return the blocks (m,) to which the rapid override applies."""
+    """Return a mask (m,) of the blocks to which the rapid override applies."""
     rapid: BoolArray = kinds == KIND_CODES["rapid"]
     for i in np.flatnonzero((kinds == KIND_CODES["plane"]) | (kinds == KIND_CODES["plane-line"])).tolist():
         rapid[i] = blocks[i].rapid
@@ -165,7 +167,7 @@ def _way(block: MotionBlock) -> CurvedMove | None:
 
 
 def _travel_columns(blocks: Sequence[MotionBlock]) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return start and end (m, axes) and length (m,) of blocks that specify all axes."""
+    """Return the start and end (m, axes) and the length (m,) of blocks that specify all axes."""
     travels = [block.travel for block in blocks if block.travel is not None]
     if len(travels) != len(blocks):
         raise MotionError(
@@ -232,9 +234,10 @@ _FIELDS = tuple(f.name for f in fields(BlockTable))
 
 
 class MoveSeries(Protocol):
-    """m straight moves of X and Z as columns (m,). All other values are those of ``pattern``.
+    """A series of m straight moves of X and Z as columns (m,).
 
-    ``feed`` (m,) is None if the feed is that of ``pattern`` too.
+    All other values are those of ``pattern``. ``feed`` (m,) is None if the feed is also that of
+    ``pattern``.
     """
 
     @property
@@ -262,10 +265,10 @@ BlockGroup = list[Any] | MoveSeries
 def split_into_batches(
     blocks: Iterable[MotionBlock | MoveSeries], first_size: int, window_size: int
 ) -> Iterator[tuple[list[BlockGroup], int]]:
-    """Yield batches of ``window_size`` blocks with their sizes; the first batch has ``first_size`` blocks.
+    """Yield batches of ``window_size`` blocks, each with its number of blocks.
 
-    The last batch contains the remaining blocks. A full batch is yielded before the next block is read. Rows
-    are divided at the end of a batch.
+    The first batch has ``first_size`` blocks, and the last batch contains the remaining blocks. A full
+    batch is yielded before the next block is read. A series is divided where a batch ends.
     """
     batch: list[BlockGroup] = []
     singles: list[Any] = []
@@ -313,7 +316,10 @@ def build_table(batch: Sequence[BlockGroup], rpm_max: float) -> BlockTable:
 
 
 def _repeat_entries(column: Any, counts: Sequence[int]) -> Any:
-    """Return a column (k,) or (k, axes), or the curved moves, with each entry repeated ``counts`` times."""
+    """Return a column with each entry repeated ``counts`` times.
+
+    The column is an array (k,) or (k, axes), or a tuple of curved moves.
+    """
     if isinstance(column, tuple):
         return tuple(chain.from_iterable(map(repeat, column, counts)))
     # The array is stored axis by axis, and remains so when its columns are repeated.
@@ -321,7 +327,7 @@ def _repeat_entries(column: Any, counts: Sequence[int]) -> Any:
 
 
 def _write_series(table: BlockTable, rows: slice, row: MoveSeries) -> None:
-    """Write numbers, positions and feeds of a row of blocks to the slice ``at`` of the table."""
+    """Write the numbers, positions and feeds of a series of blocks to the slice ``rows`` of the table."""
     like = row.pattern
     table.n[rows] = row.n
     if row.feed is not None:

@@ -1,8 +1,8 @@
-"""Smoothing of the joints between short chords, as columns.
+"""Smoothing of the joints between short chords, with the joints as arrays.
 
-The points are complex numbers, X + iZ, so that a running sum and a selection treat both axes at once.
-Factors of single axes are arrays with two values for each joint, in the order in which the memory contains
-the points.
+The points are complex numbers, X + iZ, so that a running sum or a selection processes both axes at once.
+Factors of single axes are arrays with two values for each joint, in the order in which the points are in
+memory.
 """
 
 from __future__ import annotations
@@ -22,10 +22,10 @@ Points = npt.NDArray[np.complex128]
 
 
 class _Window(NamedTuple):
-    """The neighbors of each of m joints.
+    """The range of neighbors of each of m joints.
 
-    A sum over a window of ``size`` joints is the running sum at ``behind`` minus the one at ``first``.
-    ``size`` has two equal values for each joint, (2m,).
+    The sum over a window of ``size`` joints is the running sum at ``behind`` minus the running sum at
+    ``first``. ``size`` (2m,) has two equal values for each joint.
     """
 
     first: IntArray
@@ -39,7 +39,7 @@ class _Window(NamedTuple):
         return cls(at - around, at + around + 1, _twice((2 * around + 1).astype(np.float64)))
 
     def mean(self, points: Points) -> Points:
-        """Return the means (m,) of the points in each window."""
+        """Return the mean of the points in each window (m,)."""
         base = points[0]
         sums = np.zeros(len(points) + 1, dtype=np.complex128)
         np.subtract(points, base, out=sums[1:])
@@ -53,20 +53,21 @@ class _Window(NamedTuple):
 
 
 def axes(points: Points) -> FloatArray:
-    """Return a view (2m,) of the coordinates of the points, X and Z in turn."""
+    """Return a view (2m,) of the coordinates of the points, alternating X and Z."""
     return points.view(np.float64)
 
 
 def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
-    """Return each value (m,) for both axes of its joint, (2m,)."""
+    """Return an array (2m,) that repeats each value (m,) for both axes of its joint."""
     return np.repeat(values, 2).astype(np.float64, copy=False)
 
 
 def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -> Points:
-    """Return joints (m,) at the distances ``s``, moved toward the mean of their neighbors.
+    """Return the joints (m,) moved toward the mean of their neighbors.
 
-    Each joint moves by at most ``allowed`` along each axis. Every run of ``free`` (m,) joints is smoothed
-    separately, so that a corner is never crossed.
+    ``s`` contains the distances of the joints along the path. Each joint moves by at most ``allowed`` along
+    each axis. Every run of joints where ``free`` (m,) is True is smoothed separately, so that smoothing
+    never crosses a corner.
     """
     window = _Window.of(np.minimum(_clear(free), AROUND))
     last = window.behind - 1
@@ -74,9 +75,9 @@ def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -
     off = _twice(s - window.mean(s.astype(np.complex128)).real)
 
     def mean(of: Points) -> Points:
-        """Return the mean of the neighbors, corrected along their line to the joint's own distance.
+        """Return the mean of the neighbors, corrected along their line to the distance of the joint.
 
-        The joints of a straight line therefore remain on it.
+        The joints of a straight line therefore remain on the line.
         """
         rise = of.take(last)
         rise -= of.take(window.first)
@@ -97,7 +98,10 @@ def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -
 def _within(
     smooth: FloatArray, joints: FloatArray, window: _Window, free: BoolArray, allowed: FloatArray
 ) -> FloatArray:
-    """Return the coordinates (2m,) with excess moves spread over the neighbors, and limited to the rest."""
+    """Return the smoothed coordinates (2m,), limited to the allowed moves.
+
+    The part of a move that exceeds its limit is first spread over the neighboring joints.
+    """
     low, high = joints - allowed, joints + allowed
     near, movable = _Near.of(free), _twice(free)
     for _ in range(_CORRECTIONS):
@@ -113,7 +117,7 @@ def _within(
 
 
 def _clear(free: BoolArray) -> IntArray:
-    """Return the number of free joints on either side of each joint (m,)."""
+    """Return the number of consecutive free joints (m,) on both sides of each joint."""
     at = np.arange(len(free))
     before = at - np.maximum.accumulate(np.where(free, -1, at))
     behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
@@ -122,17 +126,21 @@ def _clear(free: BoolArray) -> IntArray:
 
 
 class _Near(NamedTuple):
-    """The joints within AROUND of each joint in the same run, by halves of the window.
+    """The joints within AROUND of each joint in the same run, reached in a few doubling steps.
 
-    Each item is a distance in coordinates (2 for one joint), and for each coordinate 1.0 if the coordinate at
-    that distance after it belongs to the same run and 0.0 otherwise, or None if there is only one run.
+    Each item of ``steps`` is a distance in coordinates (2 for one joint) and an array. The array has, for
+    each coordinate, 1.0 if the coordinate at that distance after it belongs to the same run, and 0.0
+    otherwise. It is None if only one run exists.
     """
 
     steps: tuple[tuple[int, FloatArray | None], ...]
 
     @classmethod
     def of(cls, free: BoolArray) -> _Near:
-        """Return the neighbors in the runs of ``free`` joints; a run ends before the next one begins."""
+        """Return the neighbors within the runs of ``free`` joints.
+
+        A joint that is not free ends a run.
+        """
         begins = free.copy()
         begins[1:] &= ~free[:-1]
         run = np.repeat(np.cumsum(begins), 2)
@@ -142,7 +150,7 @@ class _Near(NamedTuple):
         return cls(tuple((step, (run[step:] == run[:-step]).astype(np.float64)) for step in steps))
 
     def largest(self, values: FloatArray) -> FloatArray:
-        """Return the largest of the values (2m,), none below 0, within AROUND joints of each."""
+        """Return the largest value (2m,) within AROUND joints of each joint, at least 0."""
         ahead, back = values.copy(), values.copy()
         for step, same in self.steps:
             later, earlier = ahead[step:], back[:-step]
@@ -154,7 +162,7 @@ class _Near(NamedTuple):
 
 
 def _doublings() -> Iterator[int]:
-    """Yield the shifts by which windows of one joint grow to AROUND + 1 joints."""
+    """Yield the shifts by which windows of one joint grow to windows of AROUND + 1 joints."""
     reach = 1
     while reach <= AROUND:
         step = min(reach, AROUND + 1 - reach)

@@ -1,10 +1,10 @@
-"""The path as pieces with their limits and blocks, including blocks in which C turns too.
+"""The path as pieces with their limits and blocks, including blocks in which C also turns.
 
 C moves together with X and Z in moves of a virtual mill, and when a feed per revolution counts the
-revolutions of C. The length of such a piece is measured like its feed, along the path of the mill or of X and
-Z. The motion of X, Z and C per unit of length is its ``direction``. Limits, corners, look-ahead and holds are
-therefore those of any other line. A curved move becomes chords in X, Z and C. The reasons are in
-docs/decisions/0005-c-axis-and-virtual-mill.md.
+revolutions of C. The length of such a piece is measured in the same way as its feed: along the path of the
+mill or along the path of X and Z. The ``direction`` of the piece is the motion of X, Z and C per unit of
+length. Limits, corners, look-ahead and feed hold therefore work as for any other line. A curved move is
+divided into chords in X, Z and C. The reasons are in docs/decisions/0005-c-axis-and-virtual-mill.md.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ BLOCK_GAP_TOLERANCE = 1e-6  # mm or degrees between the end of a block and the s
 
 
 def find_divided_blocks(table: BlockTable) -> BoolArray:
-    """Return the blocks (m,) that are divided into several pieces."""
+    """Return a mask (m,) of the blocks that are divided into several pieces."""
     parted = _find_c_fed_moves(table)
     if table.way.count(None) < len(table.way):
         parted = parted | np.array([way is not None for way in table.way], dtype=bool)
@@ -70,9 +70,10 @@ def find_divided_blocks(table: BlockTable) -> BoolArray:
 
 
 def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, index: int) -> PathPieces:
-    """Return piece ``index`` as chords, or as a move of X and Z followed by the remaining rotation of C.
+    """Return the pieces into which the piece ``index`` is divided.
 
-    Raises MotionError if C turns too little for the move of X and Z.
+    These are chords, or a move of X and Z followed by the remaining rotation of C. Raises MotionError if C
+    turns too little for the move of X and Z.
     """
     piece, move = pieces[index : index + 1], table.way[index]
     if move is None:
@@ -89,11 +90,11 @@ def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, in
 
 
 def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits) -> FloatArray:
-    """Return fractions of a curved move (k+1,) between which the axes may move proportionally.
+    """Return the fractions (k+1,) of a curved move between which the axes may move proportionally.
 
     The chords deviate from the move by at most MAX_CHORD_ERROR_MM, measured on the part. Neighboring chords
-    differ so little that their joint permits the feed ``rate`` (mm/s), unless the move itself has a corner
-    there.
+    differ so little in direction that the joint between them permits the feed ``feed_mm_s``, unless the
+    move itself has a corner at that joint.
     """
     share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.critical_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
@@ -111,7 +112,10 @@ def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits)
 
 
 def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> BoolArray:
-    """Return which chords (k,) between ``ends`` at ``fractions`` deviate too much on the part."""
+    """Return a mask (k,) of the chords that deviate too much on the part.
+
+    The chords are between the positions ``ends`` at ``fractions`` of the move.
+    """
     span, change = np.diff(fractions), np.diff(ends, axis=0)
     true = move.machine_positions((fractions[:-1] + _CHECK_FRACTIONS[:, None] * span).ravel())
     chord = (ends[:-1] + _CHECK_FRACTIONS[:, None, None] * change).reshape(true.shape)
@@ -124,7 +128,7 @@ def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> Bool
 def _exceeds_velocity_step(
     move: CurvedMove, fractions: FloatArray, ends: FloatArray, speed: float, limits: MotionLimits
 ) -> BoolArray:
-    """Return the chords (k,) at whose ends the velocity step of an axis would be too large."""
+    """Return a mask (k,) of the chords at whose ends the velocity step of an axis would be too large."""
     length = np.diff(fractions) * move.length
     direction = np.diff(ends, axis=0) / length[:, None]
     turn = np.abs(np.diff(direction, axis=0))
@@ -143,7 +147,7 @@ def _exceeds_velocity_step(
 
 
 def _make_straight_pieces(piece: PathPieces, points: FloatArray, length: FloatArray) -> PathPieces:
-    """Return straight pieces through ``points`` (k+1, axes) with the given ``length`` (k,)."""
+    """Return straight pieces of the given ``length`` (k,) through ``points`` (k+1, axes)."""
     parts = piece[np.zeros(len(length), dtype=np.int64)]
     zero = np.zeros(len(length))
     return replace(
@@ -159,9 +163,9 @@ def _make_straight_pieces(piece: PathPieces, points: FloatArray, length: FloatAr
 
 
 def _find_c_fed_moves(table: BlockTable) -> BoolArray:
-    """Return the straight moves (m,) with a feed per revolution in which the spindle turns as C.
+    """Return a mask (m,) of the straight moves whose feed per revolution counts the revolutions of C.
 
-    The revolutions of C count for their feed.
+    In these moves, the spindle turns as the C axis.
     """
     if not table.locked.any():
         return np.zeros(len(table.n), dtype=bool)
@@ -202,12 +206,13 @@ def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> Path
 class MotionPath:
     """A path in machine coordinates that can be planned, with n pieces of m blocks.
 
-    ``s`` (n+1,) is the distance of the joints along the path in mm. It continues from earlier pieces that a
-    builder has dropped. ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in mm/s² are the limits along
-    the pieces. ``joint_limits`` (n+1,) are the squared speed limits of the joints, infinite at both ends.
-    The block with the number ``blocks[i]`` has the pieces ``first[i]:first[i+1]``, none if it has no length.
-    ``start`` (axes,) is the first point of the path. The last ``loose_joint_count`` joints may still move,
-    by the resolution of the words, when more blocks are added.
+    ``joint_distances`` (n+1,) are the distances of the joints along the path in mm. They continue from
+    earlier pieces that a builder has dropped. ``speed_caps`` (n,) in mm/s and ``accelerations`` (n,) in
+    mm/s² are the limits along the pieces. ``joint_limits`` (n+1,) are the squared speed limits of the
+    joints, infinite at both ends. The block ``block_numbers[i]`` has the pieces
+    ``first_pieces[i]:first_pieces[i+1]``; a block without length has no pieces. ``start_position`` (axes,)
+    is the first point of the path. The last ``loose_joint_count`` joints may still move, by the resolution
+    of the words, when more blocks are added.
     """
 
     pieces: PathPieces
@@ -226,16 +231,19 @@ class MotionPath:
 
     @property
     def length(self) -> float:
-        """Length of the whole path, in mm."""
+        """Return the length of the whole path, in mm."""
         return float(self.joint_distances[-1] - self.joint_distances[0])
 
     @property
     def corner_reach_mm(self) -> float:
-        """The largest distance around a joint that affects its limit, in mm: the path of one interval."""
+        """Return the largest distance around a joint that affects the limit of the joint, in mm.
+
+        This is the path that is traveled in one interval at the highest speed.
+        """
         return float(self.limits.interval * self.speed_caps.max(initial=0.0))
 
     def block_span(self, number: int) -> tuple[float, float]:
-        """Return the distances at which block ``n`` starts and ends.
+        """Return the distances at which block ``number`` starts and ends.
 
         Raises MotionError if the block is not on this path.
         """
@@ -249,12 +257,18 @@ class MotionPath:
         )
 
     def piece_at(self, distances: FloatArray) -> IntArray:
-        """Return the index of the piece at each distance; at a joint, that of the piece that starts there."""
+        """Return the index of the piece at each distance.
+
+        At a joint, this is the piece that starts there.
+        """
         found: IntArray = np.searchsorted(self.joint_distances, distances, side="right") - 1
         return np.clip(found, 0, max(len(self) - 1, 0))
 
     def positions_at(self, distances: FloatArray, piece: IntArray | None = None) -> FloatArray:
-        """Return the machine positions (k, axes) at the distances ``s`` (k,), exact on lines and arcs."""
+        """Return the machine positions (k, axes) at the given distances (k,).
+
+        The positions are exact on lines and arcs.
+        """
         if not len(self):
             return np.tile(self.start_position, (len(distances), 1))
         index = self.piece_at(distances) if piece is None else piece
@@ -263,11 +277,11 @@ class MotionPath:
 
 
 class PathBuilder:
-    """Builds a path from blocks that are added step by step.
+    """A builder of a path from blocks that are added step by step.
 
-    ``rpm_max`` is the highest spindle speed that is possible now: that of the machine, or the operator's
-    limit. It may be changed and applies to blocks that are added afterwards. The path remains valid while it
-    grows. A plan on the longer path is possible from any state of a plan on the shorter one.
+    ``rpm_max`` is the highest spindle speed that is possible now, which is the limit of the machine or of
+    the operator. It may be changed and applies to blocks that are added afterwards. The path remains valid
+    while it grows. A plan on the longer path is possible from any state of a plan on the shorter path.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = np.inf) -> None:
@@ -285,22 +299,22 @@ class PathBuilder:
 
     @property
     def has_blocks(self) -> bool:
-        """True if the path contains blocks."""
+        """Return whether the path contains blocks."""
         return self._start is not None
 
     def add_blocks(self, blocks: Iterable[MotionBlock], reached_distance: float = -np.inf) -> None:
         """Append blocks that move.
 
-        Raises MotionError, and adds nothing, if one of them cannot be planned. ``reached`` is the distance
-        before which the present motion can still stop. If it is near the end, no existing joint is moved any
-        more.
+        ``reached_distance`` is the distance before which the present motion can still stop. If this
+        distance is near the end of the path, existing joints are no longer moved. Raises MotionError, and
+        adds no block, if one of the blocks cannot be planned.
         """
         batch = list(blocks)
         if batch:
             self.add_batch([batch], reached_distance)
 
     def add_batch(self, batch: Sequence[BlockGroup], reached_distance: float = -np.inf) -> None:
-        """Append blocks given as lists and rows, which must not be empty; see ``add_blocks``."""
+        """Append blocks that are given as lists and series, which must not be empty; see ``add_blocks``."""
         table = build_table(batch, self.rpm_max)
         if self._closed:
             raise MotionError(
@@ -321,7 +335,10 @@ class PathBuilder:
         self._path = None
 
     def _append_pieces(self, pieces: PathPieces, reached: float) -> None:
-        """Append pieces and move the joints of short chords before the old end, which the new ones affect."""
+        """Append pieces and smooth the joints of short chords before the old end again.
+
+        The new pieces affect these joints.
+        """
         known = concatenate_pieces([*self._parts, pieces[:0]])
         if self._written is None or not len(known):  # blocks without length leave nothing to continue
             self._parts, self._written = [smooth_joints(pieces, self._limits)], pieces[-2 * SUPPORT :]
@@ -337,7 +354,7 @@ class PathBuilder:
         self._written = concatenate_pieces([self._written, pieces[-2 * SUPPORT :]])[-2 * SUPPORT :]
 
     def build_path(self) -> MotionPath:
-        """Return the path of all blocks that were added and not dropped.
+        """Return the path of all blocks that were added and have not been dropped.
 
         Raises MotionError if no block has been added.
         """
@@ -346,13 +363,13 @@ class PathBuilder:
         return self._path
 
     def end_path(self) -> None:
-        """End the path with an exact stop, so that no blocks can be added."""
+        """End the path with an exact stop; no more blocks can be added."""
         self._closed, self._path = True, None
 
     def drop_blocks_before(self, block_number: int) -> None:
-        """Drop the blocks before block ``n``, except those that its corner limit still needs.
+        """Drop the blocks before block ``block_number``, except those that its corner limit still needs.
 
-        These are the last block with a length and, for short chords, those within one interval.
+        These are the last block with a length and, for short chords, the blocks within one interval.
         """
         path = self.build_path()
         keep = int(np.searchsorted(path.block_numbers, block_number))

@@ -1,8 +1,8 @@
 """The plan of a path: look-ahead, squared speeds at the joints, and phases of constant acceleration.
 
 To add a jerk limit, change ``build_profile``, which gives each piece an acceleration, a cruise and a
-deceleration. A jerk limit replaces these three phases by seven, and ``2·a·length`` by the speed that such a
-ramp reaches.
+deceleration. A jerk limit replaces these three phases by seven phases, and ``2·a·length`` by the speed that
+such a ramp reaches.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ _SUMS_ROW = 256  # =
 def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i+1] ≤ r[i] + gain[i].
 
-    With squared speeds as ``limit`` and 2·a·length as ``gain`` (n,) ≥ 0, the result is the speed that
-    acceleration can reach: r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), where W is the running sum of
-    gain.
+    If ``limit`` contains squared speeds and ``gain`` (n,) ≥ 0 is 2·a·length, the result is the squared
+    speed that acceleration can reach. It is r[i] = min over j ≤ i of limit[j] + (W[i] - W[j]), where W is
+    the running sum of ``gain``.
     """
     count = len(limit)
     if count <= _FEW_PIECES:
@@ -51,7 +51,7 @@ def limit_forward(limit: FloatArray, gain: FloatArray) -> FloatArray:
 def limit_backward(limit: FloatArray, gain: FloatArray) -> FloatArray:
     """Return the largest r (n+1,) with r[i] ≤ limit[i] and r[i] ≤ r[i+1] + gain[i].
 
-    The result is the speed from which braking is possible.
+    The result is the squared speed from which braking is possible.
     """
     return limit_forward(limit[::-1], gain[::-1])[::-1]
 
@@ -64,7 +64,7 @@ def _one_by_one(limits: list[float], gains: list[float]) -> FloatArray:
 
 
 def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
-    """Return the limit at the start of each row that follows from the earlier rows."""
+    """Return, for the start of each row, the limit that follows from the earlier rows."""
     carry, carries = np.inf, []
     for low, total in zip(lows, totals, strict=True):
         carries.append(carry)
@@ -73,7 +73,7 @@ def _carry_limits(lows: list[float], totals: list[float]) -> FloatArray:
 
 
 def _remove_rounding(rough: FloatArray, limit: FloatArray, steps: FloatArray) -> FloatArray:
-    """Return the minima without the rounding error of the sums, wherever a limit applies."""
+    """Return the minima without the rounding error of the running sums, wherever a limit applies."""
     sharp = rough.copy()
     np.minimum(limit[1:], rough[:-1] + steps, out=sharp[1:])
     sharp[0] = limit[0]
@@ -88,7 +88,7 @@ _TINY_LENGTH = 1e-12  # relative length below which a ramp or a cruise is a roun
 
 
 def make_rest_profile(path: MotionPath, distance: float) -> MotionProfile:
-    """Return a profile without motion at the distance ``at``."""
+    """Return a profile without motion at the given distance."""
     none = np.empty(0)
     phases = Phases(none, none, none, none, none, np.empty(0, dtype=np.int64))
     return MotionProfile(
@@ -106,11 +106,11 @@ def build_profile(
     speed_caps: FloatArray,
     speeds: FloatArray,
 ) -> MotionProfile:
-    """Return the phases of n consecutive pieces from ``first`` on, starting at the distance ``at``.
+    """Return the profile of n consecutive pieces from ``first_piece`` on, starting at ``start_distance``.
 
-    ``speed_caps`` (n,) and ``speeds`` (n+1,) are squared speeds: the feed within the pieces, and the speeds
-    at the joints. A piece accelerates to its cap or as far as its length permits, cruises, and decelerates.
-    A piece entered above its cap decelerates first.
+    ``speed_caps`` (n,) are the squared feeds within the pieces, and ``speeds`` (n+1,) are the squared
+    speeds at the joints. A piece accelerates to its cap or as far as its length permits, cruises, and
+    decelerates. A piece that is entered above its cap decelerates first.
     """
     peak = np.minimum(
         np.maximum(speed_caps, speeds[1:]), 0.5 * (speeds[:-1] + speeds[1:]) + accelerations * length
@@ -143,7 +143,7 @@ def build_profile(
 
 
 def _in_turn(*columns: FloatArray) -> FloatArray:
-    """Return the three values (n, 3) of each piece from three columns (n,)."""
+    """Return the three values of each piece as rows (n, 3), from three columns (n,)."""
     rows = np.empty((len(columns[0]), len(columns)))
     for k, column in enumerate(columns):
         rows[:, k] = column
@@ -153,7 +153,10 @@ def _in_turn(*columns: FloatArray) -> FloatArray:
 def _distances(
     length: FloatArray, a: FloatArray, v0: FloatArray, peak: FloatArray, v1: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the lengths (n,) of acceleration, cruise and deceleration for the speeds between them."""
+    """Return the lengths (n,) of the acceleration, cruise and deceleration of each piece.
+
+    ``v0``, ``peak`` and ``v1`` are the speeds at the start, during the cruise and at the end.
+    """
     tiny, double = _TINY_LENGTH * peak, 2.0 * a
     rise = np.abs(peak - v0)
     fall = np.abs(peak - v1)
@@ -180,14 +183,14 @@ def plan_motion(
     rapid_scale: float = 1.0,
     stop: bool = False,
 ) -> MotionProfile:
-    """Return the fastest motion from ``start_s`` (default: the start of the path) at ``start_v`` to rest.
+    """Return the fastest motion from ``start_distance`` to rest.
 
-    The motion ends at the end of the path, or with ``stop`` as soon as braking permits. A scale of 0 stops
-    before the first feed (or rapid) piece, or at once if the motion can no longer stop before it. A speed
-    above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and corners always apply.
-
-    Raises MotionError if a value is not valid, or if the speed is too high for the next corner or for a stop
-    on this path. The state then does not come from a plan on this path.
+    The motion starts at ``start_speed``; the default distance is the start of the path. It ends at the end
+    of the path or, if ``stop`` is True, as soon as braking permits. A scale of 0 stops the motion before
+    the first feed (or rapid) piece, or immediately if the motion can no longer stop before that piece. A
+    speed above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and corners always
+    apply. Raises MotionError if a value is not valid, or if the speed is too high for the next corner or
+    for a stop on this path. Such a state does not come from a plan on this path.
     """
     _demand_sane(start_speed, feed_scale, rapid_scale)
     at = _start(path, start_distance)
@@ -213,9 +216,9 @@ def plan_motion(
 def find_last_settled_joint(path: MotionPath, start_distance: float | None = None) -> int:
     """Return the last joint whose planned speed cannot be changed by further pieces, or -1.
 
-    A piece that follows may form a sharp corner with the last one or none. The speed at the start of the last
-    piece may therefore be anything up to its limit. Joints with the same speed for 0 and for that limit are
-    settled.
+    The next piece may form a sharp corner with the last piece, or no corner. The speed at the start of the
+    last piece may therefore have any value up to its limit. A joint is settled if its speed is the same for
+    0 and for this limit.
     """
     first = int(path.piece_at(np.array([_start(path, start_distance)]))[0])
     # Later pieces may raise the limits of joints of short chords near the end.
@@ -252,7 +255,7 @@ def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
 
 @dataclass(frozen=True, slots=True)
 class _PieceRun:
-    """The n pieces that a plan covers; the first one may be partial."""
+    """The n pieces that a plan covers, of which the first may be partial."""
 
     length: FloatArray
     a: FloatArray
@@ -278,12 +281,12 @@ class _PieceRun:
         return v * v <= float(self.gain.sum()) + self.slack(v)
 
     def slack(self, v: float) -> float:
-        """Return the rounding error of a squared speed that the rounding of distances causes."""
+        """Return the rounding error of a squared speed that results from the rounding of distances."""
         return float(ROUNDING_TOLERANCE * v * v + 2.0 * ROUNDING_TOLERANCE * self.a.max(initial=0.0))
 
 
 def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
-    """Return the squared speeds (n+1,) at the joints, starting with v²."""
+    """Return the squared speeds (n+1,) at the joints; the first value is v²."""
     limit = run.hard.copy()
     np.minimum(limit[:-1], soft, out=limit[:-1])
     np.minimum(limit[1:], soft, out=limit[1:])
@@ -296,7 +299,7 @@ def _squared_speeds(run: _PieceRun, soft: FloatArray, v: float) -> FloatArray:
 
 
 def _brake_to_limits(run: _PieceRun, allowed: FloatArray, square: float, slack: float) -> FloatArray:
-    """Return full braking from a speed above the new feeds until they are met, then the normal plan."""
+    """Return full braking until the speed is within the new feeds, followed by the normal plan."""
     braked = square - np.concatenate([[0.0], np.cumsum(run.gain)])
     fits = np.flatnonzero(braked <= allowed + slack)
     fits = fits[fits > 0]

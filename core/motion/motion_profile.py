@@ -1,6 +1,7 @@
-"""A planned motion: distance along the path over time, in phases of constant acceleration, and setpoints.
+"""A planned motion: the distance along the path over time, in phases of constant acceleration.
 
-Setpoints describe the motion of each axis for a driver, in pieces of constant acceleration.
+The setpoints of a planned motion describe the motion of each axis for a driver, in pieces of constant
+acceleration.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ MAX_PART_ANGLE = 0.25  # rad, longest part of an arc
 
 
 class Phases(NamedTuple):
-    """k phases of constant acceleration along a path, each within one piece, as arrays (k,)."""
+    """Arrays (k,) of k phases of constant acceleration along a path, each within one piece."""
 
     t: FloatArray  # start, s
     dt: FloatArray  # length, s
@@ -34,7 +35,7 @@ class Phases(NamedTuple):
     piece: IntArray
 
     def select(self, selection: IntArray | BoolArray | slice) -> Phases:
-        """Return the selected phases."""
+        """Return only the phases that ``selection`` selects."""
         return Phases(
             t=self.t[selection],
             dt=self.dt[selection],
@@ -48,12 +49,12 @@ class Phases(NamedTuple):
 def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -> SegmentArrays:
     """Return the setpoint pieces (t, dt, p, v, a) of k phases, with ``time_origin_s`` added to their times.
 
-    A line gives one exact piece. An arc is divided into equal times of at most 2 ms. The ends of the parts
-    are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so positions are continuous. With the jerk j =
-    v/R·hypot(v²/R, 3a) of the true motion, the position between the ends has an error of at most j·h³·2/81,
-    and the velocity steps by at most j·h²/6 at a joint. The time h is chosen so that the position error is
-    below 0.25 µm. The velocity step is then far below amax · interval. The part that ends at rest ends with
-    velocity 0 and has its velocity step at its start.
+    A phase on a line gives one exact piece. A phase on an arc is divided into parts of equal time, each at
+    most 2 ms. The ends of the parts are on the arc and are joined by a = 2·(P1 - P0 - V0·h)/h², so
+    positions are continuous. With the jerk j = v/R·hypot(v²/R, 3a) of the true motion, the position between
+    the ends has an error of at most j·h³·2/81, and the velocity steps by at most j·h²/6 at a joint. The
+    time h is chosen so that the position error is below 0.25 µm. The velocity step is then far below amax ·
+    interval. A part that ends at rest has velocity 0 at its end and has its velocity step at its start.
     """
     parts = _part_counts(path, phases)
     owner = np.repeat(np.arange(len(parts)), parts)
@@ -69,7 +70,7 @@ def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -
 def _join_on_arc(
     path: MotionPath, phases: Phases, nth: IntArray, h: FloatArray, begin: tuple[FloatArray, FloatArray]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return velocity and acceleration that lead each part between its ends on the arc."""
+    """Return the velocity and acceleration that move each part from its start to its end on the arc."""
     end = (nth + 1) * h
     p1, _, _ = _phase_states(path, phases, end)
     resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
@@ -82,7 +83,10 @@ def _join_on_arc(
 
 
 def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatArray:
-    """Return the true acceleration (k, 3) at the start of arc phases with the velocity ``v`` (k, 3)."""
+    """Return the true acceleration (k, 3) at the start of phases on arcs.
+
+    ``v`` (k, 3) is the velocity at this point.
+    """
     pieces = path.pieces[phases.piece]
     tangent = pieces.tangent(np.clip(phases.s - path.joint_distances[phases.piece], 0.0, pieces.length))
     curved: FloatArray = tangent * phases.a[:, None]
@@ -110,7 +114,10 @@ def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
 def _phase_states(
     path: MotionPath, phases: Phases, tau: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return position, velocity and tangential acceleration (k, axes) at ``tau`` (k,) in the phases."""
+    """Return the position, velocity and tangential acceleration (k, axes) at a time in each phase.
+
+    ``tau`` (k,) is the time in seconds since the start of the phase.
+    """
     pieces = path.pieces[phases.piece]
     speed = np.maximum(phases.v + phases.a * tau, 0.0)
     local = phases.s - path.joint_distances[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
@@ -125,9 +132,9 @@ ROUNDING_TOLERANCE_S = 1e-12  # s that are a rounding error
 
 @dataclass(frozen=True, slots=True)
 class MotionProfile:
-    """Motion along ``path`` from ``start_distance`` at t = 0 to ``end_distance`` at ``duration_s``.
+    """The motion along ``path`` from ``start_distance`` at time 0 to ``end_distance`` at ``duration_s``.
 
-    A plan ends at rest. Only a part cut off with ``cut_at_distance`` may end in motion. A profile without
+    A plan ends at rest. Only a part that ``cut_at_distance`` returns may end in motion. A profile without
     phases is at rest at ``end_distance``. Times are in seconds from the start of the profile.
     """
 
@@ -141,9 +148,9 @@ class MotionProfile:
         return len(self.phases.t)
 
     def distance_and_speed_at(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
-        """Return distance and speed at the times ``t`` (m,).
+        """Return the distances and speeds at the times ``times_s`` (m,).
 
-        Earlier times give the state at the start. Later times give rest at the end.
+        Times before the start give the state at the start. Times after the end give rest at the end.
         """
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
@@ -158,14 +165,20 @@ class MotionProfile:
 
     @property
     def end_speed(self) -> float:
-        """The speed at the end in mm/s: 0 for a plan, the speed to continue with for a part of one."""
+        """Return the speed at the end of the profile in mm/s.
+
+        It is 0 for a plan. For a part of a plan, it is the speed at which the next part continues.
+        """
         if not len(self):
             return 0.0
         last = self.phases.select(slice(-1, None))
         return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
 
     def positions_at(self, times_s: FloatArray | float) -> FloatArray:
-        """Return the machine positions (m, axes) at the times ``t`` (m,), exact on lines and arcs."""
+        """Return the machine positions (m, axes) at the times ``times_s`` (m,).
+
+        The positions are exact on lines and arcs.
+        """
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         s, _ = self.distance_and_speed_at(times)
         if not len(self):
@@ -173,7 +186,10 @@ class MotionProfile:
         return self.path.positions_at(s, self.phases.piece[self._phase(times)])
 
     def block_numbers_at(self, times_s: FloatArray | float) -> IntArray:
-        """Return the numbers of the blocks executed at the times ``t`` (m,); 0 without motion."""
+        """Return the numbers of the blocks that are executed at the times ``times_s`` (m,).
+
+        All numbers are 0 for a profile without motion.
+        """
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
             return np.zeros(times.shape, dtype=np.int64)
@@ -181,7 +197,10 @@ class MotionProfile:
         return owner
 
     def block_number_at(self, time_s: float) -> int:
-        """Return the number of the block executed at ``t`` in seconds; faster than ``block_numbers_at``."""
+        """Return the number of the block that is executed at ``time_s``, in seconds.
+
+        This is faster than ``block_numbers_at``.
+        """
         if not len(self):
             return 0
         found = int(self.phases.t.searchsorted(time_s, side="right")) - 1
@@ -189,16 +208,16 @@ class MotionProfile:
         return int(self.path.pieces.block[piece])
 
     def find_block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return the numbers of all blocks of the path, and the times at which each starts and ends.
+        """Return the numbers of all blocks of the path, with their start times and end times.
 
-        Times are in seconds, and inf for a block that is not reached. Blocks before the start have 0 for
-        both. A block without length ends when it starts.
+        Times are in seconds, and inf for a block that is not reached. Both times are 0 for blocks before
+        the start of the profile. A block without length ends at its start time.
         """
         joints, first = self._joint_times(), self.path.first_pieces
         return self.path.block_numbers, joints[first[:-1]], joints[first[1:]]
 
     def times_at_distances(self, distances: FloatArray) -> FloatArray:
-        """Return the times at which the distances ``s`` (m,) are reached.
+        """Return the times at which the motion reaches the distances (m,).
 
         The time is 0 before the start, and inf after the end.
         """
@@ -216,16 +235,20 @@ class MotionProfile:
     def make_segments(
         self, start_time_s: float, end_time_s: float, time_origin_s: float = 0.0
     ) -> SegmentArrays:
-        """Return setpoint arrays (t, dt, p, v, a) for a time window: the fields of ``core.ports.Segments``.
+        """Return the setpoint arrays (t, dt, p, v, a) of a time window.
 
-        A phase on a line gives one piece of constant acceleration. Arcs give parts of at most 2 ms, as
-        described in ``make_axis_segments``. ``t`` is the time of the profile plus ``time_origin_s``. The
-        arrays end in motion if ``t_to`` is before the end of the profile, and at rest otherwise.
+        The arrays are the fields of ``core.ports.Segments``. A phase on a line gives one piece of constant
+        acceleration. Arcs give parts of at most 2 ms, as described in ``make_axis_segments``. The times t
+        are times of the profile plus ``time_origin_s``. The arrays end in motion if ``end_time_s`` is
+        before the end of the profile, and at rest otherwise.
         """
         return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
 
     def cut_at_distance(self, distance: float) -> MotionProfile:
-        """Return the part up to the distance ``s``, which must be a joint. It may end in motion."""
+        """Return the part of the profile up to ``distance``, which must be the distance of a joint.
+
+        The part may end in motion.
+        """
         count = int(np.searchsorted(self.phases.s, distance, side="left"))
         phases = self.phases.select(slice(0, count))
         duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
@@ -238,7 +261,10 @@ class MotionProfile:
         )
 
     def _joint_times(self) -> FloatArray:
-        """Return the times of all joints, from their pieces. Near a stop, distances give no exact times."""
+        """Return the times of all joints, calculated from the phases of their pieces.
+
+        Near a stop, exact times cannot be calculated from distances.
+        """
         joints = np.arange(len(self.path) + 1)
         times = np.append(self.phases.t, self.duration_s)[np.searchsorted(self.phases.piece, joints)]
         return np.where(self.path.joint_distances > self.end_distance + ROUNDING_TOLERANCE_MM, np.inf, times)

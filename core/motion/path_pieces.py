@@ -1,9 +1,9 @@
 """Lines and arcs as arrays for the motion planner, and smoothing of joints between short chords.
 
-Programmed points are rounded to the resolution. With chords of 0.01 mm, the rounding changes the direction at
-every joint far more than the original curve does. Each joint is therefore moved, by at most one resolution
-step per axis, to the curve that its neighbors indicate. Ends of runs of chords, corners, arcs, long lines and
-moves of other axes remain as programmed.
+Programmed points are rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction
+at every joint far more than the original curve does. Each joint is therefore moved, by at most one
+resolution step per axis, to the curve that its neighbors indicate. Ends of runs of chords, corners, arcs,
+long lines and moves of other axes remain as programmed.
 """
 
 from __future__ import annotations
@@ -30,13 +30,15 @@ _TURNS = 4.0  # resolution steps per chord length; a larger turn is not caused b
 
 @dataclass(frozen=True, slots=True)
 class PathPieces:
-    """n lines and arcs in machine coordinates, in mm, degrees for C, radians for angles, and mm/s.
+    """Arrays of n lines and arcs in machine coordinates.
 
-    A line has ``start`` (n, axes) and ``direction`` (n, axes), the change of the axes per unit of path. The
-    path of a lathe is measured in X and Z, and in degrees if only C turns. Blocks of other machines specify
-    their length. An arc has ``curvatures`` ±1/radius, positive for clockwise and 0 for lines. ``angle`` is
-    that of its start, with x = center x + radius·sin and z = center z + radius·cos. ``direction`` of an arc
-    contains only the motion of C. ``block`` is the number of the block, and ``rate`` is the programmed speed.
+    Lengths are in mm, or degrees for C, angles are in radians, and speeds are in mm/s. A line has ``start``
+    (n, axes) and ``direction`` (n, axes), which is the change of the axes per unit of path. The path of a
+    lathe is measured in X and Z, or in degrees if only C turns. Blocks of other machines specify their
+    length. An arc has ``curvatures`` ±1/radius, positive for clockwise; they are 0 for lines. ``angle`` is
+    the angle of the start of the arc, with x = center x + radius·sin and z = center z + radius·cos. The
+    ``direction`` of an arc contains only the motion of C. ``block`` is the number of the block, and
+    ``rate`` is the programmed speed.
     """
 
     block: IntArray
@@ -57,9 +59,7 @@ class PathPieces:
         return PathPieces(*[getattr(self, name)[part] for name in _FIELDS])
 
     def tangent(self, distances: FloatArray) -> FloatArray:
-        """Return the directions (n, axes) at the distances ``distances`` (n,) from the start of each
-        piece.
-        """
+        """Return the directions (n, axes) at ``distances`` (n,) from the start of each piece."""
         tangent = self.direction.copy(order="K")
         arc = np.flatnonzero(self.curvatures)
         if len(arc):
@@ -70,7 +70,7 @@ class PathPieces:
         return tangent
 
     def point(self, distances: FloatArray) -> FloatArray:
-        """Return the positions (n, axes) at the distances ``distances`` (n,) from the start of each piece."""
+        """Return the positions (n, axes) at ``distances`` (n,) from the start of each piece."""
         point = self.start + self.direction * distances[:, None]
         arc = self.curvatures != 0.0
         if arc.any():
@@ -84,16 +84,17 @@ _FIELDS = tuple(f.name for f in fields(PathPieces))
 
 
 def concatenate_pieces(parts: Sequence[PathPieces]) -> PathPieces:
-    """Return the pieces of several arrays, one after the other."""
+    """Return the pieces of several arrays as one array, in the given order."""
     if len(parts) == 1:
         return parts[0]
     return PathPieces(*[np.concatenate([getattr(p, name) for p in parts]) for name in _FIELDS])
 
 
 def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
-    """Return one piece for each of m blocks, including those of length zero. ``rate`` (m,) is in mm/s.
+    """Return one piece for each of m blocks, including blocks without length.
 
-    Raises MotionError if the start and the end of an arc are not on one circle.
+    ``speeds`` (m,) are in mm/s. Raises MotionError if the start and the end of an arc are not on one
+    circle.
     """
     delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
@@ -127,7 +128,10 @@ def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
 
 
 def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return center, radius, start angle, curvature and positive sweep; zeros for lines and points."""
+    """Return the center, radius, start angle, curvature and positive sweep of each block.
+
+    The values are zero for lines and points.
+    """
     m = len(table.n)
     centre, sweep = np.zeros((m, 2)), np.zeros(m)
     radius, angle, curvature = np.zeros(m), np.zeros(m), np.zeros(m)
@@ -149,7 +153,7 @@ def _circles(table: BlockTable) -> tuple[FloatArray, FloatArray, FloatArray, Flo
 
 
 def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
-    """Return the centers moved to the perpendicular bisector of the chord, so that the arc meets its end.
+    """Return arc centers moved to the perpendicular bisector of the chord, so that the arc meets its end.
 
     Programmed centers are rounded to the resolution. Without this correction, the path would have a gap of
     that size.
@@ -178,7 +182,10 @@ def _adjust_centers(table: BlockTable, arc: IntArray) -> FloatArray:
 
 
 def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
-    """Return the pieces with joints moved by at most ``limits.grain`` per axis. Both ends remain."""
+    """Return the pieces with each joint moved by at most ``limits.grain`` per axis.
+
+    The first and the last point remain unchanged.
+    """
     inner = _is_free_joint(pieces, limits)
     if not inner.any():
         return pieces
@@ -196,12 +203,15 @@ def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
 
 
 def _joint_positions(pieces: PathPieces) -> FloatArray:
-    """Return the starts of the pieces (n,) and the end of the last one: (n+1, axes)."""
+    """Return the start positions of the pieces and the end position of the last piece (n+1, axes)."""
     return np.concatenate([pieces.start, pieces[-1:].point(pieces.length[-1:])])
 
 
 def move_joints(pieces: PathPieces, joints: FloatArray, is_free: BoolArray) -> PathPieces:
-    """Return the lines between ``joints`` (n+1, axes) where at least one end is ``is_free`` (n+1,)."""
+    """Return the pieces with their ends moved to ``joints`` (n+1, axes).
+
+    Only lines with at least one end where ``is_free`` (n+1,) is True are changed.
+    """
     touched = np.flatnonzero(is_free[:-1] | is_free[1:])
     start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
     length = pieces.length.copy()
@@ -222,10 +232,9 @@ def extend_smoothed_pieces(
     redo_count: int,
     limits: MotionLimits,
 ) -> PathPieces:
-    """Return the last ``redo_count`` pieces of ``smoothed``, smoothed together with the ``new_pieces``
-    pieces that follow.
+    """Return the last ``redo_count`` pieces of ``smoothed`` and all ``new_pieces``, smoothed together.
 
-    ``programmed`` are the last pieces of ``smoothed`` as programmed, at least SUPPORT more than
+    ``programmed`` contains the last pieces of ``smoothed`` as programmed, at least SUPPORT more than
     ``redo_count`` if so many exist.
     """
     both = concatenate_pieces([programmed, new_pieces])
@@ -249,7 +258,7 @@ def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
 
 
 def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
-    """Return the lines (n,) of linear axes that are short enough to be affected by rounding."""
+    """Return a mask (n,) of the lines of linear axes that are short enough to be affected by rounding."""
     # Rounding turns longer lines so little that no speed is too high for the joint.
     longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
     alone = (pieces.curvatures == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
@@ -258,7 +267,10 @@ def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
 
 
 def _is_free_joint(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
-    """Return the joints (n-1,) between two short chords that turn no more than rounding can cause."""
+    """Return a mask (n-1,) of the joints that may be smoothed.
+
+    These are joints between two short chords whose direction changes no more than rounding can cause.
+    """
     if limits.grain <= 0.0 or len(pieces) < 3:
         return np.zeros(max(len(pieces) - 1, 0), dtype=bool)
     chord = _is_short_chord(pieces, limits)

@@ -1,12 +1,13 @@
 """Programmed speeds, and speed and acceleration limits of pieces, corners and runs of chords.
 
-Words are rounded to the resolution. With chords of 0.01 mm, this rounding turns the direction at every joint
-far more than the curve does. An axis does not see the single turns but their sum between two setpoints. The
-demand on an axis is the second difference of its setpoints, |P(s+r) - 2·P(s) + P(s-r)| / interval², where r
-is the distance of one interval. This module compares that value with the limit of the axis.
+Words are rounded to the resolution. With chords of 0.01 mm, this rounding changes the direction at every
+joint far more than the curve does. An axis does not follow the single changes of direction, but their sum
+between two setpoints. The demand on an axis is the second difference of its setpoints, |P(s+r) - 2·P(s) +
+P(s-r)| / interval², where r is the distance of one interval. This module compares that value with the limit
+of the axis.
 
-The formulas and their reasons are in docs/decisions/0014-time-law.md. No value here depends on an override. A
-plan made from a moving state therefore meets the same limits as the plan that it replaces.
+The formulas and their reasons are in docs/decisions/0014-time-law.md. No value here depends on an override.
+A plan that starts in motion therefore has the same limits as the plan that it replaces.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ ARC_SAMPLE_COUNT = 65  # points at which the radius of an arc is sampled for the
 
 
 class JointLimits(NamedTuple):
-    """Squared speed limits (k,) in mm²/s² of k joints, and required acceleration (k, axes) in mm/s²."""
+    """Speed limits and acceleration demands of k joints.
+
+    ``squared_speeds`` (k,) are in mm²/s², and ``required_acceleration`` (k, axes) is in mm/s².
+    """
 
     joint_numbers: IntArray
     squared_speeds: FloatArray
@@ -55,13 +59,13 @@ def find_joint_limits(
     *,
     has_more_pieces: bool,
 ) -> JointLimits:
-    """Return the demand of the path around the joints of ``single_limits``.
+    """Return the limits of the joints of ``single_limits``, considering the path around each joint.
 
-    The joints are passed at ``fastest`` (k,) mm/s or slower. ``single_limits`` contains the limits of each
-    joint considered separately; no limit becomes lower. Joint i is between the pieces i and i+1. The path is
-    assumed to continue straight at both ends. If ``more`` pieces will follow, joints within an interval of
-    the end are considered separately and reserve the full acceleration, so that limits only rise as the path
-    grows.
+    The joints are passed at ``fastest`` (k,) mm/s or slower. ``single_limits`` contains the limit of each
+    joint considered separately; the returned limits are never lower. Joint i is between the pieces i and
+    i+1. The path is assumed to continue straight at both ends. If ``has_more_pieces`` is True, joints
+    within one interval of the end are considered separately and reserve the full acceleration, so that
+    limits can only increase as the path grows.
     """
     if not len(single_limits.joint_numbers):
         return single_limits
@@ -88,7 +92,7 @@ def find_joint_limits(
 
 
 def _second_difference(pieces: PathPieces, s: FloatArray, at: FloatArray, reach: FloatArray) -> FloatArray:
-    """Return |P(s+r) - 2·P(s) + P(s-r)| per axis (k, axes)."""
+    """Return the second difference |P(s+r) - 2·P(s) + P(s-r)| of each axis (k, axes)."""
     before, here, after = (_points(pieces, s, where) for where in (at - reach, at, at + reach))
     difference: FloatArray = np.abs(after - 2.0 * here + before)
     return difference
@@ -102,9 +106,9 @@ def _points(pieces: PathPieces, s: FloatArray, where: FloatArray) -> FloatArray:
 def find_piece_limits(
     pieces: PathPieces, limits: MotionLimits, *, has_more_pieces: bool
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return speed cap (n,) and acceleration (n,) of pieces, and squared speed limits (n+1,) of joints.
+    """Return the speed caps (n,), accelerations (n,) and squared speed limits of the joints (n+1,).
 
-    ``more`` is True if pieces will follow. The limits at both ends are infinite.
+    ``has_more_pieces`` is True if more pieces will follow. The joint limits at both ends are infinite.
     """
     cap = find_speed_caps(pieces, limits)
     speeds = find_expected_speeds(pieces, cap)
@@ -125,7 +129,10 @@ def find_piece_limits(
 
 
 def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
-    """Return the speeds (n,) in mm/s that axes and centripetal acceleration permit on each piece."""
+    """Return the speeds (n,) in mm/s that each piece permits.
+
+    They are limited by the axis limits and by the centripetal acceleration.
+    """
     caps = find_min_ratio(limits.speeds, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
     centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
@@ -134,14 +141,18 @@ def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
 
 
 def find_expected_speeds(pieces: PathPieces, caps: FloatArray) -> FloatArray:
-    """Return the highest speeds (n,) of the pieces at any override, in mm/s, for which arcs are planned."""
+    """Return the highest speeds (n,) of the pieces at any override, in mm/s.
+
+    Arcs are planned for these speeds.
+    """
     return np.minimum(caps, OVERRIDE_MAX * pieces.rate)
 
 
 def find_accelerations(pieces: PathPieces, speeds: FloatArray, limits: MotionLimits) -> FloatArray:
     """Return the accelerations (n,) along the pieces in mm/s².
 
-    On arcs, they are the part of the vector sum that remains at ``speeds``.
+    On arcs, this is the tangential part that remains when ``speeds`` require the centripetal part of the
+    vector sum.
     """
     along = find_min_ratio(limits.acceleration_array, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
@@ -151,9 +162,10 @@ def find_accelerations(pieces: PathPieces, speeds: FloatArray, limits: MotionLim
 
 
 def find_min_ratio(limit: FloatArray, demand: FloatArray) -> FloatArray:
-    """Return the smallest limit / share (n,) over the axes; inf for an axis whose ``demand`` (n, axes) is 0.
+    """Return the smallest ratio of ``limit`` to ``demand`` over the axes (n,).
 
-    ``limit``, (axes,) or (n, axes), is greater than 0.
+    ``limit``, (axes,) or (n, axes), is greater than 0. The ratio of an axis is inf if its ``demand`` (n,
+    axes) is 0.
     """
     with np.errstate(divide="ignore"):
         ratios = limit / demand
@@ -161,7 +173,10 @@ def find_min_ratio(limit: FloatArray, demand: FloatArray) -> FloatArray:
 
 
 def find_direction_changes(pieces: PathPieces) -> FloatArray:
-    """Return |change of direction| per axis (n-1, axes) at the joints. Values below 1e-9 become 0."""
+    """Return the absolute change of direction of each axis at the joints (n-1, axes).
+
+    Values below 1e-9 become 0.
+    """
     leaving = pieces.tangent(pieces.length)[:-1]
     entering = pieces.tangent(np.zeros(len(pieces)))[1:]
     turns: FloatArray = np.abs(entering - leaving)
@@ -172,11 +187,12 @@ def find_direction_changes(pieces: PathPieces) -> FloatArray:
 def limit_velocity_steps(
     direction_changes: FloatArray, lengths: FloatArray, limits: MotionLimits
 ) -> FloatArray:
-    """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the limit of an interval.
+    """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the interval limit.
 
-    A corner turns the velocity by v·|Δu|, and ``lengths`` (n-1,) mm/s² may brake before the corner and
-    accelerate after it: (v + along·interval/2)·|Δu| ≤ amax·interval. A full reversal is a stop. Setpoints
-    half an interval off the corner show at most an eighth more. The result is infinite without a turn.
+    A corner changes the velocity by v·|Δu|. The motion may brake before the corner and accelerate after it
+    with ``lengths`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
+    full reversal requires a stop. Setpoints that are half an interval before or after the corner exceed the
+    limit by at most an eighth. The result is infinite without a change of direction.
     """
     sharp = find_min_ratio(limits.acceleration_array * limits.interval, direction_changes)
     caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * lengths, 0.0) ** 2
@@ -184,12 +200,13 @@ def limit_velocity_steps(
 
 
 def limit_curve_speeds(pieces: PathPieces, direction_changes: FloatArray, limits: MotionLimits) -> FloatArray:
-    """Return the squared speeds (n-1,) in mm²/s² of joints close to others, each considered separately.
+    """Return the squared speeds (n-1,) in mm²/s² of joints that are close to other joints.
 
-    Short chords: v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean length of the neighbors. For chords of a circle,
-    this is its centripetal limit for any chord length. A second corner within the interval: v²·|Δu|/ℓ ≤ amax,
-    where ℓ is the shorter neighbor. Two such corners together use the fraction (2 - ℓ/vT)·ℓ/vT of amax, which
-    is never more than 1.
+    Each joint is considered separately. For short chords, v²·|Δu|/ℓ ≤ share·amax, where ℓ is the mean
+    length of the neighbors. For chords of a circle, this is the centripetal limit of the circle for any
+    chord length. For a second corner within the interval, v²·|Δu|/ℓ ≤ amax, where ℓ is the length of the
+    shorter neighbor. Two such corners together use the fraction (2 - ℓ/vT)·ℓ/vT of amax, which is never
+    more than 1.
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
@@ -206,7 +223,7 @@ def _chord_demand(
     *,
     more: bool,
 ) -> JointLimits:
-    """Return the demand of short chords over an interval, for the joints that would otherwise be slow."""
+    """Return the limits of short chords over an interval, for the joints that would otherwise be slow."""
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
@@ -228,10 +245,11 @@ def find_spare_acceleration(
 ) -> FloatArray:
     """Return the acceleration (n,) that remains for short chords while they follow a curve.
 
-    Chords passed within one setpoint interval act as a curve. They use v²·|Δu|/ℓ of each axis, or the demand
-    of the whole interval (``JointLimits``), and (amax - used)/|u| remains. At least a fifth of amax remains
-    because of the corner limits. If ``more`` pieces will follow, the last chord gets exactly this share, so
-    that a later corner cannot reduce it. The result is infinite for longer lines and for arcs.
+    Chords that are passed within one setpoint interval act as a curve. They use v²·|Δu|/ℓ of each axis, or
+    the demand of the whole interval (``JointLimits``); the rest, (amax - used)/|u|, remains. At least a
+    fifth of amax remains because of the corner limits. If ``has_more_pieces`` is True, the last chord gets
+    exactly this fifth, so that a later corner cannot reduce it. The result is infinite for longer lines and
+    for arcs.
     """
     amax = limits.acceleration_array
     spare = np.full(len(pieces), np.inf)
@@ -255,10 +273,11 @@ def find_spare_acceleration(
 
 
 def find_block_speeds(table: BlockTable) -> FloatArray:
-    """Return the speed (m,) of each block in mm/s. Surface-speed blocks use the middle of their radii.
+    """Return the speed (m,) of each block in mm/s.
 
-    Raises MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, and
-    for a surface speed at the spindle centerline without an upper limit of the spindle speed.
+    For blocks with constant surface speed, this is the speed at the middle of their radii. Raises
+    MotionError for a feed that is not positive, for a feed per revolution with a stopped spindle, and for a
+    surface speed at the spindle centerline without an upper limit of the spindle speed.
     """
     _refuse(table, ~(table.feed > 0.0), "the feed must be greater than 0; program an F word", "no-feed")
     surface = depends_on_radius(table)
@@ -284,9 +303,9 @@ def find_block_speeds(table: BlockTable) -> FloatArray:
 
 
 def _per_lead(table: BlockTable) -> FloatArray:
-    """Return the path length per travel along Z (m,): 1 except in threads.
+    """Return the ratio of path length to travel along Z (m,) for threads, and 1 for other blocks.
 
-    A lead is measured along the axis of the thread.
+    The lead of a thread is measured along the axis of the thread.
     """
     _refuse(
         table,
@@ -300,12 +319,12 @@ def _per_lead(table: BlockTable) -> FloatArray:
 
 
 def depends_on_radius(table: BlockTable) -> BoolArray:
-    """Return the blocks (m,) whose speed depends on the radius."""
+    """Return a mask (m,) of the blocks whose speed depends on the radius."""
     return table.per_rev & np.isfinite(table.surface)
 
 
 def find_surface_rpms(table: BlockTable, radius: FloatArray) -> FloatArray:
-    """Return ``find_surface_rpm`` of ``core.geometry`` for arrays.
+    """Return the results of ``find_surface_rpm`` of ``core.geometry`` for arrays, in rpm.
 
     The result is NaN without a surface speed, and for a surface speed of 0 at the centerline.
     """
@@ -322,11 +341,11 @@ def _refuse(table: BlockTable, wrong: BoolArray, why: str, code: str) -> None:
 
 
 def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> PathPieces:
-    """Return piece ``index`` in parts within which the rpm changes by at most 2 %.
+    """Return piece ``index`` divided into parts within which the rpm changes by at most 2 %.
 
-    Each part has the rate at its middle. On a line across the axis, the time of a part is then exact, because
-    1/v is linear in the radius. The piece is not split where the rpm is at its limit. The number of parts is
-    at most ln(max/min rpm)/ln 1.02 per pass.
+    Each part has the speed of its middle. On a line across the axis, the time of a part is exact, because
+    1/v is linear in the radius. The piece is not divided where the rpm is at its limit. The number of parts
+    is at most ln(max/min rpm)/ln 1.02 per pass.
     """
     piece, owner = pieces[index : index + 1], _table_row(table, index)
     length = float(piece.length[0])
@@ -337,7 +356,7 @@ def split_piece_by_radius(pieces: PathPieces, table: BlockTable, index: int) -> 
 
 
 def split_piece(piece: PathPieces, distances: FloatArray, speeds: FloatArray) -> PathPieces:
-    """Return one piece cut at the distances ``at`` (k+1,), including its ends, with ``rate`` (k,)."""
+    """Return one piece divided at ``distances`` (k+1,), which include both ends, with ``speeds`` (k,)."""
     parts = piece[np.zeros(len(distances) - 1, dtype=np.int64)]
     return replace(
         parts,
@@ -349,7 +368,7 @@ def split_piece(piece: PathPieces, distances: FloatArray, speeds: FloatArray) ->
 
 
 def _table_row(table: BlockTable, index: int) -> BlockTable:
-    """Return the table of one block."""
+    """Return a table with only the block ``index``."""
     row = slice(index, index + 1)
     return BlockTable(*(getattr(table, name)[row] for name in table.__dataclass_fields__))
 
@@ -361,7 +380,10 @@ def _radii(piece: PathPieces, owner: BlockTable, at: FloatArray) -> FloatArray:
 
 
 def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> FloatArray:
-    """Return the distances at which the radius passes a level of a geometric series of rpm."""
+    """Return the distances at which the rpm, which depends on the radius, reaches a level.
+
+    The levels are a geometric series.
+    """
     if piece.curvatures[0] == 0.0:
         x0, x1 = owner.start[0, 0] - owner.axis[0], owner.end[0, 0] - owner.axis[0]
         crossing = [length * x0 / (x0 - x1)] if x0 * x1 < 0.0 else []
@@ -376,7 +398,10 @@ def _find_radius_cuts(piece: PathPieces, owner: BlockTable, length: float) -> Fl
 
 
 def _linear_radius_cuts(owner: BlockTable, s0: float, s1: float, r0: float, r1: float) -> FloatArray:
-    """Return the distances at which levels are passed while the radius changes linearly from r0 to r1."""
+    """Return the distances at which the rpm reaches a level on a part with a linear change of radius.
+
+    The radius changes from ``r0`` to ``r1`` between the distances ``s0`` and ``s1``.
+    """
     unclamped = 60.0 * owner.surface[0] / (2.0 * np.pi)  # rpm times radius
     low, high = min(r0, r1), max(r0, r1)
     bottom = max(low, unclamped / owner.max_rpm[0])

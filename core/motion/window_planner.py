@@ -1,4 +1,4 @@
-"""Planning of whole programs in bounded memory, window by window, and sampling for a trace."""
+"""Planning of whole programs with limited memory, one window at a time, and sampling for a trace."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from core.motion.motion_profile import MotionProfile
 
 
 class PlannedChunk(NamedTuple):
-    """A final part of the planned motion. ``t`` is its start in seconds since the start of the planner.
+    """A final part of the planned motion.
 
-    ``profile`` starts at time 0 and may start and end in motion; the next chunk continues it.
-    ``block_numbers block_starts_s block_ends_s`` are the numbers of the blocks that end in the chunk, and
-    their start and end times on the scale of ``t``.
+    ``start_time_s`` is the start of the chunk in seconds since the start of the planner. ``profile`` starts
+    at time 0 and may start and end in motion; the next chunk continues the motion. ``block_numbers`` are
+    the numbers of the blocks that end in the chunk. ``block_starts_s`` and ``block_ends_s`` are their start
+    and end times in seconds since the start of the planner.
     """
 
     start_time_s: float
@@ -32,11 +33,11 @@ class PlannedChunk(NamedTuple):
 
 
 class WindowPlanner:
-    """Plans blocks as they arrive, with about ``window`` blocks in memory.
+    """A planner of blocks as they arrive, with about ``window`` blocks in memory.
 
-    The result equals one plan of the whole program. Each window yields only the part whose speeds no further
-    block can change, because its braking ends at a corner or a feed inside the window. If no part is final,
-    the window grows.
+    The result equals a single plan of the whole program. Each window yields only the part whose speeds
+    cannot be changed by later blocks, because its braking ends at a corner or a feed inside the window. If
+    no part is final, the window grows.
     """
 
     def __init__(self, limits: MotionLimits, *, rpm_max: float = math.inf, window: int = 20_000) -> None:
@@ -59,13 +60,14 @@ class WindowPlanner:
 
     @property
     def planned_time_s(self) -> float:
-        """The time up to which motion has been yielded, in seconds."""
+        """Return the time in seconds up to which motion has been yielded."""
         return self._t
 
     def plan_blocks(self, blocks: Iterable[MotionBlock | MoveSeries]) -> Iterator[PlannedChunk]:
         """Read blocks lazily and yield the motion that is final.
 
-        Nothing happens until the result is iterated. Raises MotionError for a block that cannot be planned.
+        No block is read before the result is iterated. Raises MotionError for a block that cannot be
+        planned.
         """
         for batch, size in split_into_batches(blocks, self._window - self._waiting, self._window):
             self._builder.add_batch(batch)
@@ -75,7 +77,10 @@ class WindowPlanner:
                 yield from self._settled()
 
     def finish_section(self) -> Iterator[PlannedChunk]:
-        """Stop at the end of the last block, as for an exact stop. More blocks may be added afterwards."""
+        """Plan a stop at the end of the last block, as for an exact stop, and yield the motion.
+
+        More blocks may be added afterwards.
+        """
         if self._builder.has_blocks:
             self._builder.end_path()
             yield self._accept_profile(self._plan(), None)
@@ -97,7 +102,10 @@ class WindowPlanner:
         yield self._accept_profile(self._plan(), joint)
 
     def _accept_profile(self, profile: MotionProfile, joint: int | None) -> PlannedChunk:
-        """Return ``profile`` up to ``joint`` (None: to its end) and continue from there."""
+        """Return the chunk of ``profile`` up to ``joint``, and continue planning from there.
+
+        If ``joint`` is None, the chunk contains the whole profile.
+        """
         path, begin = profile.path, self._t
         n, t0, t1 = profile.find_block_times()
         ended = len(n) if joint is None else int(np.searchsorted(path.first_pieces[1:], joint, side="right"))
@@ -117,8 +125,8 @@ def sample_positions(
 ) -> tuple[FloatArray, FloatArray, IntArray]:
     """Return times (m,), machine positions (m, axes) and block numbers (m,) every ``interval_s`` seconds.
 
-    The samples start at ``time_offset_s``. The end is left out, because the next profile starts there. Raises
-    MotionError if ``interval_s`` is not greater than 0.
+    The samples start at ``time_offset_s``. The end of the profile is not sampled, because the next profile
+    starts there. Raises MotionError if ``interval_s`` is not greater than 0.
     """
     if not interval_s > 0.0:
         raise MotionError(

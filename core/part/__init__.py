@@ -1,1 +1,4 @@
-"""The part and its material: tool shapes and outlines, stock, and removal, in mm with X as a radius."""
+"""The part and its material: tool shapes and outlines, stock, and material removal.
+
+Dimensions are in mm, with X as a radius.
+"""

@@ -1,8 +1,8 @@
-"""A tool that machines a turned part: the material that it removes, and collisions of its body.
+"""A tool that machines a turned part: the material that the tool removes, and collisions of its body.
 
-An outside tool removes everything further out than its edge, because material above the edge is a chip or
-would hit the holder. A boring tool removes everything closer to the axis. A face tool removes only what its
-outline covers.
+An outside tool removes all material further out than its edge, because material outside the edge becomes a
+chip or would hit the holder. A boring tool removes all material closer to the axis. A face tool removes
+only the material that its outline covers.
 """
 
 from __future__ import annotations
@@ -38,14 +38,20 @@ class CutSide(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class _OutlineSides:
-    """Both sides of one convex outline. ``far`` is the side away from the axis, mirrored."""
+    """The two sides of one convex outline.
+
+    ``near`` faces the axis. ``far`` is the side away from the axis, mirrored.
+    """
 
     near: AxisFacingEdge
     far: AxisFacingEdge
 
 
 class _OutlineSet(NamedTuple):
-    """Convex outlines with their least Z and r and their greatest Z; infinitely far away if empty."""
+    """Convex outlines with their least Z and r and their greatest Z.
+
+    The limits are infinitely far away if the set is empty.
+    """
 
     sides: list[_OutlineSides]
     low: Point
@@ -60,10 +66,11 @@ class _OutlineSet(NamedTuple):
 
 
 class Cutter:
-    """The outlines (k, 2) of a tool in Z and r about its control point, prepared for sweeping.
+    """A tool given by its outlines (k, 2) in Z and r about the control point, prepared for sweeping.
 
-    ``is_drill`` means that the tool is round about the spindle axis. ``is_rear`` means that it works at
-    negative X, where its outlines are given. ``edge_height_mm`` is the size of its edges along r in mm.
+    ``is_drill`` means that the tool is round about the spindle axis. ``is_rear`` means that the tool works
+    at negative X, where its outlines are given. ``edge_height_mm`` is the height of its edges along r, in
+    mm.
     """
 
     def __init__(
@@ -86,13 +93,14 @@ class Cutter:
 
     @property
     def has_holder(self) -> bool:
-        """True if the holder of the tool is known."""
+        """Return whether the holder of the tool is known."""
         return bool(self._body.sides)
 
     def trailing_edge_angle(self, cutting_direction: int) -> float:
         """Return the angle in degrees from Z at which the trailing edge rises from the tip.
 
-        ``forward`` is the sign of Z in the cutting direction. The result is 90 if no trailing edge rises.
+        ``cutting_direction`` is the sign of the Z motion while cutting. The result is 90 if no trailing
+        edge rises.
         """
         if cutting_direction not in self._clears:
             self._clears[cutting_direction] = self._clearance(cutting_direction)
@@ -107,15 +115,21 @@ class Cutter:
         return float(np.degrees(np.arctan(sides.min()))) if len(sides) else 90.0
 
     def cut_material(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Remove the material that the edges sweep on a straight move of the control point."""
+        """Remove the material that the edges sweep on a straight move, and return the cut.
+
+        The move is that of the control point.
+        """
         return self._swept(part, start, end, cut=True)
 
     def find_cut(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return the material that the edges would remove, without removing it."""
+        """Return the cut that the edges would make, without removing material."""
         return self._swept(part, start, end, cut=False)
 
     def cut_with_body(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return the material that holder and shank hit, and remove it so that it is reported only once."""
+        """Return the material that the holder and the shank hit.
+
+        The material is removed, so that it is reported only once.
+        """
         met = NO_CUT
         start, end = self._ends_on_working_side(start, end)
         if self._is_clear(part, self._body, start, end) or self._is_outside_columns(
@@ -131,7 +145,10 @@ class Cutter:
         )
 
     def find_collision(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return what edges and body would hit, without removing it, such as the outline of a chuck."""
+        """Return the material that the edges and the body would hit, without removing it.
+
+        The material may also be an obstacle, such as the outline of a chuck.
+        """
         start, end = self._ends_on_working_side(start, end)
         met = NO_CUT
         for outlines in (self._cutting, self._body):
@@ -143,10 +160,10 @@ class Cutter:
         )
 
     def cut_thread(self, part: TurnedPart, start: Point, end: Point, lead: float, revolutions: float) -> Cut:
-        """Cut the section of a thread, where the edge is in the section plane once per revolution.
+        """Cut a thread in the section plane, where the edge passes once per revolution.
 
-        ``revolutions`` is the number of revolutions since the pass started in step. If the lead is finer
-        than a column, the thread is cut like a cylinder, because no column could show it.
+        ``revolutions`` is the number of revolutions since the pass started in step with the spindle. If the
+        lead is finer than a column, the thread is cut like a cylinder, because the columns cannot show it.
         """
         if lead <= part.columns.step_mm:
             return self.cut_material(part, start, end)
@@ -160,7 +177,7 @@ class Cutter:
         return met
 
     def _is_clear(self, part: TurnedPart, outlines: _OutlineSet, start: Point, end: Point) -> bool:
-        """Return whether the outlines remain in front of the part or outside it."""
+        """Return whether the outlines remain in front of the part or outside its diameter."""
         columns, low = part.columns, outlines.low
         if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.number:
             return True
@@ -208,7 +225,7 @@ class Cutter:
 
 
 def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, end: Point) -> Cut:
-    """Return the opposite wall of a bore that a bar of too large diameter would hit."""
+    """Return the cut at the opposite wall of a bore, which a boring bar hits if its diameter is too large."""
     first, near = sweep_edge(outline.near, start, end, part.columns)
     return part.cut_inside(first, -near)
 
@@ -224,8 +241,8 @@ def _mirrored(point: Point) -> Point:
 class SolidTool(NamedTuple):
     """The parts of a tool that must not hit material.
 
-    ``low`` and ``upper_corner`` are the extent about the control point, and ``sides`` are the outlines on
-    either side of the axis.
+    ``lower_corner`` and ``upper_corner`` are the corners of the extent about the control point. ``sides``
+    are the outlines on either side of the axis.
     """
 
     lower_corner: FloatArray
@@ -233,7 +250,10 @@ class SolidTool(NamedTuple):
     sides: tuple[Cutter, Cutter]
 
     def find_collision(self, part: TurnedPart, start: Point, end: Point) -> Cut:
-        """Return the material on the straight path of the control point (Z, r in mm), without removing it."""
+        """Return the material that the tool hits on a straight path, without removing it.
+
+        The path is that of the control point, as Z and r in mm.
+        """
         low = self.lower_corner + np.minimum(start, end)
         high = self.upper_corner + np.maximum(start, end)
         columns, radius = part.columns, part.max_stock_radius_mm
@@ -246,7 +266,7 @@ class SolidTool(NamedTuple):
 
 
 class _NeighborTool(NamedTuple):
-    """A tool with its position on the plate, Z and r."""
+    """A tool with its position on the tool plate in Z and r."""
 
     at: Point
     solid: SolidTool
@@ -270,7 +290,10 @@ class NeighborTools:
         )
 
     def find_struck_tool(self, part: TurnedPart, tool: int, path: Iterable[tuple[Point, Point]]) -> int:
-        """Return the first other tool that hits material while ``tool`` moves along the path, or 0."""
+        """Return the number of the first other tool that hits material while ``tool`` moves.
+
+        The result is 0 if no other tool hits material on the path.
+        """
         if tool not in self._offsets:
             return 0
         own = self._offsets[tool]
@@ -285,7 +308,7 @@ class NeighborTools:
 
 
 def make_solid_tool(outlines: Sequence[FloatArray]) -> SolidTool:
-    """Return a tool that consists of these convex outlines (k, 2) of Z and r in mm."""
+    """Return a tool that consists of convex outlines (k, 2) of Z and r in mm."""
     points = np.vstack(outlines)
     sides = Cutter((), outlines, CutSide.FACE), Cutter((), outlines, CutSide.FACE, is_rear=True)
     return SolidTool(points.min(axis=0), points.max(axis=0), sides)

@@ -2,14 +2,14 @@
 
 ``CNMG 120408`` and ``CNMG432`` are the same insert: an 80° rhombus without clearance, with an inscribed
 circle of 12.7 mm, a thickness of 4.76 mm and a nose radius of 0.8 mm (1/32 in). The tables follow ISO 1832
-(shape, clearance, tolerance, type, size, thickness, corner) and ANSI B212.4 (sizes in fractions of an inch).
-They were compared with the catalogs of Mitsubishi, Widia, Palbit and Denitool.
+(shape, clearance, tolerance, type, size, thickness, corner) and ANSI B212.4 (sizes in fractions of an
+inch). They were compared with the catalogs of Mitsubishi, Widia, Palbit and Denitool.
 
-``20x20``, ``3/4"`` and ``16mm`` are sizes of a standard_shank. ``MCLNR 2020K12`` (ISO 5608) and
-``MCLNR-124B`` (ANSI B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2`` are
-boring bars. Reach and head are typical values and not those of one maker. If they must be exact within 1 mm,
-measure the holder and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in mm, with Z and X from
-the control point. Any other text is a name.
+``20x20``, ``3/4"`` and ``16mm`` are sizes of a standard shank. ``MCLNR 2020K12`` (ISO 5608) and
+``MCLNR-124B`` (ANSI B212.5) are holders with a shank, and ``S16R-SCLCR09`` (ISO 5609) and ``A10-SCLCR2``
+are boring bars. The reach and the head are typical values and not those of one manufacturer. If they must
+be exact within 1 mm, measure the holder and specify its outline. ``0,4 18,4 18,60 0,60`` is an outline in
+mm, with Z and X from the control point. Any other text is treated as a name.
 """
 
 from __future__ import annotations
@@ -118,16 +118,16 @@ _BAR = rf"[ACES](\d\d)[A-Z]?[\s-]*{_HEAD}[\s-]*(\d\d?)\b.*"
 
 
 class InsertCodeError(CodedError, ValueError):
-    """Raised for an invalid code. The message names the wrong character."""
+    """Error raised for an invalid insert code, with a message that names the invalid character."""
 
 
 @dataclass(frozen=True, slots=True)
 class Insert:
     """An indexable insert, in degrees and mm.
 
-    ``corner_angles`` and ``edge_lengths`` are interior angles and lengths, counterclockwise from the cutting
-    corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges; its nose is the
-    whole circle.
+    ``corner_angles`` and ``edge_lengths`` are the interior angles and the lengths, counterclockwise from
+    the cutting corner. ``inscribed_circle`` is a diameter. A round insert has no corners and no edges, and
+    its nose is the whole circle.
     """
 
     shape: str
@@ -140,7 +140,7 @@ class Insert:
 
     @property
     def point_angle(self) -> float:
-        """The included angle of the cutting corner in degrees; 0 for a round insert."""
+        """Return the included angle of the cutting corner in degrees, or 0 for a round insert."""
         return self.corner_angles[0] if self.corner_angles else 0.0
 
 
@@ -154,12 +154,15 @@ class Insert:
 
 
 def edge_length(corner: float, next_corner: float, circle_diameter: float) -> float:
-    """Return the edge between two corners (degrees) of a polygon around an inscribed circle (diameter)."""
+    """Return the length of the edge between two corners of a polygon around an inscribed circle.
+
+    The corners are interior angles in degrees.
+    """
     return circle_diameter / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(next_corner / 2.0)))
 
 
 def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Insert:
-    """Return the insert with this shape letter and inscribed circle in mm."""
+    """Return the insert with this shape letter, inscribed circle and nose radius, in mm."""
     corners = CORNER_ANGLES[shape]
     if shape == "K":  # only the long edges of a parallelogram touch the circle; the end edge is short
         edges: tuple[float, ...] = (circle_diameter / sin(radians(corners[0])), _K_EDGE) * 2
@@ -172,7 +175,10 @@ def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Inser
 
 
 def metric_circle_sizes(shape: str) -> dict[str, float]:
-    """Return the inscribed circles (mm) by the two digits of ISO 1832: the edge in whole mm, rounded down."""
+    """Return the inscribed circles in mm by the two digits of ISO 1832.
+
+    The digits are the edge length in whole mm, rounded down.
+    """
     if shape in "RK":
         return dict(_UNUSUAL[shape])
     corners = CORNER_ANGLES[shape]
@@ -186,9 +192,10 @@ def metric_circle_sizes(shape: str) -> dict[str, float]:
 
 @lru_cache(maxsize=256)  # called for every feed of a program
 def decode_insert_code(code: str) -> Insert:
-    """Return the insert of an ISO or ANSI code. Raises InsertCodeError that names the invalid character.
+    """Return the insert of an ISO or ANSI code.
 
-    Characters after the size (edge condition, hand, chip breaker of the maker) are ignored.
+    Characters after the size (edge condition, hand, chip breaker of the manufacturer) are ignored. Raises
+    InsertCodeError that names the invalid character.
     """
     text = re.sub(r"[\s_]", "", code).upper()
     letters = re.match(r"[^-.\d]*?(?=[-.\d]|L\d|$)", text)
@@ -204,7 +211,10 @@ def decode_insert_code(code: str) -> Insert:
 
 
 def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
-    """Check the four letters. Older inch codes leave out the last one (TPG 322)."""
+    """Check the four letters of a code.
+
+    Older inch codes do not have the last letter (TPG 322).
+    """
     for place, (what, known) in enumerate(_LETTERS, start=1):
         if len(head) < place:
             if is_old_code:
@@ -233,7 +243,7 @@ def _check_letters(code: str, head: str, *, is_old_code: bool) -> None:
 
 @dataclass(slots=True)
 class _CodeDigits:
-    """The digits of a code, read from the left."""
+    """The remaining digits of a code, which are read from the left."""
 
     code: str
     shape: str
@@ -241,7 +251,7 @@ class _CodeDigits:
     place: int  # position of the last character read, without blanks and dashes
 
     def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
-        """Return the value of the next characters and remove them."""
+        """Remove the next characters of the code and return their value."""
         if not found or len(found) < len(min(known, key=len)):
             place, figures = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
@@ -283,7 +293,7 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
 
 
 def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
-    """Return inscribed circle, thickness and nose radius in mm, read from a metric code."""
+    """Return the inscribed circle, the thickness and the nose radius in mm that a metric code specifies."""
     edge = size.left[:2]
     circle = size.take(
         edge, Message("size for insert shape {shape}", shape=size.shape), metric_circle_sizes(size.shape)
@@ -302,7 +312,7 @@ def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 
 def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
-    """Return inscribed circle, thickness and nose radius in mm, read from an inch code."""
+    """Return the inscribed circle, the thickness and the nose radius in mm that an inch code specifies."""
     circle = size.take(_next_number(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
     thickness = size.take(
         _next_number(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS
@@ -325,18 +335,18 @@ def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 
 def _next_number(size: _CodeDigits, pattern: re.Pattern[str]) -> str:
-    """Return the next number of an inch code, or the invalid character in its place."""
+    """Return the next number of an inch code, or the invalid character found instead."""
     found = pattern.match(size.left)
     return (found[0] if found else "") or size.left[:1]
 
 
 @dataclass(frozen=True, slots=True)
 class ToolHolder:
-    """A tool holder in mm; 0 means not specified. A bar is round, a shank is square or nearly so.
+    """A tool holder in mm, in which 0 means not specified.
 
-    ``reach_mm`` is the distance from the tip to the far side of the shank. ``entering_angle_deg`` is the
-    entering angle in degrees. ``is_facing_angle`` is True if this angle applies to a feed toward the axis.
-    ``outline`` replaces all other values.
+    A bar is round; a shank is square or nearly square. ``reach_mm`` is the distance from the tip to the far
+    side of the shank. ``entering_angle_deg`` is the entering angle in degrees. ``is_facing_angle`` is True
+    if this angle applies to a feed toward the axis. ``outline`` replaces all other values.
     """
 
     shank_width_mm: float = 0.0
@@ -348,7 +358,7 @@ class ToolHolder:
 
 
 def parse_holder(text: str) -> ToolHolder | None:
-    """Return the holder that a text describes, or None if the text is only a name or empty."""
+    """Return the holder that a text describes, or None if the text is empty or only a name."""
     words = text.strip()
     if points := parse_outline(words):
         return ToolHolder(outline=points)
@@ -356,7 +366,7 @@ def parse_holder(text: str) -> ToolHolder | None:
 
 
 def standard_shank(width: float) -> ToolHolder:
-    """Return a standard shank of this width."""
+    """Return a standard shank of the given width in mm."""
     return ToolHolder(shank_width_mm=width, reach_mm=_reach(width))
 
 
@@ -371,9 +381,9 @@ def parse_outline(text: str) -> tuple[tuple[float, float], ...] | None:
 
 
 def _parse_shank_size(words: str) -> ToolHolder | None:
-    """Return the shank of ``20x20``, ``3/4"``, ``.75 in`` or ``16mm``; fractions are inches.
+    """Return the shank of a size such as ``20x20``, ``3/4"``, ``.75 in`` or ``16mm``.
 
-    A number without a unit returns None.
+    Fractions are inches. The result is None for a number without a unit.
     """
     found = re.fullmatch(_SIZES, words)
     if not found:
@@ -422,9 +432,10 @@ def _styled(style: str, width: float) -> ToolHolder:
 
 
 def _parse_inch_width(digits: str) -> float:
-    """Return the width in mm of the two digits of an inch code.
+    """Return the shank width in mm for the two digits of an inch code.
 
-    Square shanks are given in 16ths of an inch, others by width in 8ths and height in quarters.
+    The digits of a square shank are 16ths of an inch. For other shanks, the first digit is the width in
+    8ths and the second is the height in quarters of an inch.
     """
     if int(digits) in _INCH_REACH or digits in {"04", "05", "32"}:
         return int(digits) * MM_PER_INCH / 16.0

@@ -1,8 +1,9 @@
 """A milled part: flats, slots, cross holes and pockets that are cut out of a turned part.
 
-The part's frame rotates with the part. Its X and Y are those of the face as seen by a tool that looks at the
+The part's frame rotates with the part. Its X and Y are those of the face as seen from a tool that faces the
 end of the part with C at 0. Polar angles are measured from X toward Y. The live tool is on the negative X
-side of the lathe (see ``core.geometry.virtual_mill``). With C at 30°, it is at the angle -30° of the part.
+side of the lathe (see ``core.geometry.virtual_mill``). With C at 30°, the tool is at the angle -30° of the
+part.
 """
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ _LEVELS = 8  # exact floors of one path; a surface with more levels has no floor
 
 
 class RayCut(NamedTuple):
-    """A cut on rays: columns, rays, and the interval of r that is covered."""
+    """A cut on rays, given by its columns, its rays and the interval of r that it covers."""
 
     columns: slice
     rays: IntArray
@@ -44,8 +45,9 @@ class RayCut(NamedTuple):
 class RadialMillMove(NamedTuple):
     """A position or a straight move of a mill that is parallel to a radius of the part.
 
-    The end of the mill is at r ``end``. The mill moves from Z ``back_z_mm`` to ``front_z_mm``, or around the
-    axis by ``rotation_rad``. ``angle_rad`` and ``rotation_rad`` are in radians of the part, the others in mm.
+    The end of the mill is at the radius ``end_radius_mm``. The mill moves from Z ``back_z_mm`` to
+    ``front_z_mm``, or around the axis by ``rotation_rad``. ``angle_rad`` and ``rotation_rad`` are in
+    radians in the part's frame, and the other values are in mm.
     """
 
     end_radius_mm: float
@@ -56,7 +58,7 @@ class RadialMillMove(NamedTuple):
 
 
 class MilledPart:
-    """A polar field of material, from which mills and turning tools remove material. Lengths are in mm."""
+    """A polar field of material from which mills and turning tools remove material, in mm."""
 
     def __init__(self, field: PolarField) -> None:
         self.field = field
@@ -64,8 +66,9 @@ class MilledPart:
     # --- turning
 
     def remove_turned(self, first_column: int, start: FloatArray, end: FloatArray) -> RemovedMaterial:
-        """Remove the material between the radii ``start`` and ``end`` (m,) from column ``first_column``
-        on.
+        """Remove the material between two radii (m,), from column ``first_column`` on.
+
+        ``start`` and ``end`` are the radii of each column.
         """
         columns = slice(first_column, first_column + len(start))
         return self.field.intersect(columns, slice(None), start[:, None], end[:, None])
@@ -75,10 +78,11 @@ class MilledPart:
     def mill_axial(
         self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
     ) -> RemovedMaterial:
-        """Mill with the tool parallel to Z along ``path`` (m, 3): x, y of its axis and z of its end.
+        """Mill along ``path`` (m, 3) with the tool parallel to Z.
 
-        The path is in the part's frame. ``length`` is the cutting length from the end, and ``point`` is the
-        height of its cone, 0 for a flat end. A straight line is exact, even if it rises or falls.
+        The path contains x and y of the tool axis and z of the tool end, in the part's frame. ``length`` is
+        the cutting length from the end, and ``point`` is the height of the cone at the end, 0 for a flat
+        end. A straight line is exact, even if its z changes.
         """
         path = _path_lines(path)
         met = NO_MATERIAL
@@ -92,7 +96,10 @@ class MilledPart:
     def hits_axial(
         self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
     ) -> bool:
-        """Return whether this mill would hit material on its path, without removing any."""
+        """Return whether the mill would hit material on its path, without removing the material.
+
+        See ``mill_axial`` for the arguments.
+        """
         path, radius = _path_lines(path) + np.array([0.0, 0.0, _NEAR_DISTANCE_MM]), radius - _NEAR_DISTANCE_MM
 
         def met(levels: FloatArray) -> bool:
@@ -111,7 +118,10 @@ class MilledPart:
     def _axial_cuts(
         self, path: FloatArray, radius: float, length: float, levels: FloatArray
     ) -> Iterator[RayCut]:
-        """Yield the cut of each column; ``levels`` are the depths that the end must reach for it."""
+        """Yield the cut of each column.
+
+        ``levels`` are the depths that the end of the mill must reach to cut a column.
+        """
         first = int(np.searchsorted(levels, path[:, 2].min(), side="right"))
         begin, stop = _level_fractions(path, levels[first:], length)
         if not len(begin):
@@ -135,12 +145,12 @@ class MilledPart:
         height: float = 0.0,
         point: float = 0.0,
     ) -> RemovedMaterial:
-        """Mill with the tool on a radius of the part along ``path`` (m, 3): r of its end, z, polar angle.
+        """Mill along ``path`` (m, 3) with the tool on a radius of the part.
 
-        The angle is in degrees. ``height`` is the offset of the tool's axis from the part's axis, positive
-        toward increasing angles. ``length`` and ``point`` are described in ``mill_axial``. Moves in r only,
-        in Z only and, through the axis, in the angle only are exact. Other moves are divided into steps that
-        leave 0.001 mm.
+        The path contains r of the tool end, z, and the polar angle in degrees. ``height`` is the offset of
+        the tool's axis from the part's axis, positive toward increasing angles. ``length`` and ``point``
+        are described in ``mill_axial``. Moves only in r, only in Z or, with the tool axis through the part
+        axis, only in the angle are exact. Other moves are divided into steps that leave 0.001 mm.
         """
         met = NO_MATERIAL
         runs = list(self._group_strokes(path, radius, height))
@@ -160,7 +170,10 @@ class MilledPart:
         height: float = 0.0,
         point: float = 0.0,
     ) -> bool:
-        """Return whether this mill would hit material on its path, without removing any."""
+        """Return whether the mill would hit material on its path, without removing the material.
+
+        See ``mill_radial`` for the arguments.
+        """
         runs = [_lifted(run, _NEAR_DISTANCE_MM) for run in self._group_strokes(path, radius, height)]
 
         def met(wide: bool) -> bool:
@@ -186,7 +199,10 @@ class MilledPart:
         *,
         covers_whole_columns: bool = False,
     ) -> Iterator[RayCut]:
-        """Yield the cut of a run of strokes at the middles of the columns, or anywhere if ``wide``."""
+        """Yield the cut of a run of strokes at the middles of the columns.
+
+        If ``covers_whole_columns`` is True, the cut covers every column that it touches.
+        """
         field = self.field
         columns = field.columns_between(
             min(s.back_z_mm for s in run) - radius, max(s.front_z_mm for s in run) + radius
@@ -212,7 +228,7 @@ class MilledPart:
     def _group_strokes(
         self, path: FloatArray, radius: float, height: float
     ) -> Iterator[list[RadialMillMove]]:
-        """Yield groups of consecutive strokes whose extent is at most the mill's radius."""
+        """Yield groups of consecutive strokes with an extent of at most the mill's radius."""
         outside = float(self.field.outer_radii.max(initial=radius))
         run: list[RadialMillMove] = []
         for stroke in self._strokes(path, radius, height, outside):
@@ -262,7 +278,10 @@ class MilledPart:
 
 
 class _DiscSweep:
-    """The area that a disc covers along a path, for shares of its lines; whole lines are cached."""
+    """The area that a disc covers along the lines of a path, or along fractions of these lines.
+
+    The area of whole lines is cached.
+    """
 
     def __init__(self, path: FloatArray, radius: float, angles: FloatArray) -> None:
         self._start, self._way = path[:-1, :2], np.diff(path[:, :2], axis=0)
@@ -270,7 +289,7 @@ class _DiscSweep:
         self._whole, self._covered = np.zeros(len(self._start), dtype=np.bool_), self._layers([], 0.0, 0.0)
 
     def covered(self, begin: FloatArray, stop: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return layers (k, rays) of the area that is covered between two shares of each line (m,)."""
+        """Return the area that is covered between two fractions of each line (m,), as layers (k, rays)."""
         whole = (begin == 0.0) & (stop == 1.0)
         if np.any(whole != self._whole):
             self._whole, self._covered = whole, self._layers(np.flatnonzero(whole), 0.0, 1.0)
@@ -294,9 +313,9 @@ class _DiscSweep:
 
 
 def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tuple[FloatArray, FloatArray]:
-    """Return the shares (levels, lines) between which the mill is at each level.
+    """Return the fractions (levels, lines) of each line between which the mill is at each level.
 
-    If the mill does not reach a level, the first share is greater than the second.
+    If the mill does not reach a level, the first fraction is greater than the second.
     """
     way = np.diff(path, axis=0)
     depth = levels[:, None] - path[:-1, 2]
@@ -307,14 +326,20 @@ def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tup
 
 
 def _path_lines(path: FloatArray) -> FloatArray:
-    """Return a path of at least two points. Raises PartError if it does not have three columns."""
+    """Return the path with at least two points.
+
+    Raises PartError if the path does not have three columns.
+    """
     if path.ndim != 2 or path.shape[1] != 3 or not len(path):
         raise PartError("A mill's path has three figures a point.", "points-not-xyz")
     return path if len(path) > 1 else np.repeat(path, 2, axis=0)
 
 
 def _floor_levels(path: FloatArray, length: float) -> FloatArray:
-    """Return the Z of the floors that a path leaves, including its lowest, and of the ends of the flutes."""
+    """Return the Z of the floors that a path leaves, and of the ends of the flutes.
+
+    The lowest floor is always included.
+    """
     z = path[:, 2]
     flat = np.unique(z[:-1][np.diff(z) == 0.0])
     floors = np.append(flat, z.min()) if len(flat) <= _LEVELS else np.array([z.min()])
@@ -322,7 +347,10 @@ def _floor_levels(path: FloatArray, length: float) -> FloatArray:
 
 
 def _iter_cone_steps(radius: float, point: float) -> Iterator[tuple[float, float]]:
-    """Yield flat mills that approximate a mill with a cone of height ``point``: end offset and radius."""
+    """Yield the flat mills that approximate a mill with a cone of height ``point``.
+
+    Each mill is given by its end offset and its radius.
+    """
     count = min(max(math.ceil(point / 0.05), 8), 24) if point else 0
     for k in range(count):
         yield point * k / count, radius * (k + 0.5) / count
@@ -370,5 +398,5 @@ def _iter_ramp_steps(start: FloatArray, end: FloatArray, count: float) -> Iterat
 
 
 def _half_angle(end: float, half: float) -> float:
-    """Return the angle in radians from the tool's axis within which all its rays are."""
+    """Return the angle in radians from the tool's axis within which all rays of the tool are."""
     return math.atan2(half, end) + 1e-9 if end > 0.0 else math.pi

@@ -1,9 +1,9 @@
 """Material as a polar field: intervals of r on rays from the axis, in columns along Z.
 
-A ray usually has one interval, two if a bore or a face groove leaves a ring, and more across a cross hole.
-The intervals are stored in layers, ascending in r. An empty interval has its high not above its low. Columns
-may have different widths. They are divided at shoulders and at the floors of pockets, so that these remain
-exactly where they were cut.
+A ray usually has one interval. It has two intervals if a bore or a face groove leaves a ring, and more
+across a cross hole. The intervals are stored in layers, ascending in r. An interval is empty if its outer
+radius is not greater than its inner radius. Columns may have different widths. They are divided at
+shoulders and at the floors of pockets, so that these features remain exactly where they were cut.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ ColumnEnds = tuple[float, float]
 class RemovedMaterial(NamedTuple):
     """The material in a cut.
 
-    ``volume_mm3`` is in mm³ and ``depth`` is the greatest thickness along r. The cut extends from
-    ``back_z_mm`` to ``front_z_mm`` in Z and from ``low`` to ``high`` in r, in mm.
+    ``volume_mm3`` is in mm³, and ``depth_mm`` is the greatest thickness along r. The cut extends from
+    ``back_z_mm`` to ``front_z_mm`` in Z and from ``min_radius_mm`` to ``max_radius_mm`` in r, in mm.
     """
 
     volume_mm3: float = 0.0
@@ -50,7 +50,7 @@ class RemovedMaterial(NamedTuple):
         return self.volume_mm3 > 0.0
 
     def combine(self, other: RemovedMaterial) -> RemovedMaterial:
-        """Return both cuts together."""
+        """Return the total of both cuts."""
         return RemovedMaterial(
             self.volume_mm3 + other.volume_mm3,
             max(self.depth_mm, other.depth_mm),
@@ -67,8 +67,8 @@ NO_MATERIAL = RemovedMaterial()
 class PolarField:
     """The material of a part in polar coordinates, in mm.
 
-    ``column_edges`` (columns + 1,) are ascending Z, and ``low`` and ``high`` (layers, columns, rays) are r.
-    Ray j is at the angle 2π·j / rays, measured from the part's X toward its Y.
+    ``column_edges`` (columns + 1,) are Z, ascending. ``inner_radii`` and ``outer_radii`` (layers, columns,
+    rays) are r. Ray j is at the angle 2π·j / rays, measured from the part's X toward its Y.
     """
 
     def __init__(
@@ -95,27 +95,27 @@ class PolarField:
 
     @property
     def max_columns(self) -> int:
-        """The largest permitted number of columns."""
+        """Return the largest permitted number of columns."""
         return self._most
 
     @property
     def column_centers(self) -> FloatArray:
-        """Z of the middle of each column, in mm."""
+        """Return the Z of the middle of each column, in mm."""
         return 0.5 * (self.column_edges[1:] + self.column_edges[:-1])
 
     @property
     def column_widths(self) -> FloatArray:
-        """Width of each column, in mm."""
+        """Return the width of each column, in mm."""
         return np.diff(self.column_edges)
 
     @property
     def volume_mm3(self) -> float:
-        """Volume of the material in mm³, calculated at the middles of columns and rays."""
+        """Return the volume of the material in mm³, calculated at the middles of columns and rays."""
         return float(self.column_volumes.sum())
 
     @property
     def column_volumes(self) -> FloatArray:
-        """Volume of the material of each column, in mm³."""
+        """Return the volume of the material in each column, in mm³."""
         area = np.einsum("lcr,lcr->c", self.outer_radii, self.outer_radii) - np.einsum(
             "lcr,lcr->c", self.inner_radii, self.inner_radii
         )
@@ -123,13 +123,13 @@ class PolarField:
 
     @property
     def max_radii(self) -> FloatArray:
-        """The greatest radius of each column; 0 if it contains no material."""
+        """Return the greatest radius of each column, or 0 for a column without material."""
         return np.asarray(
             np.where(self.outer_radii > self.inner_radii, self.outer_radii, 0.0).max(axis=(0, 2))
         )
 
     def columns_between(self, back_z_mm: float, front_z_mm: float) -> slice:
-        """Return the slice of the columns that overlap the range of Z."""
+        """Return a slice of the columns that overlap a range of Z."""
         first = int(np.searchsorted(self.column_edges, back_z_mm, side="right")) - 1
         last = int(np.searchsorted(self.column_edges, front_z_mm, side="left"))
         return slice(max(first, 0), min(last, len(self.column_edges) - 1))
@@ -141,7 +141,7 @@ class PolarField:
         )
 
     def divide_columns(self, z_positions: FloatArray) -> None:
-        """Divide the columns at these Z, as far as the permitted number of columns allows.
+        """Divide the columns at the given Z positions, as far as the permitted number of columns allows.
 
         The material is unchanged.
         """
@@ -181,10 +181,10 @@ class PolarField:
         *,
         remove: bool = True,
     ) -> RemovedMaterial:
-        """Return the material between ``inner_radii`` and ``outer_radii`` (columns, rays), and remove it if
-        ``remove``.
+        """Return the material between ``inner_radii`` and ``outer_radii`` (columns, rays).
 
-        Nothing is taken if ``outer_radii`` is not above ``inner_radii``.
+        The material is removed if ``remove`` is True. A ray contributes no material if its outer radius is
+        not greater than its inner radius.
         """
         low, high = self.inner_radii[:, columns][:, :, rays], self.outer_radii[:, columns][:, :, rays]
         there = outer_radii > inner_radii
@@ -220,7 +220,7 @@ class PolarField:
         cut_inner: FloatArray,
         cut_outer: FloatArray,
     ) -> None:
-        """Store the material below ``cut_inner`` and above ``cut_outer`` in each layer."""
+        """Store the material inside ``cut_inner`` and outside ``cut_outer`` in each layer."""
         inner, outer = cut_inner > low + _TOUCH, high > cut_outer + _TOUCH
         both = inner & outer
         new_low = np.where(inner, low, np.where(outer, cut_outer, 0.0))
@@ -242,9 +242,7 @@ class PolarField:
         top: FloatArray,
         both: npt.NDArray[np.bool_],
     ) -> tuple[FloatArray, FloatArray]:
-        """Return the layers with the pieces from ``cut_outer`` to ``top`` added on the rays that were
-        split.
-        """
+        """Return the layers with the pieces from ``cut_outer`` to ``top`` added on the divided rays."""
         column, ray = np.nonzero(both.any(axis=0))
         split = both[:, column, ray]
         pieces_low = np.concatenate((low[:, column, ray], np.where(split, cut_outer[:, column, ray], 0.0)))
@@ -263,7 +261,10 @@ class PolarField:
 
 
 def sort_intervals(inner_radii: RealArray, outer_radii: RealArray) -> tuple[RealArray, RealArray]:
-    """Return the intervals in ascending order along the first axis, with empty ones last and 0."""
+    """Return the intervals in ascending order along the first axis.
+
+    Empty intervals are last, and their radii are 0.
+    """
     there = outer_radii > inner_radii
     order = np.argsort(np.where(there, inner_radii, np.inf), axis=0, kind="stable")
     inner_radii, outer_radii = inner_radii * there, outer_radii * there
@@ -281,10 +282,11 @@ def field_from_section(
     columns: int = DEFAULT_COLUMNS,
     rays: int = DEFAULT_RAYS,
 ) -> PolarField:
-    """Return the field of a half section with fine columns.
+    """Return the polar field of a half section with fine columns.
 
-    ``low`` and ``high`` (layers, n) are between ``column_edges`` (n + 1,). Fine columns are combined to at
-    most ``columns`` columns, divided at shoulders. Each retains its volume.
+    ``inner_radii`` and ``outer_radii`` (layers, n) are the radii of the n fine columns between
+    ``column_edges`` (n + 1,). Fine columns are combined into at most ``columns`` columns, which are divided
+    at shoulders. Each column retains its volume.
     """
     inner_radii, outer_radii = sort_intervals(inner_radii, outer_radii)
     metal = np.flatnonzero((outer_radii > inner_radii + _TOUCH).any(axis=0))
@@ -307,7 +309,10 @@ def field_from_section(
 
 
 def _column_starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
-    """Return the first fine column of each column: one at every shoulder, the rest evenly divided."""
+    """Return the first fine column of each combined column.
+
+    A column starts at every shoulder, and the other columns are distributed evenly.
+    """
     fine = low.shape[1]
     rise = np.maximum(np.abs(np.diff(low)), np.abs(np.diff(high))).max(axis=0)
     steep = np.flatnonzero(rise > _SHOULDER_HEIGHT_MM)
@@ -323,10 +328,10 @@ def _column_starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
 
 
 class FieldCopy(NamedTuple):
-    """A compact copy of a field.
+    """A compact copy of a polar field.
 
-    ``columns`` maps the ends of each column to (2, layers, rays) of low and high. A round column has one ray
-    only.
+    ``columns`` maps the ends of each column to its inner and outer radii (2, layers, rays). A round column
+    has only one ray.
     """
 
     columns: Mapping[ColumnEnds, FloatArray]
@@ -337,7 +342,10 @@ class FieldCopy(NamedTuple):
 
 
 def compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCopy:
-    """Return a copy of a field. Columns that are unchanged since ``previous`` share its memory."""
+    """Return a compact copy of a field.
+
+    Columns that are unchanged since ``previous`` share the memory of that copy.
+    """
     known = previous.columns if previous is not None else {}
     ends = zip(field.column_edges[:-1].tolist(), field.column_edges[1:].tolist(), strict=True)
     columns = {
@@ -349,7 +357,7 @@ def compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCopy:
 
 
 def restore_field(copy: FieldCopy) -> PolarField:
-    """Return an independent field from a copy."""
+    """Return an independent field that is restored from a copy."""
     shape = copy.layers, len(copy.columns), copy.rays
     low, high = np.zeros(shape), np.zeros(shape)
     for at, column in enumerate(copy.columns.values()):
@@ -358,7 +366,10 @@ def restore_field(copy: FieldCopy) -> PolarField:
 
 
 def _share_column(low: FloatArray, high: FloatArray, known: FloatArray | None) -> FloatArray:
-    """Return a column without empty layers, on one ray if all are equal, or the known equal column."""
+    """Return a column without empty layers, or ``known`` if it is equal.
+
+    The column has one ray if all rays are equal.
+    """
     filled = np.flatnonzero((high > low).any(axis=1))
     deep = int(filled[-1]) + 1 if len(filled) else 0
     column = np.stack((low[:deep], high[:deep]))

@@ -1,11 +1,11 @@
 """Paths of a mill on the part, and the intervals of r in which the mill covers the rays of a part.
 
 The part's frame is fixed to the part. Its X and Y are those of XC entered with C at 0, and polar angles are
-measured from X toward Y. The spindle rotates the part in the same direction. A tool on the negative X side of
-the lathe is at the angle -C of the part.
+measured from X toward Y. The spindle rotates the part in the same direction. A tool on the negative X side
+of the lathe is at the angle -C of the part.
 
-A ray runs from the axis outward at a polar angle. A convex cross section of the swept volume covers one
-interval of it, so a move is a few intervals instead of a grid of points.
+A ray extends from the axis outward at a polar angle. A convex cross section of the swept volume covers one
+interval of the ray, so a move is represented by a few intervals instead of a grid of points.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _AXIS_TOLERANCE_MM = 1e-6  # mm
 def capsule_intervals(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the r between which discs moved from ``start`` to ``end`` (m, 2) cover rays at ``angles`` (n,).
+    """Return the intervals of r in which discs that move from ``start`` to ``end`` (m, 2) cover rays.
 
-    Both results have the shape (m, n). If nothing is covered, the first is not less than the second. Units
-    are mm and radians.
+    The rays are at ``angles`` (n,), and both results have the shape (m, n). If a ray is not covered, the
+    first result is not less than the second. Units are mm and radians.
     """
     cos, sin = np.cos(angles), np.sin(angles)
     low0, high0 = _discs(start, radius, cos, sin)
@@ -55,7 +55,7 @@ def _discs(
 def _rectangle_intervals(
     start: FloatArray, end: FloatArray, radius: float, cos: FloatArray, sin: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the intervals covered by the rectangle between the first and the last disc."""
+    """Return the intervals that are covered by the rectangle between the first and the last disc."""
     way = end - start
     length = np.hypot(way[:, :1], way[:, 1:])
     unit = way / np.maximum(length, _TINY)
@@ -70,9 +70,9 @@ def _rectangle_intervals(
 def clip_interval(
     factor: FloatArray, lower_bound: FloatArray | float, upper_bound: FloatArray | float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the interval of r >= 0 in which ``factor`` · r is between two bounds.
+    """Return the interval of r ≥ 0 in which ``factor`` · r is between two bounds.
 
-    If it is empty, the first result is not less than the second.
+    If the interval is empty, the first result is not less than the second.
     """
     upright = np.abs(factor) < _TINY
     safe = np.where(upright, 1.0, factor)
@@ -91,9 +91,10 @@ def _cleaned(
 
 
 def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the union of intervals (m, n) along the first axis, in the fewest layers (k, n), ascending.
+    """Return the union of intervals (m, n) along the first axis, ascending, in the fewest layers (k, n).
 
-    Intervals whose high is not above their low are empty. Empty intervals of the result are at infinity.
+    An interval is empty if its end is not greater than its start. Empty intervals of the result are at
+    infinity.
     """
     there = ends > starts
     starts, ends = np.where(there, starts, np.inf), np.where(there, ends, -np.inf)
@@ -115,7 +116,7 @@ def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, F
 def radial_mill_intervals(
     turned: FloatArray, half: FloatArray, end: float, length: float, height: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the r (columns, rays) that a mill on a radius of the part covers.
+    """Return the intervals of r (columns, rays) that a mill on a radius of the part covers.
 
     ``turned`` (rays,) is the angle from the tool's axis to each ray in radians. ``half`` (columns,) is half
     the width of the mill at each column, or 0. The mill extends from ``end`` outward by ``length``.
@@ -132,9 +133,10 @@ def radial_mill_intervals(
 
 
 def nearest_angle(turned: FloatArray, rotation: float) -> FloatArray:
-    """Return the smallest signed angle between each ray and a tool axis that rotates by ``rotation`` radians.
+    """Return the smallest signed angle between each ray and a rotating tool axis, in radians.
 
-    ``turned`` (rays,) is the angle from the axis at its start to each ray.
+    The tool axis rotates by ``rotation`` radians. ``turned`` (rays,) is the angle from the start position
+    of the tool axis to each ray.
     """
     middle = np.remainder(turned - 0.5 * rotation + np.pi, 2.0 * np.pi) - np.pi
     left = np.maximum(np.abs(middle) - 0.5 * abs(rotation), 0.0)
@@ -144,10 +146,10 @@ def nearest_angle(turned: FloatArray, rotation: float) -> FloatArray:
 def make_plane_path(
     move: PlaneMove, z_offset: float = 0.0, max_chord_error: float = MAX_CHORD_ERROR_MM
 ) -> FloatArray:
-    """Return the path (n, 3) of a plane switching move; ``lift`` (mm) is added to the program Z.
+    """Return the path (n, 3) of a move in a working plane; ``z_offset`` (mm) is added to the program Z.
 
     On the face, the path contains x, y and z of the mill's end, as for ``MilledPart.mill_axial``. On the
-    side, it contains r, z and the polar angle in degrees, as for ``mill_radial``.
+    side, it contains r, z and the polar angle in degrees, as for ``MilledPart.mill_radial``.
     """
     shares = np.linspace(0.0, 1.0, _count_chords(move, max_chord_error) + 1)
     if isinstance(move.frame, SidePlane):
@@ -160,18 +162,20 @@ def make_plane_path(
 
 
 def make_axial_path(positions: FloatArray, height: float = 0.0, z_offset: float = 0.0) -> FloatArray:
-    """Return x, y, z (n, 3) in the part's frame of a tool parallel to Z at lathe X (radius), Z, C (n, 3).
+    """Return the path x, y, z (n, 3) in the part's frame of a tool parallel to Z.
 
-    ``height`` is the height of the tool above the axis. Units are mm and degrees.
+    ``positions`` (n, 3) are X (radius), Z and C of the lathe. ``height`` is the height of the tool above
+    the axis. Units are mm and degrees.
     """
     spot = np.column_stack([-positions[:, 0], np.full(len(positions), height), positions[:, 1]])
     return _turned(spot, -np.radians(positions[:, 2]), z_offset)
 
 
 def make_radial_path(positions: FloatArray, *, far_side: bool = False) -> FloatArray:
-    """Return r, z and polar angle in degrees (n, 3) of a tool on a radius at lathe X, Z, C (n, 3).
+    """Return the path of a tool on a radius: r, z and the polar angle in degrees (n, 3).
 
-    X is a radius. The tool is on the negative X side of the lathe, or on the positive one if ``far_side``.
+    ``positions`` (n, 3) are X (radius), Z and C of the lathe. The tool is on the negative X side of the
+    lathe, or on the positive side if ``far_side`` is True.
     """
     x, z, c = positions.T
     return np.column_stack([x, z, 180.0 - c]) if far_side else np.column_stack([-x, z, -c])
@@ -180,7 +184,10 @@ def make_radial_path(positions: FloatArray, *, far_side: bool = False) -> FloatA
 def make_locked_path(
     start: FloatArray, end: FloatArray, max_chord_error: float = MAX_CHORD_ERROR_MM
 ) -> FloatArray:
-    """Return lathe X, Z, C (n, 3) along a straight move, dense enough for a tool parallel to Z."""
+    """Return points X, Z, C (n, 3) of the lathe along a straight move.
+
+    The points are dense enough for a tool parallel to Z.
+    """
     turn = math.radians(abs(float(end[2] - start[2])))
     far = max(abs(float(start[0])), abs(float(end[0])), _AXIS_TOLERANCE_MM)
     count = max(math.ceil(turn / math.sqrt(8.0 * max_chord_error / far)), 1)
@@ -188,7 +195,7 @@ def make_locked_path(
 
 
 def _count_chords(move: PlaneMove, chord: float) -> int:
-    """Return the number of straight pieces of a move."""
+    """Return the number of straight pieces that represent a move."""
     if move.center is None:
         return 1 if move.is_straight or not _is_too_close_to_axis(move) else 360
     half = 2.0 * math.acos(max(1.0 - chord / max(move.radius, chord), -1.0))

@@ -1,4 +1,4 @@
-"""Fields of each kind of tool, and rules that detect contradictions between the fields of a tool shape."""
+"""The fields that apply to each kind of tool, and rules that find contradictions in a tool shape."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ class ShapeMistake(NamedTuple):
 
 
 def find_shape_mistakes(shape: ToolShape) -> tuple[ShapeMistake, ...]:
-    """Return all contradictions and invalid values of a shape; empty if it can be drawn."""
+    """Return all contradictions and invalid values of a shape.
+
+    The result is empty if the shape can be drawn.
+    """
     return tuple(mistake for rule in _RULES for mistake in rule(shape))
 
 

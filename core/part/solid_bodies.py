@@ -1,7 +1,8 @@
 """Tool, holder and chuck in the solid picture, as layers that are combined with the part by depth.
 
 The outlines of a tool become prisms below its rake face, which is in the plane of turning. A rotating tool
-becomes a solid of revolution. Points are one pixel apart and are not cached, because there are few.
+becomes a solid of revolution. The points of these bodies are one pixel apart and are not cached, because
+there are few of them.
 """
 
 from __future__ import annotations
@@ -40,9 +41,9 @@ class RoundAxis(StrEnum):
 
 
 class ToolBody(NamedTuple):
-    """A tool at its position: outlines (k, 2) of Z and X in mm.
+    """A tool at its position, as outlines (k, 2) of Z and X in mm.
 
-    ``is_ghost`` means that its body is only assumed.
+    ``is_ghost`` means that the body of the tool is only assumed.
     """
 
     cutting_outlines: tuple[FloatArray, ...]
@@ -52,7 +53,7 @@ class ToolBody(NamedTuple):
 
 
 class ImageLayer(NamedTuple):
-    """An image of 0xAARRGGBB with the depth of each pixel (0: empty).
+    """An image of 0xAARRGGBB values with the depth of each pixel, where depth 0 means empty.
 
     ``opacity`` is the opacity of the layer, from 0 to 1.
     """
@@ -62,7 +63,7 @@ class ImageLayer(NamedTuple):
     opacity: float = 1.0
 
     def draw_over(self, image: ImageArray, depth: DepthArray) -> None:
-        """Draw the layer over a picture and update the depth of the picture."""
+        """Draw the layer over a picture, and update the depth of the picture."""
         nearer = self.depth > depth
         if not nearer.any():
             return
@@ -74,16 +75,21 @@ class ImageLayer(NamedTuple):
 
 
 class _LitFace(NamedTuple):
-    """Points (n, 3) of Z, X and height in mm, with their brightness from 0 to 1, (n,) or one value."""
+    """The points of a face with their brightness.
+
+    ``points`` (n, 3) are Z, X and height in mm. ``shade`` is the brightness from 0 to 1, as an array (n,)
+    or one value.
+    """
 
     points: FloatArray
     shade: FloatArray | float
 
 
 class _Viewer(NamedTuple):
-    """The viewer.
+    """The position of the viewer and the visible range.
 
-    ``turn`` rotates to the right, up and toward the viewer; ``z`` and ``x`` are visible ranges in mm.
+    ``turn`` is the rotation into coordinates to the right, up and toward the viewer. ``z`` and ``x`` are
+    the visible ranges in mm.
     """
 
     turn: FloatArray
@@ -93,7 +99,7 @@ class _Viewer(NamedTuple):
 
 
 def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
-    """Return the front of a chuck with its jaws, or of a collet, with the center of a tailstock."""
+    """Return the front of a chuck with its jaws, or of a collet, together with the tailstock center."""
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.diameter:
@@ -125,7 +131,7 @@ def make_tool_layers(
     deep: float,
     far_depth: float,
 ) -> Iterator[ImageLayer]:
-    """Yield the layers of the body and the edges of a tool.
+    """Yield the image layers of the body and the edges of a tool.
 
     ``deep`` is the number of depth steps per pixel. The depth is counted from a plane ``far_depth`` pixels
     beyond the axis.
@@ -145,7 +151,7 @@ def make_tool_layers(
 
 
 def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:
-    """Return the viewer, with visible ranges enlarged for tilted views."""
+    """Return the viewer, with larger visible ranges for tilted views."""
     cos, _ = view.azimuth_cos_sin
     across = (0.5 * height / view.pixels_per_mm + _HOLDER) / max(
         abs(math.sin(math.radians(view.tilt_deg))), 0.25
@@ -170,7 +176,10 @@ def _faces(
 
 
 def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -> Iterator[_LitFace]:
-    """Yield the visible faces of a convex outline, with its upper face at the height ``lift``."""
+    """Yield the visible faces of a prism with a convex outline.
+
+    The upper face of the prism is at the height ``lift``.
+    """
     for height, normal in ((lift, (0.0, 0.0, 1.0)), (-thick, (0.0, 0.0, -1.0))):
         if (shade := _face_brightness(eye, np.array(normal))) > 0.0:
             inside = _points_inside(polygon, eye)
@@ -195,7 +204,7 @@ def _seen(values: FloatArray, span: tuple[float, float]) -> npt.NDArray[np.bool_
 
 
 def _face_brightness(eye: _Viewer, normals: FloatArray) -> FloatArray:
-    """Return the brightness of faces with these normals (…, 3); 0 for faces that point away."""
+    """Return the brightness of faces with the given normals (…, 3), or 0 for faces that face away."""
     turned = normals @ eye.turn.T
     light = 0.35 + 0.65 * np.clip(turned @ _LIGHT, 0.0, 1.0)
     return np.where(turned[..., 2] > 0.0, light, 0.0)
@@ -223,7 +232,7 @@ def _revolved_surface(polygon: FloatArray, round_: RoundAxis, eye: _Viewer) -> _
 
 
 def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the range in which a convex outline is crossed at these positions of an axis, or NaN."""
+    """Return the range that a convex outline covers at each of the given positions on an axis, or NaN."""
     a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
     place = at[:, None]
     way = b[..., axis] - a[..., axis]
@@ -260,7 +269,7 @@ def _area(polygon: FloatArray) -> float:
 def _make_layer(
     faces: Sequence[_LitFace], view: SolidView, size: tuple[int, int], color: int, depths: tuple[float, float]
 ) -> ImageLayer:
-    """Convert points to pixels and retain the nearest point of each pixel."""
+    """Return a layer of the given faces, with the nearest point at each pixel."""
     width, height = size
     points = np.concatenate([face.points for face in faces])
     light = np.concatenate([np.broadcast_to(face.shade, len(face.points)) for face in faces])
@@ -279,7 +288,11 @@ def _make_layer(
 
 
 def _view_rotation(view: SolidView) -> FloatArray:
-    """Return the rotation from Z, X (toward the operator) and height to right, up and toward the viewer."""
+    """Return the rotation matrix from part directions to view directions.
+
+    The part directions are Z, X (toward the operator) and height. The view directions are right, up and
+    toward the viewer.
+    """
     cos, sin = view.azimuth_cos_sin
     tilt = math.radians(view.tilt_deg)
     near = np.array([0.0, math.cos(tilt), math.sin(tilt)])
@@ -295,7 +308,10 @@ def _coloured(shade: npt.NDArray[np.int64], colour: int, there: npt.NDArray[np.b
 
 
 def _blend_images(upper: ImageArray, lower: ImageArray, opacity: float) -> ImageArray:
-    """Blend two images channel by channel; the upper image remains transparent over empty pixels."""
+    """Return a blend of two images, calculated channel by channel.
+
+    The upper image remains transparent over empty pixels.
+    """
     mixed = np.zeros(upper.shape, np.uint32)
     for off in (0, 8, 16, 24):
         a, b = (((each >> np.uint32(off)) & np.uint32(255)).astype(np.float64) for each in (upper, lower))

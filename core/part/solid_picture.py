@@ -1,7 +1,8 @@
-"""The solid picture of a part, drawn with numpy: surface points, the nearest at each pixel, with lighting.
+"""The solid picture of a part, drawn with numpy from surface points with lighting.
 
-No graphics card and no Qt are needed. The result is an image of 0xAARRGGBB that both can show. Normals are
-computed only for visible pixels.
+The nearest point is shown at each pixel. Drawing requires no graphics card and no Qt. The result is an
+image of 0xAARRGGBB values, which both a graphics card and Qt can show. Normals are computed only for
+visible pixels.
 """
 
 from __future__ import annotations
@@ -45,10 +46,10 @@ _FACING = 0.02  # radians beyond the horizon that are also drawn
 
 
 class PartColors(NamedTuple):
-    """Colors of the part, as 0xRRGGBB, and of the objects around it.
+    """Colors of the part and of the objects around it, as 0xRRGGBB.
 
-    ``outside``, ``bore``, ``section`` and ``hit`` are those of the part; ``chuck``, ``holder`` and ``insert``
-    are those around it. ``ground`` is 0xAARRGGBB.
+    ``outside``, ``bore``, ``section`` and ``hit`` are the colors of the part. ``chuck``, ``holder`` and
+    ``insert`` are the colors of the objects around it. ``ground`` is the background color as 0xAARRGGBB.
     """
 
     outside: int = 0xB9C3CC
@@ -62,7 +63,7 @@ class PartColors(NamedTuple):
 
 
 class PartScene(NamedTuple):
-    """The objects around the part: chuck or collet, and a tool."""
+    """The objects around the part: a chuck or collet, and a tool."""
 
     chuck: Solid | None = None
     tool: ToolBody | None = None
@@ -73,7 +74,10 @@ _FACING_AWAY = -2  # used instead of a color
 
 
 class _PointGroup(NamedTuple):
-    """Points that are drawn together, with the number of the first: a wall, a patch or a cut face."""
+    """A group of points that are drawn together: a wall, a patch or a cut face.
+
+    ``first`` is the number of the first point.
+    """
 
     first: int
     points: int
@@ -86,7 +90,10 @@ class _PointGroup(NamedTuple):
 
 
 class SolidPicture:
-    """Draws a solid repeatedly and caches what does not change between two pictures."""
+    """A painter that draws a solid repeatedly.
+
+    It caches the data that does not change between two pictures.
+    """
 
     def __init__(self, colors: PartColors | None = None) -> None:
         self.colors = colors or PartColors()
@@ -107,10 +114,11 @@ class SolidPicture:
         is_preview: bool = False,
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
     ) -> ImageArray:
-        """Return the picture (height, width).
+        """Return the picture as an array (height, width).
 
-        ``version`` changes with the material, and ``hits`` are spans of Z drawn in red. ``is_preview`` draws
-        blocks of two by two pixels in a third of the time, for a part that is being cut.
+        ``version`` changes when the material changes. ``hits`` are ranges of Z that are drawn in red.
+        ``is_preview`` draws blocks of two by two pixels in a third of the time, for a part that is being
+        cut.
         """
         if is_preview:
             half, small = (
@@ -132,7 +140,10 @@ class SolidPicture:
         return image
 
     def _draw_chuck(self, chuck: Solid, view: SolidView, width: int, height: int) -> ImageLayer:
-        """Return the layer of the chuck, drawn again only if the view has changed."""
+        """Return the image layer of the chuck.
+
+        The chuck is drawn again only if the view has changed.
+        """
         seen = (id(chuck), replace(view, roll_deg=0.0), width, height)
         if self._held is None or self._held[0] != seen:
             painter = SolidPicture(self.colors._replace(outside=self.colors.chuck, section=self.colors.chuck))
@@ -154,7 +165,7 @@ class SolidPicture:
 
 
 class _PictureDrawing:
-    """One picture: points are converted to pixels, then the nearest ones are lit."""
+    """The drawing of one picture: points are converted to pixels, and then the nearest points are lit."""
 
     def __init__(self, surface: SolidSurface, view: SolidView, width: int, height: int) -> None:
         self.surface, self.view, self.width, self.height = surface, view, width, height
@@ -176,7 +187,10 @@ class _PictureDrawing:
     # --- conversion of points to pixels
 
     def _wall(self, wall: LayerWall) -> None:
-        """Draw the visible points of a wall. Slanted columns may be visible beyond the horizon."""
+        """Draw the visible points of a wall.
+
+        Columns that slope along Z may be visible beyond the horizon.
+        """
         if wall.faces_axis and not self._seen_inside():
             return
         off = math.pi - np.abs(self.phi) if wall.faces_axis else np.abs(self.phi)
@@ -217,7 +231,7 @@ class _PictureDrawing:
                 self._put(_PointGroup(self._next, len(r), patch=patch), z, r, up, near, masked=True)
 
     def _sections(self) -> None:
-        """Draw the material at both edges of an opening."""
+        """Draw the cut faces of the material at both edges of an opening."""
         if self.view.open_range_deg is None:
             return
         surface = self.surface
@@ -247,9 +261,9 @@ class _PictureDrawing:
     ) -> None:
         """Store the nearest point of each pixel.
 
-        Depth and number are combined in one value, of which the greatest remains. ``z``, ``r`` and the sine
-        and cosine of phi have compatible shapes (n, k). Points are numbered along k first. With ``masked``,
-        some points are missing.
+        The depth and the number of a point are combined in one value, of which the greatest is stored.
+        ``z``, ``r`` and the sine and cosine of phi have compatible shapes (n, k). Points are numbered along
+        k first. If ``masked`` is True, some points are missing.
         """
         across = max(r.shape[1], up.shape[-1])
         block = max(_BLOCK // across, 1)
@@ -292,7 +306,10 @@ class _PictureDrawing:
     # --- lighting of the nearest points
 
     def image(self, table: ImageArray, ground: int, hits: ZSpans) -> tuple[ImageArray, DepthArray]:
-        """Return the picture and the depth of each pixel; ``table`` has the shape (colors, shades)."""
+        """Return the picture and the depth of each pixel.
+
+        ``table`` is the color table and has the shape (colors, shades).
+        """
         inside = self.nearest.reshape(self.height + 2, self.width + 2)[1:-1, 1:-1].ravel()
         pixel = np.flatnonzero(inside > _NUMBER)
         point = inside[pixel] & _NUMBER
@@ -315,7 +332,10 @@ class _PictureDrawing:
         return np.append(table.ravel(), np.uint32(ground))[np.maximum(codes, -1)], depth
 
     def _smooth(self, pixel: IntArray, shade: Float32Array, rough: BoolArray) -> None:
-        """Give rough points the mean brightness of the rough points around them, five by five."""
+        """Set the brightness of each rough point to the mean of the rough points around it.
+
+        The mean includes 5 × 5 pixels.
+        """
         at, wide = pixel[rough], self.width
         light, count = (np.zeros(self.height * wide, np.float32) for _ in range(2))
         light[at], count[at] = np.maximum(shade[rough], 0.0), 1.0
@@ -326,7 +346,7 @@ class _PictureDrawing:
     def _lit(
         self, group: _PointGroup, index: IndexArray, hits: ZSpans
     ) -> tuple[Float32Array, CodeArray | int, BoolArray | bool]:
-        """Return the brightness of points (n,) of a group, their colors, and which of them are rough."""
+        """Return the brightness (n,) and the colors of points of a group, and a mask of the rough points."""
         rough: BoolArray | bool = False
         colour: CodeArray | int = _SECTION
         if group.wall is not None:
@@ -380,17 +400,17 @@ class _PictureDrawing:
     def _shade(
         self, halves: IntArray, across: Float32Array, way: Float32Array, along: Float32Array
     ) -> Float32Array:
-        """Return the brightness of normals along r, the part's angle and Z.
+        """Return the brightness of surface normals given along r, the part's angle and Z.
 
-        Phi is opposite to the part's angle.
+        The direction of phi is opposite to the part's angle.
         """
         near, up = self.near[halves], self.up[halves]
         return self._light(across * near + way * up, across * up - way * near, along)
 
     def _light(self, towards: Float32Array, above: Float32Array, along: Float32Array) -> Float32Array:
-        """Return the brightness of normals from 0 to 1, or -1 if they point away.
+        """Return the brightness of surface normals from 0 to 1, or -1 for normals that point away.
 
-        The normals are given toward the viewer, up and along Z.
+        The normals are given as components toward the viewer, up and along Z.
         """
         right = along * self.cos - towards * self.sin
         towards = along * self.sin + towards * self.cos
@@ -406,7 +426,7 @@ class _PictureDrawing:
 
 
 def _true_slices(wanted: BoolArray) -> list[slice]:
-    """Return the slices of consecutive true values."""
+    """Return a slice for each run of consecutive true values."""
     bounds = np.flatnonzero(np.diff(wanted, prepend=False, append=False)).tolist()
     return [slice(a, b) for a, b in zip(bounds[::2], bounds[1::2], strict=True)]
 
@@ -414,7 +434,10 @@ def _true_slices(wanted: BoolArray) -> list[slice]:
 def _wall_normals(
     wall: LayerWall, row: IntArray, ray: IntArray, surface: SolidSurface
 ) -> tuple[Float32Array, Float32Array, Float32Array]:
-    """Return the normals of a wall along r, the angle and Z, from the smoother neighbor on either side."""
+    """Return the surface normals of a wall along r, the angle and Z.
+
+    Each normal is calculated from the neighbor with the smaller difference.
+    """
     r, here, last = wall.radius_px, (0 if surface.is_turned else ray), len(wall.radius_px) - 1
     own = r[row, here]
     along = -_smoother(own - r[np.maximum(row - 1, 0), here], r[np.minimum(row + 1, last), here] - own)
@@ -430,7 +453,7 @@ def _wall_normals(
 
 
 def _sum_neighbors(values: Float32Array, step: int) -> Float32Array:
-    """Return the sums of each value with two neighbors on either side, ``step`` apart."""
+    """Return the sum of each value and its two neighbors on either side, ``step`` apart."""
     total = values.copy()
     for off in (step, 2 * step):
         total[off:] += values[:-off]
@@ -443,9 +466,9 @@ def _smoother(before: Float32Array, behind: Float32Array) -> Float32Array:
 
 
 def _remove_specks(codes: CodeArray) -> CodeArray:
-    """Replace points that point away at a rim, and single points, by their neighbors.
+    """Replace points at a rim that point away, and single points, by their neighbors.
 
-    A median of three is applied horizontally, then vertically.
+    A median of three points is applied horizontally, then vertically.
     """
     for turned in (codes, codes[:, ::-1], codes.T, codes.T[:, ::-1]):
         away = turned[:, :-1] == _FACING_AWAY
@@ -472,7 +495,10 @@ def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
 
 
 def _make_color_table(colors: PartColors) -> ImageArray:
-    """Return the color table (colors, shades) of 0xAARRGGBB: dark at 0, the color at 0.7, lighter above."""
+    """Return the color table (colors, shades) of 0xAARRGGBB values.
+
+    A color is dark at a brightness of 0, unchanged at 0.7, and lighter above that.
+    """
     share = np.linspace(0.0, 1.0, _SHADES)
     rows = []
     for colour in colors[:4]:

@@ -1,8 +1,8 @@
 """The view of a solid part: direction, scale and opening.
 
 The axis is horizontal in the picture, with Z+ to the right. The angle phi of a point is measured from the
-direction of the viewer toward the top of the picture. The point closest to the viewer has a phi of 0, and the
-top edge 90°.
+direction of the viewer toward the top of the picture. The point closest to the viewer has a phi of 0°, and
+the top edge has a phi of 90°.
 """
 
 from __future__ import annotations
@@ -18,12 +18,13 @@ from core.part.ray_cuts import FloatArray
 
 @dataclass(frozen=True, slots=True)
 class SolidView:
-    """The view of a part. ``azimuth`` rotates the viewer from the side (0) to the face (90) or chuck (-90).
+    """The view of a part.
 
-    ``tilt_deg`` raises the viewer: 0 is the position of the operator, 90 is from above like the path view.
-    ``roll_deg`` is C. Angles are in degrees. ``pixels_per_mm`` is in pixels per mm, and ``center_z_mm`` is
-    the Z of the middle of the picture. ``open_range_deg`` is the range of phi that is cut out, within -180
-    to 180 degrees, or None.
+    ``azimuth_deg`` rotates the viewer from the side (0) to the face (90) or the chuck (-90). ``tilt_deg``
+    raises the viewer: 0 is the position of the operator, and 90 is the view from above, like the path view.
+    ``roll_deg`` is the angle of C. Angles are in degrees. ``pixels_per_mm`` is the scale, and
+    ``center_z_mm`` is the Z of the middle of the picture. ``open_range_deg`` is the range of phi that is
+    cut out, within -180 to 180 degrees, or None.
     """
 
     azimuth_deg: float = 30.0
@@ -35,26 +36,29 @@ class SolidView:
 
     @property
     def azimuth_cos_sin(self) -> tuple[float, float]:
-        """Cosine and sine of the azimuth."""
+        """Return the cosine and the sine of the azimuth."""
         return math.cos(math.radians(self.azimuth_deg)), math.sin(math.radians(self.azimuth_deg))
 
     def viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
-        """Return phi in radians from -pi to pi for polar angles of the part in radians.
+        """Return phi from -pi to pi for polar angles of the part; all angles are in radians.
 
-        The operator is at lathe X+, which is the polar angle 180° with C at 0.
+        The operator is at X+ of the lathe, which is the polar angle 180° with C at 0.
         """
         phi = math.radians(180.0 - self.tilt_deg - self.roll_deg) - angles
         return np.asarray(np.remainder(phi + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)
 
     def is_cut_open(self, phi: FloatArray) -> npt.NDArray[np.bool_]:
-        """Return which values of phi (radians) are cut out."""
+        """Return a mask of the values of phi (radians) that are cut out."""
         if self.open_range_deg is None:
             return np.zeros(phi.shape, dtype=np.bool_)
         first, last = (math.radians(edge) for edge in self.open_range_deg)
         return (phi > first) & (phi < last)
 
     def project_to_screen(self, points: FloatArray, width: int, height: int) -> FloatArray:
-        """Return pixels to the right and down (n, 2) of points r, z and polar angle in degrees (n, 3)."""
+        """Return the screen positions (n, 2) of points, in pixels to the right and down.
+
+        ``points`` (n, 3) are r, z and the polar angle in degrees.
+        """
         r, z, angle = points.T
         phi = self.viewer_angles(np.radians(angle))
         cos, sin = self.azimuth_cos_sin
@@ -67,7 +71,7 @@ class SolidView:
 def fit_view(
     back_z_mm: float, front_z_mm: float, radius: float, width: int, height: int, azimuth: float
 ) -> tuple[float, float]:
-    """Return scale and center at which a part fills the picture at any roll.
+    """Return the scale and the center Z at which a part fills the picture at any roll.
 
     The part extends from Z ``back_z_mm`` to ``front_z_mm``.
     """

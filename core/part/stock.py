@@ -21,10 +21,10 @@ _QUILL = 60.0  # mm of quill in the model, after the cone of the center
 
 @dataclass(frozen=True, slots=True)
 class Stock:
-    """The stock. ``outside_profile`` and ``bore`` are profiles of Z and r in mm with Z not decreasing.
+    """The stock, given by its outside profile and its bore profile.
 
-    An empty ``bore`` means solid stock. ``specification`` is the user's specification, or empty if there was
-    none.
+    Profiles contain Z and r in mm, with Z not decreasing. An empty ``bore_profile`` means solid stock.
+    ``specification`` is the user's specification, or empty if the user specified no stock.
     """
 
     specification: str
@@ -33,17 +33,17 @@ class Stock:
 
     @property
     def back_z_mm(self) -> float:
-        """The least Z of the stock, on the side of the chuck."""
+        """Return the least Z of the stock, on the side of the chuck."""
         return self.outside_profile[0][0]
 
     @property
     def front_z_mm(self) -> float:
-        """Z of the face."""
+        """Return the Z of the face of the stock."""
         return self.outside_profile[-1][0]
 
     @property
     def max_radius_mm(self) -> float:
-        """The greatest radius."""
+        """Return the greatest radius of the outside profile, in mm."""
         return max(r for _, r in self.outside_profile)
 
     def outside_radius_at(self, z: FloatArray) -> FloatArray:
@@ -51,7 +51,7 @@ class Stock:
         return _at(self.outside_profile, z)
 
     def bore_radius_at(self, z: FloatArray) -> FloatArray:
-        """Return the radius of the bore at each z (n,); 0 where the stock is solid."""
+        """Return the radius of the bore at each z (n,), or 0 where the stock is solid."""
         return _at(self.bore_profile, z) if self.bore_profile else np.zeros(len(z))
 
 
@@ -62,14 +62,14 @@ def _at(profile: Sequence[Point], z: FloatArray) -> FloatArray:
 
 
 def make_bar(diameter: float, front_z_mm: float, back_z_mm: float, specification: str = "") -> Stock:
-    """Return a round bar, in mm."""
+    """Return a round bar with dimensions in mm."""
     return Stock(specification, ((back_z_mm, diameter / 2), (front_z_mm, diameter / 2)))
 
 
 def make_tube(
     diameter: float, bore: float, front_z_mm: float, back_z_mm: float, specification: str = ""
 ) -> Stock:
-    """Return a tube, in mm."""
+    """Return a tube with dimensions in mm."""
     return Stock(
         specification,
         ((back_z_mm, diameter / 2), (front_z_mm, diameter / 2)),
@@ -80,9 +80,9 @@ def make_tube(
 def critical_rpm(stock: Stock, stick_out: float) -> float:
     """Return the first critical speed in rpm of a bar that extends ``stick_out`` mm from its chuck to Z0.
 
-    The result is 0 if the bar does not stick out. The formula is that of a beam clamped at one end, 1.8751² ·
-    √(E·I / (ρ·A)) / L², with E and ρ of brass, which gives the lowest speed of the turned metals. A bar that
-    is bent whirls below this speed.
+    The result is 0 if the bar does not extend from the chuck. The formula is that of a beam clamped at one
+    end, 1.8751² · √(E·I / (ρ·A)) / L², with E and ρ of brass, which gives the lowest speed of the materials
+    that are turned. A bent bar whirls below this speed.
     """
     length = stick_out + stock.front_z_mm
     if length <= 0.0:
@@ -94,11 +94,12 @@ def critical_rpm(stock: Stock, stick_out: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Clamping:
-    """Chuck or collet in the part's frame, in mm. Its front face is at Z = -``stick_out``.
+    """A chuck or collet in the part's frame, in mm, with its front face at Z = -``stick_out``.
 
-    ``jaw_length`` is the length by which jaws or the nose of a collet extend from the body. A ``max_rpm`` of
-    0 means not specified. ``quill_diameter`` is the diameter of a tailstock quill, or 0 without a tailstock.
-    The tip of its center, with the included angle ``center_angle_deg`` in degrees, is at Z ``center_z_mm``.
+    ``jaw_length`` is the length by which the jaws or the nose of a collet extend from the body. A
+    ``max_rpm`` of 0 means not specified. ``quill_diameter`` is the diameter of a tailstock quill, or 0
+    without a tailstock. The tip of the tailstock center, with the included angle ``center_angle_deg`` in
+    degrees, is at Z ``center_z_mm``.
     """
 
     diameter: float
@@ -112,20 +113,20 @@ class Clamping:
 
     @property
     def outline(self) -> tuple[Point, ...]:
-        """Z and r of the outside, with Z ascending."""
+        """Return the outside points (Z, r) of the chuck, with Z ascending."""
         face, body = -self.stick_out, -self.stick_out - self.jaw_length
         front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaw_length else ()
         return ((body - _BODY_LENGTH_MM, self.diameter / 2), (body, self.diameter / 2), *front)
 
     def chuck_around(self, stock: Stock) -> Stock:
-        """Return the material of the chuck around the clamped stock."""
+        """Return the material of the chuck or collet around the clamped stock."""
         inside = min(stock.max_radius_mm, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
         back, front = self.outline[0][0], self.outline[-1][0]
         return Stock("", self.outline, ((back, inside), (front, inside)))
 
     @property
     def tailstock(self) -> Stock | None:
-        """Center and quill of the tailstock, or None."""
+        """Return the center and the quill of the tailstock, or None without a tailstock."""
         if not self.quill_diameter:
             return None
         radius = self.quill_diameter / 2.0

@@ -1,6 +1,6 @@
-"""Forms of a stock specification for messages and for the help of the command line.
+"""The permitted forms of a stock specification, for messages and the command-line help.
 
-The module imports nothing, because the command line shows the forms before it loads other modules.
+This module imports nothing, because the command line shows the forms before it loads other modules.
 """
 
 SPECIFICATION_FORMS = (

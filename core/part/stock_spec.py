@@ -1,7 +1,7 @@
-"""Stock specifications of the user, such as ``bar:1.0+.02``, ``tube:25mm:10mm`` or ``profile:FILE.csv``.
+"""Stock specifications that a user enters, such as ``bar:1.0+.02`` or ``tube:25mm:10mm``.
 
-Lengths are in inches, or in millimeters if followed by ``mm``. The face is at Z0 plus the allowance after
-``+``.
+A specification may also be the file of a profile, such as ``profile:FILE.csv``. Lengths are in inches, or
+in millimeters if followed by ``mm``. The face of the stock is at Z0 plus the allowance after ``+``.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ _EXTRA_LENGTH_MM = 10.0  # mm of stock past the last cut if no length is specifi
 
 
 class StockError(CodedError, ValueError):
-    """Raised for an invalid stock specification. The message is a sentence."""
+    """Error raised for an invalid stock specification, with a complete sentence as its message."""
 
 
 @dataclass(frozen=True, slots=True)
 class StockSpec:
-    """A stock specification, in mm. A ``length`` of 0 means as long as the program needs.
+    """A stock specification, in mm.
 
-    ``profile`` is the file of a profile, and ``after`` the program that made the stock. Both are empty for a
-    bar or a tube.
+    A ``length`` of 0 means that the stock is as long as the program needs. ``profile`` is the file of a
+    profile, and ``after`` is the program that made the stock. Both are empty for a bar or a tube.
     """
 
     given: str
@@ -46,10 +46,10 @@ class StockSpec:
     points: str = ""  # text of the profile file, in the unit of the program
 
     def stock(self, back_z_mm: float, unit: float) -> Stock:
-        """Return the bar, tube or profile.
+        """Return the bar, tube or profile that is specified.
 
-        ``back_z_mm`` is the least Z that is cut, in mm. ``unit`` is the unit of the program, in mm. Raises
-        StockError.
+        ``back_z_mm`` is the least Z that is cut, in mm. ``unit`` is the length unit of the program, in mm.
+        Raises StockError if the specification is invalid.
         """
         if self.points:
             return parse_profile(self.given, self.points, unit, self.allowance)
@@ -60,7 +60,10 @@ class StockSpec:
 
 
 def parse_specification(text: str) -> StockSpec:
-    """Return the parsed specification. Raises StockError with the fault and the permitted forms."""
+    """Return the parsed specification.
+
+    Raises StockError, whose message contains the fault and the permitted forms.
+    """
     kind, _, rest = text.strip().partition(":")
     if kind in {"profile", "after"}:
         if not rest:
@@ -121,9 +124,9 @@ def _round_stock(text: str, kind: str, lengths: list[float], allowance: float) -
 
 
 def _split_allowance(rest: str) -> tuple[str, float]:
-    """Return file name and allowance.
+    """Return the file name and the allowance.
 
-    A file name may contain a plus sign, so only a plus sign before a length at the end is an allowance.
+    A file name may contain a plus sign, so only a plus sign before a length at the end starts an allowance.
     """
     name, plus, extra = rest.rpartition("+")
     if plus and _LENGTH.fullmatch(extra.strip()):
@@ -132,7 +135,10 @@ def _split_allowance(rest: str) -> tuple[str, float]:
 
 
 def _parse_length(text: str, whole: str) -> float:
-    """Return a length in mm. Raises StockError if the text is not a length."""
+    """Return the length in mm that a text specifies.
+
+    Raises StockError if the text is not a length.
+    """
     found = _LENGTH.fullmatch(text.strip())
     if found is None:
         raise StockError(
@@ -147,7 +153,11 @@ def _parse_length(text: str, whole: str) -> float:
 
 
 def parse_profile(specification: str, text: str, scale: float, allowance: float) -> Stock:
-    """Return the stock from CSV points: Z, r (and bore r) in units of ``scale`` mm. Raises StockError."""
+    """Return the stock that is specified by CSV points.
+
+    The columns are Z, r and optionally the radius of the bore, in units of ``scale`` mm. Raises StockError
+    if the text is not valid.
+    """
     rows = _parse_rows(text)
     if len(rows) < 2:
         raise StockError("a profile needs at least two points, with z, r in each row", "too-few-points")
@@ -172,7 +182,7 @@ def parse_profile(specification: str, text: str, scale: float, allowance: float)
 
 
 def _parse_rows(text: str) -> list[list[float]]:
-    """Return the numbers of the rows, without the header and comments that begin with #."""
+    """Return the numbers of each row, without the header and the comments that begin with #."""
     import csv
 
     with convert_exceptions(

@@ -1,9 +1,9 @@
 """The surfaces of a part as points one pixel apart, ready for rotation: walls, faces and flanks.
 
-Walls are on the rays, with one point per column. Where the material of one column ends short of the next
-column's, a face is filled with points. Where that of one ray ends short of the next ray's, the flank of a
-slot or a flat is filled. The points are cached until the part or the scale changes, because a rotation only
-multiplies them by sines and cosines.
+Walls are on the rays, with one point per column. If the next column has less material, the exposed face is
+filled with points. If the next ray has less material, the exposed flank of a slot or a flat is filled with
+points. The points are cached until the part or the scale changes, because a rotation only multiplies them
+by sines and cosines.
 """
 
 from __future__ import annotations
@@ -34,9 +34,10 @@ _MAX_SUBDIVISION = 4  # largest number of interpolated rays per ray
 
 
 class Solid(NamedTuple):
-    """A solid in columns and rays. A turned part has one ray.
+    """A solid in columns and rays; a turned part has one ray.
 
-    ``edges`` (columns + 1,) are Z, and ``low`` and ``high`` (layers, columns, rays) are r.
+    ``column_edges`` (columns + 1,) are Z. ``inner_radii`` and ``outer_radii`` (layers, columns, rays) are
+    r.
     """
 
     column_edges: FloatArray
@@ -45,7 +46,7 @@ class Solid(NamedTuple):
 
     @property
     def max_radius_mm(self) -> float:
-        """The greatest radius in mm."""
+        """Return the greatest radius in mm."""
         return float(self.outer_radii.max(initial=0.0))
 
 
@@ -55,16 +56,18 @@ def make_milled_solid(part: PolarField) -> Solid:
 
 
 def make_turned_solid(column_edges: FloatArray, inner_radii: FloatArray, outer_radii: FloatArray) -> Solid:
-    """Return the solid of a half section with ``low`` and ``high`` (layers, columns)."""
+    """Return the solid of a half section with ``inner_radii`` and ``outer_radii`` (layers, columns)."""
     inner_radii, outer_radii = sort_intervals(inner_radii, outer_radii)
     return Solid(column_edges, inner_radii[:, :, None], outer_radii[:, :, None])
 
 
 class SurfacePatch(NamedTuple):
-    """Points that are not on the walls of rays: Z and r in pixels, and normals along r, the angle and Z.
+    """Surface points that are not on the walls of rays, with their normals.
 
-    ``ray`` (n,) counts halves of the step between rays. None means that the points are rings, at every ray.
-    ``is_rough`` means that the wall crosses columns and rays, so that its normals vary from point to point.
+    ``z_px`` and ``radius_px`` are Z and r in pixels. The normals are given along r, the angle and Z.
+    ``half_ray_numbers`` (n,) counts halves of the step between rays. None means that the points are rings,
+    with a point at every ray. ``is_rough`` means that the wall crosses columns and rays, so that its
+    normals vary from point to point.
     """
 
     z_px: Float32Array
@@ -77,12 +80,12 @@ class SurfacePatch(NamedTuple):
 
 
 class LayerWall(NamedTuple):
-    """One side of one layer: r (columns, rays) in pixels for these ``columns`` of the surface.
+    """One side of one layer, with its radius (columns, rays) in pixels in some ``columns`` of the surface.
 
-    ``faces_axis`` means that the wall faces the axis. ``bore_radius_px`` (columns,) is given for the
-    innermost wall, with its usual radius. ``is_complete`` means that no point is missing. ``is_sloped``
-    marks the columns that rise or fall along Z, and ``max_slope_rad`` is the greatest angle in radians
-    between a normal and the radius.
+    ``faces_axis`` means that the wall faces the axis. ``bore_radius_px`` (columns,) is specified for the
+    innermost wall and contains its usual radius. ``is_complete`` means that no point is missing.
+    ``is_sloped`` is a mask of the columns whose radius changes along Z. ``max_slope_rad`` is the greatest
+    angle in radians between a normal and the radius.
     """
 
     columns: IntArray
@@ -95,9 +98,9 @@ class LayerWall(NamedTuple):
 
 
 class SolidSurface:
-    """The points of a solid at a scale, with Z measured from ``center_z``.
+    """The surface points of a solid at a scale, with Z measured from ``center_z``.
 
-    ``face_direction`` is the sign of Z of the visible faces, or 0.
+    ``face_direction`` is the sign of the Z direction of the visible faces, or 0.
     """
 
     def __init__(
@@ -157,7 +160,7 @@ class SolidSurface:
         return leaning, math.atan(float(steady.max(initial=0.0)) * 720.0 / (2.0 * math.pi))
 
     def _make_faces(self, face_direction: int, solid: Solid, drawn: tuple[float, float]) -> SurfacePatch:
-        """Return the parts of each column that the next column does not cover.
+        """Return the surface of each column that the next column does not cover.
 
         The edge of the picture is not an end of the part.
         """
@@ -192,7 +195,10 @@ class SolidSurface:
         )
 
     def _is_straight(self, column: IntArray, ray: IntArray, *, round_: bool) -> npt.NDArray[np.bool_]:
-        """Return whether a step continues unchanged on both sides of a cell, in its column or on its ray."""
+        """Return a mask of the cells where a step continues unchanged on both sides.
+
+        The step is followed in the column of the cell or on its ray.
+        """
         own = self._thickness_step(column, ray, round_=round_)
         limit, thick = 0.5 * np.abs(own), self.thickness_px[column, ray]
         straight = np.ones(len(column), np.bool_)
@@ -215,7 +221,7 @@ class SolidSurface:
         return self.thickness_px[ahead, ray] - self.thickness_px[behind, ray]
 
     def _make_flanks(self) -> SurfacePatch:
-        """Return the material of each ray that the next ray does not cover, on either side."""
+        """Return the surface of each ray that the next ray on either side does not cover."""
         here, there = _differing_cells(self.inner_radii, self.outer_radii, 1.0, round_=True)
         one, other = self._flank(here, there, 1), self._flank(there, here, -1)
         return SurfacePatch(
@@ -247,16 +253,16 @@ def _halves(patch: SurfacePatch) -> IntArray:
 
 
 def _count_rays(solid: Solid, scale: float) -> int:
-    """Return the number of rays that are one pixel apart at the outside."""
+    """Return the number of rays that are one pixel apart at the greatest radius."""
     return max(math.ceil(2.0 * math.pi * solid.max_radius_mm * scale), 90)
 
 
 def _sample_layer(
     solid: Solid, layer: int, at: FloatArray, scale: float, times: int
 ) -> tuple[Float32Array, Float32Array]:
-    """Return a layer at these Z in pixels, with ``times`` as many rays.
+    """Return the inner and outer radii of a layer at the given Z in pixels, with ``times`` as many rays.
 
-    Missing material is 0, and only shoulders are steps.
+    Missing material is 0, and only shoulders become steps.
     """
     own, beside, share, limit = _neighbor_columns(solid.column_edges, at, scale)
     shape = len(at), solid.inner_radii.shape[2] * times
@@ -293,7 +299,7 @@ def _sample_layer(
 def _neighbor_columns(
     edges: FloatArray, at: FloatArray, scale: float
 ) -> tuple[IntArray, IntArray, Float32Array, Float32Array]:
-    """Return the column of each Z, its nearest neighbor with its share, and the step limit in pixels."""
+    """Return, for each Z, its column, the nearest neighbor with its share, and the step limit in pixels."""
     middles = 0.5 * (edges[1:] + edges[:-1])
     own = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(middles) - 1)
     beside = np.clip(own + np.where(at > middles[own], 1, -1), 0, len(middles) - 1)
@@ -326,7 +332,7 @@ def _mixed(
 
 
 def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int) -> Float32Array:
-    """Return interpolated rays between rays, where neighbors form one surface."""
+    """Return the rays with interpolated rays added where neighboring rays form one surface."""
     if times == 1:
         return r
     change = np.roll(r, -1, axis=1)
@@ -342,9 +348,9 @@ def _interpolate_rays(r: Float32Array, there: npt.NDArray[np.bool_], times: int)
 def _differing_cells(
     low: list[Float32Array], high: list[Float32Array], min_difference: float, *, round_: bool
 ) -> tuple[CellIndices, CellIndices]:
-    """Return the cells that differ by more than ``least`` from the next cell, and these next cells.
+    """Return the cells that differ by more than ``min_difference`` from the next cell, and the next cells.
 
-    The next cell is along Z, or around the part if ``round_``.
+    The next cell is along Z, or around the part if ``round_`` is True.
     """
     differs = np.zeros(low[0].shape, np.bool_)
     change = np.zeros(low[0].shape, np.float32)
@@ -364,7 +370,10 @@ def _differing_cells(
 def _uncovered_cells(
     low: list[Float32Array], high: list[Float32Array], own: CellIndices, other: CellIndices, min_length: float
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return which cells of ``own`` have material that ``other`` does not cover, with its limits of r."""
+    """Return the cells of ``own`` with material that ``other`` does not cover.
+
+    The limits of r of this material are also returned.
+    """
     deep = np.zeros(len(own[0]), np.bool_)
     for r in high[1:]:
         if r.any():
@@ -396,7 +405,10 @@ def _free_in(
 def _subtract_intervals(
     low: Float32Array, high: Float32Array, other_low: Float32Array, other_high: Float32Array, least: float
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return the parts of intervals (layers, n) that the others do not cover: index, start and end."""
+    """Return the parts of intervals (layers, n) that the other intervals do not cover.
+
+    Each part is given by its index, start and end.
+    """
     found: list[tuple[IntArray, Float32Array, Float32Array]] = []
     there = other_high > other_low
     for layer in range(len(low)):
@@ -416,14 +428,14 @@ def _subtract_intervals(
 def _column_material(
     low: list[Float32Array], high: list[Float32Array], at: int
 ) -> tuple[IntArray, Float32Array, Float32Array]:
-    """Return all the material of one column: ray, start and end."""
+    """Return the material of one column as its rays, starts and ends."""
     found = [(np.flatnonzero(b[at] > a[at]), a[at], b[at]) for a, b in zip(low, high, strict=True)]
     parts = [np.concatenate(each) for each in zip(*((n, a[n], b[n]) for n, a, b in found), strict=True)]
     return parts[0], parts[1], parts[2]
 
 
 def _fill_points(first: Float32Array, last: Float32Array) -> tuple[IntArray, Float32Array]:
-    """Return points one pixel apart from ``first`` to ``last`` (n,): their index and r."""
+    """Return the indices and radii of points one pixel apart from ``first`` to ``last`` (n,)."""
     count = np.maximum(np.ceil(last - first), 1.0).astype(np.intp)
     index = np.repeat(np.arange(len(first)), count)
     start = np.cumsum(count) - count

@@ -1,8 +1,8 @@
 """The area that a tool's edge sweeps on a straight move, as the least radius in each column along Z.
 
-An edge is one side of a convex outline, toward the axis or away from it. Its sweep along a straight line is
-the convex hull of the edge at both ends. The hull consists of the edge up to the point where it is tangent to
-the move, the move itself, and the rest of the edge.
+An edge is one side of a convex outline, either facing the axis or facing away from it. Its sweep along a
+straight line is the convex hull of the edge at both ends of the line. The hull consists of the edge up to
+the point where it is tangent to the move, the move itself, and the rest of the edge.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ _UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 class Columns(NamedTuple):
     """Equally spaced columns along Z, in mm.
 
-    ``number`` is the number of columns, ``step_mm`` the spacing, and ``first_z_mm`` the middle of the first
-    one.
+    ``number`` is the number of columns, ``step_mm`` is their spacing, and ``first_z_mm`` is the middle of
+    the first column.
     """
 
     first_z_mm: float
@@ -33,19 +33,22 @@ class Columns(NamedTuple):
 
     @property
     def column_centers(self) -> FloatArray:
-        """Z of the middle of each column, (number,)."""
+        """Return the Z of the middle of each column (number,)."""
         middles: FloatArray = self.first_z_mm + self.step_mm * np.arange(self.number, dtype=np.float64)
         return middles
 
     def find_column(self, z: float) -> int:
-        """Return the first column that is not before ``z``, limited to the existing columns."""
+        """Return the index of the first column whose middle is not before ``z``.
+
+        The index is limited to the range of the columns.
+        """
         return min(max(math.ceil((z - self.first_z_mm) / self.step_mm), 0), self.number)
 
 
 class AxisFacingEdge(NamedTuple):
     """The side of a convex outline that faces the axis.
 
-    ``z`` (k,) ascends, ``r`` has the shape (k,), and ``slope`` (k - 1,) ascends.
+    ``z`` (k,) is ascending, ``r`` has the shape (k,), and ``slope`` (k - 1,) is ascending.
     """
 
     z: FloatArray
@@ -54,7 +57,10 @@ class AxisFacingEdge(NamedTuple):
 
 
 def axis_facing_edge(outline: FloatArray) -> AxisFacingEdge:
-    """Return the side of a convex outline (k, 2) that faces the axis, its lower convex chain in Z and r."""
+    """Return the side of a convex outline (k, 2) that faces the axis.
+
+    This is the lower convex chain of the outline in Z and r.
+    """
     ordered = outline[np.lexsort((outline[:, 1], outline[:, 0]))]
     chain: list[Point] = []
     for z, r in ordered.tolist():
@@ -76,8 +82,8 @@ def sweep_edge(
 ) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
-    ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends in which the edge
-    remains at r ``below`` or further out are left out.
+    ``start`` and ``end`` are the positions of the outline's origin. Columns at both ends are left out if
+    the edge does not reach a radius less than ``below`` in them.
     """
     (z1, r1), (z0, r0) = (start, end) if start[0] <= end[0] else (end, start)
     way = z0 - z1
@@ -94,7 +100,7 @@ def sweep_edge(
 
 
 def _ends_below(z: FloatArray, r: FloatArray, below: float) -> Point:
-    """Return the ends along Z of the part of a convex chain (k,) in which its r is less than ``below``."""
+    """Return both ends along Z of the part of a convex chain (k,) with r less than ``below``."""
     inside = (r < below).nonzero()[0]
     if not len(inside):
         return float(z[0]), float(z[0])

@@ -1,9 +1,10 @@
 """Outlines of tools in the plane of turning: cutting edges and bodies, by kind and size.
 
-Every tool is drawn in one pose, pointing to the chuck and the axis (quadrant 3, 8 for a symmetrical tool, 7
-for a drill), and mirrored to the side of its tip. X retains its sign. The holder of a front tool is at X+ of
-its tip, that of a rear tool at X−. A boring bar may extend across the axis, where |X| applies. Dimensions
-that are not specified are those of the usual standard holders, and their names are listed.
+Every tool is drawn in one pose, in which it points to the chuck and the axis (quadrant 3, 8 for a
+symmetrical tool, 7 for a drill). It is then mirrored to the side of its tip. X retains its sign. The holder
+of a front tool is at X+ of its tip, and the holder of a rear tool is at X−. A boring bar may extend across
+the axis, where |X| applies. Dimensions that are not specified are those of the usual standard holders, and
+the names of these dimensions are listed.
 """
 
 from __future__ import annotations
@@ -64,8 +65,9 @@ _POINTS = {ToolKind.DRILL: 118.0, ToolKind.CENTER_DRILL: 60.0, ToolKind.THREADIN
 class ToolOutline:
     """Convex polygons (k, 2) of (z, r) about the control point, in mm, counterclockwise.
 
-    ``cutting`` removes material, and ``body`` must not touch any. ``is_axial`` means that the tool is round
-    about an axis parallel to Z. ``assumed`` lists the fields of the shape for which a standard size is used.
+    ``cutting_outlines`` remove material, and ``body_outlines`` must not touch any material. ``is_axial``
+    means that the tool is round about an axis parallel to Z. ``assumed_fields`` lists the fields of the
+    shape for which a standard size is used.
     """
 
     cutting_outlines: tuple[FloatArray, ...]
@@ -76,7 +78,7 @@ class ToolOutline:
 
 @dataclass(slots=True)
 class _OutlineDrawing:
-    """The drawing of one tool in the common pose."""
+    """The drawing of one tool in the pose that all tools share."""
 
     shape: ToolShape
     cutting: list[FloatArray] = field(default_factory=list)
@@ -84,7 +86,10 @@ class _OutlineDrawing:
     assumed: list[str] = field(default_factory=list)
 
     def size(self, name: str, usual: float) -> float:
-        """Return a field of the shape, or the usual size, whose name is then recorded."""
+        """Return the size in a field of the shape, or the usual size if the field is not specified.
+
+        The name of a field with the usual size is recorded.
+        """
         stated = float(getattr(self.shape, name))
         if stated > 0.0:
             return stated
@@ -93,11 +98,11 @@ class _OutlineDrawing:
 
     @property
     def holder(self) -> ToolHolder:
-        """The holder, as far as it is specified."""
+        """Return the tool holder, as far as it is specified."""
         return parse_holder(self.shape.holder) or ToolHolder()
 
     def shank(self, usual: float) -> ToolHolder:
-        """Return the specified shank, or the usual one of this width."""
+        """Return the specified shank, or the usual shank of the width ``usual``."""
         holder = self.holder
         if holder.shank_width_mm:
             return holder
@@ -106,21 +111,25 @@ class _OutlineDrawing:
 
     @property
     def sided(self) -> bool:
-        """True if the tip is in a quadrant between the axes."""
+        """Return whether the tip is in a quadrant between the axes."""
         return 0 not in self.shape.direction
 
     @property
     def tip(self) -> FloatArray:
-        """Position of the tip from the center of the nose, in nose radii, in the pose of the drawing."""
+        """Return the position of the tip relative to the center of the nose, in nose radii.
+
+        The position applies to the pose of the drawing.
+        """
         if self.shape.tip in {0, 9}:
             return np.zeros(2)
         return np.array([-1.0 if self.sided else 0.0, -1.0])
 
 
 def make_outline(shape: ToolShape) -> ToolOutline:
-    """Return the outline of a tool. Raises InsertCodeError for an invalid code.
+    """Return the outline of a tool.
 
-    ``core.part.shape_rules`` checks for other contradictions first.
+    Raises InsertCodeError for an invalid code. Check the shape for other contradictions with
+    ``core.part.shape_rules`` first.
     """
     drawing = _OutlineDrawing(shape)
     _DRAW[shape.kind](drawing)
@@ -140,7 +149,10 @@ def make_outline(shape: ToolShape) -> ToolOutline:
 
 
 def make_nose_circle(radius: float, tip: int) -> ToolOutline:
-    """Return the outline of a tool without a shape: its nose circle, or a very small one without a radius."""
+    """Return the outline of a tool without a shape, which is its nose circle.
+
+    Without a radius, the circle is very small.
+    """
     size = radius or MAX_NOSE_CHORD_ERROR_MM * 10.0
     z, r = TIP_DIRECTIONS[tip]
     return ToolOutline(
@@ -156,7 +168,7 @@ def _as_drawn(points: FloatArray, _direction: tuple[int, int]) -> FloatArray:
 
 
 def _mirror_to_quadrant(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
-    """Return points mirrored from quadrant 3 or 8."""
+    """Return the points mirrored from quadrant 3 or 8 to the quadrant of ``direction``."""
     z, r = direction
     if r == 0:  # quadrants 7 and 5: the end points along the axis instead of to it
         return orient_counterclockwise(points[:, ::-1] * np.array([-z, 1.0]))
@@ -164,7 +176,7 @@ def _mirror_to_quadrant(points: FloatArray, direction: tuple[int, int]) -> Float
 
 
 def _rotate_to_direction(points: FloatArray, direction: tuple[int, int]) -> FloatArray:
-    """Return points of a round tool rotated from quadrant 7."""
+    """Return the points of a round tool, rotated from quadrant 7 to ``direction``."""
     z, r = direction
     if z == 0:
         return orient_counterclockwise(points[:, ::-1] * np.array([1.0, -r]))
@@ -199,7 +211,7 @@ def _edge_heading(drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, 
 def _seat_insert(
     drawing: _OutlineDrawing, insert: Insert, usual: Mapping[str, float]
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the insert, and the part of it that is on its seat, about the control point."""
+    """Return the outline of the insert, and of its part on the seat, about the control point."""
     radius = insert.nose_radius
     seat = 1.0 - 2.0 * min(1.0, _INSERT_OVERHANG_FRACTION * insert.inscribed_circle) / insert.inscribed_circle
     if not insert.corner_angles:
@@ -234,7 +246,7 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 
 def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
-    """Add a head from the seat to the shank, and the shank up to its stick-out."""
+    """Add a head from the seat to the shank, and add the shank up to its stick-out."""
     drawing.body.append(convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
@@ -259,7 +271,10 @@ _INSERT_BARS = ((12.0, 32.0), (9.0, 20.0), (6.0, 12.0), (0.0, 8.0))  # inscribed
 
 
 def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float, head: float) -> None:
-    """Add a bar toward +z with its axis at a distance from the tip; z is mirrored for back boring."""
+    """Add a bar toward +z, with its axis at the distance ``axis`` from the tip.
+
+    For back boring, z is mirrored.
+    """
     back = -1.0 if drawing.shape.direction[0] > 0 else 1.0
     away = np.array([back, 1.0])
     low, high = axis - bar / 2.0, axis + bar / 2.0
@@ -289,7 +304,10 @@ def _grooving(drawing: _OutlineDrawing) -> None:
 
 
 def _left_edge_end(drawing: _OutlineDrawing, width: float, nose: float) -> float:
-    """Return the left end of an edge, whose control point is its corner, its middle or a nose center."""
+    """Return the left end of an edge.
+
+    The control point is the corner of the edge, its middle or a nose center.
+    """
     if not drawing.sided:
         return -width / 2.0
     return -nose * (1.0 + float(drawing.tip[0]))
@@ -315,7 +333,7 @@ def _blade_behind(drawing: _OutlineDrawing, side: tuple[float, float], high: flo
 
 
 def _draw_threading(drawing: _OutlineDrawing) -> None:
-    """Draw a V with a nose radius, or with a flat of one eighth of the pitch (ISO 68-1)."""
+    """Draw a V-shaped point with a nose radius or with a flat of one eighth of the pitch (ISO 68-1)."""
     shape = drawing.shape
     angle = math.radians(drawing.size("point", _POINTS[ToolKind.THREADING]))
     high = shape.length or max(shape.pitch, 3.0)
@@ -342,7 +360,7 @@ def _cylinder(start: float, end: float, radius: float) -> FloatArray:
 
 
 def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
-    """Return a convex polygon from its half at r ≥ 0, ordered along z."""
+    """Return a convex polygon that is mirrored from its half at r ≥ 0, ordered along z."""
     return convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
@@ -367,9 +385,9 @@ def _drill(drawing: _OutlineDrawing) -> None:
 
 
 def _draw_center_drill(drawing: _OutlineDrawing) -> None:
-    """Draw DIN 333 form A: pilot of 0.4 body diameters, 120° point, then the cone.
+    """Draw a center drill of DIN 333 form A: a pilot of 0.4 body diameters, a 120° point, then the cone.
 
-    ``width`` is the diameter of the pilot.
+    If the ``width`` of the shape is specified, it is the diameter of the pilot.
     """
     diameter = drawing.size("diameter", 6.0)
     pilot = drawing.shape.width or 0.4 * diameter
@@ -394,7 +412,7 @@ def _reamer(drawing: _OutlineDrawing) -> None:
 
 
 def _draw_tap(drawing: _OutlineDrawing) -> None:
-    """Draw a tap whose lead is three pitches long and starts below the core (ISO 68-1)."""
+    """Draw a tap with a chamfer lead that is three pitches long and starts below the core (ISO 68-1)."""
     diameter = drawing.size("diameter", 6.0)
     pitch = drawing.size("pitch", diameter / 6.0)
     length = drawing.size("length", 2.5 * diameter + _TAP_LEAD * pitch)

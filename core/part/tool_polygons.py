@@ -1,6 +1,6 @@
 """Convex polygons of tools: rounded corners, insert shapes, mirror images, and convex pieces of outlines.
 
-A polygon is a float array (k, 2) of (z, r) in mm, counterclockwise.
+A polygon is a float array (k, 2) of (z, r) in mm, in counterclockwise order.
 """
 
 from __future__ import annotations
@@ -21,22 +21,25 @@ _RIGHT_ANGLE = math.pi / 2.0
 
 
 class PartError(CodedError, ValueError):
-    """Raised for points, edges or outlines from which no part, cut or tool can be computed."""
+    """Error raised if no part, cut or tool can be computed from points, edges or outlines."""
 
 
 def make_polygon(points: Iterable[tuple[float, float]]) -> FloatArray:
-    """Return the points as an array, counterclockwise."""
+    """Return the points as a polygon in counterclockwise order."""
     return orient_counterclockwise(np.array(tuple(points), dtype=np.float64))
 
 
 def make_rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray:
-    """Return the rectangle between two z and two r."""
+    """Return the rectangle between two values of z and two values of r."""
     (left, right), (low, high) = sorted(z), sorted(r)
     return make_polygon([(left, low), (right, low), (right, high), (left, high)])
 
 
 def signed_area(points: FloatArray) -> float:
-    """Return the area of a polygon by the shoelace formula; negative for a clockwise polygon."""
+    """Return the area of a polygon by the shoelace formula.
+
+    The area of a clockwise polygon is negative.
+    """
     z, r = points[:, 0], points[:, 1]
     return 0.5 * float(np.dot(z, np.roll(r, -1)) - np.dot(r, np.roll(z, -1)))
 
@@ -49,10 +52,10 @@ def orient_counterclockwise(points: FloatArray) -> FloatArray:
 def make_arc_points(
     start: float, sweep: float, radius: float, max_chord_error: float = MAX_NOSE_CHORD_ERROR_MM
 ) -> FloatArray:
-    """Return points (k, 2) on an arc about the origin, in radians, including its extremes in z and r.
+    """Return points (k, 2) on an arc about the origin, including its extremes in z and r.
 
-    A chord with the half angle t deviates by radius·(1 - cos t). A diameter turned with the extreme of a
-    quadrant is exact.
+    ``start`` and ``sweep`` are in radians. A chord with the half angle t deviates by radius·(1 - cos t). A
+    diameter that is turned with the extreme of a quadrant is exact.
     """
     most = (
         2.0 * math.acos(max(0.0, 1.0 - max_chord_error / radius))
@@ -69,16 +72,17 @@ def make_arc_points(
 
 
 def make_circle(radius: float) -> FloatArray:
-    """Return a circle about the origin."""
+    """Return a circle about the origin as a polygon."""
     return make_arc_points(0.0, 2.0 * math.pi, radius)[:-1]
 
 
 def polygon_from_edges(
     corner_angles: Sequence[float], edge_lengths: Sequence[float], heading_deg: float
 ) -> FloatArray:
-    """Return a polygon from its interior angles and edges, with the first corner at the origin, in degrees.
+    """Return the polygon with these interior angles and edge lengths, with its first corner at the origin.
 
-    ``heading_deg`` is the direction of the first edge from +z to +r.
+    ``corner_angles`` are in degrees. ``heading_deg`` is the direction of the first edge from +z to +r, in
+    degrees.
     """
     points, at, angle = [], np.zeros(2), math.radians(heading_deg)
     for corner, edge in zip((*corner_angles[1:], corner_angles[0]), edge_lengths, strict=True):
@@ -89,7 +93,7 @@ def polygon_from_edges(
 
 
 def nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> FloatArray:
-    """Return the center of the circle with this radius that touches both edges of a corner."""
+    """Return the center of the circle with the given radius that touches both edges of a corner."""
     before, corner, after = (
         points[corner_index - 1],
         points[corner_index],
@@ -103,7 +107,10 @@ def nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> Flo
 def round_corners(
     points: FloatArray, radii: Sequence[float], max_chord_errors: Sequence[float]
 ) -> FloatArray:
-    """Return the convex polygon with rounded corners, each with its radius and its chord error limit."""
+    """Return the convex polygon with rounded corners.
+
+    Each corner has its own radius and limit of the chord error.
+    """
     parts = []
     for at, (radius, chord) in enumerate(zip(radii, max_chord_errors, strict=True)):
         if radius <= 0.0:
@@ -117,7 +124,7 @@ def round_corners(
 
 
 def max_corner_radius(points: FloatArray) -> float:
-    """Return the largest radius that fits into all corners at the same time."""
+    """Return the largest radius to which all corners can be rounded at the same time."""
     fits = []
     for at in range(len(points)):
         one, other = points[at - 1] - points[at], points[(at + 1) % len(points)] - points[at]
@@ -127,7 +134,7 @@ def max_corner_radius(points: FloatArray) -> float:
 
 
 def convex_hull(points: FloatArray) -> FloatArray:
-    """Return the convex hull of points, counterclockwise (Andrew's monotone chain)."""
+    """Return the convex hull of the points in counterclockwise order (Andrew's monotone chain)."""
     ordered = [tuple(point) for point in points[np.lexsort((points[:, 1], points[:, 0]))]]
     return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1], dtype=np.float64)
 
@@ -142,9 +149,10 @@ def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
 
 
 def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
-    """Return a simple polygon in convex pieces: the polygon itself, or triangles by ear clipping.
+    """Return a simple polygon as convex pieces.
 
-    Raises PartError if the outline crosses or touches itself.
+    The pieces are the polygon itself if it is convex, or triangles by ear clipping. Raises PartError if the
+    outline crosses or touches itself.
     """
     left = [(float(z), float(r)) for z, r in orient_counterclockwise(np.array(points, dtype=np.float64))]
     if _has_crossing_edges(left):
@@ -167,7 +175,7 @@ def _convex(points: list[tuple[float, float]]) -> bool:
 
 
 def _has_crossing_edges(points: list[tuple[float, float]]) -> bool:
-    """Return whether two edges that are not neighbors cross."""
+    """Return whether two edges that are not adjacent cross each other."""
     edges = list(pairwise([*points, points[0]]))
     return any(
         _turn_value(*edges[one], edges[other][0]) * _turn_value(*edges[one], edges[other][1]) < 0.0
@@ -191,7 +199,7 @@ def _is_ear(points: list[tuple[float, float]], at: int) -> bool:
 
 
 def _turn_value(first: Sequence[float], second: Sequence[float], third: Sequence[float]) -> float:
-    """Return a positive value if the path over three points turns left."""
+    """Return a value that is positive if the path through three points turns left."""
     return (second[0] - first[0]) * (third[1] - first[1]) - (second[1] - first[1]) * (third[0] - first[0])
 
 

@@ -1,4 +1,4 @@
-"""The shape of a tool: its kind, hand, insert, holder and dimensions, as in a setup sheet."""
+"""The shape of a tool: its kind, hand, insert, holder and dimensions, as on a setup sheet."""
 
 from __future__ import annotations
 
@@ -25,7 +25,10 @@ class ToolKind(StrEnum):
 
 
 class Hand(StrEnum):
-    """The hand of a tool. A right-hand turning tool cuts toward the chuck, a left-hand tool away from it."""
+    """The hand of a tool.
+
+    A right-hand turning tool cuts toward the chuck, and a left-hand tool cuts away from it.
+    """
 
     RIGHT = "right"
     LEFT = "left"
@@ -42,19 +45,20 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ToolShape:
-    """The shape of one tool, in mm and degrees. A value of 0 or empty means not specified.
+    """The shape of one tool, in mm and degrees.
 
-    A standard size is then used.
+    A value of 0 or an empty text means not specified; a standard size is then used.
 
     ``tip`` is the quadrant 0 to 9 of the tip as seen from the nose center. For a rotating tool, it is the
-    direction of its end: 7 (or 0) along the spindle toward the chuck, 8 across the spindle from the front, 6
-    from the rear. ``insert`` is an ISO 1832 or ANSI B212.4 code. ``holder`` is a shank size (``20x20``,
-    ``3/4"``), a holder code or any name. ``width`` is that of a groove. ``diameter`` is that of a round tool
-    or of a boring bar. ``point`` is the included angle of the point of a drill or center drill, or of a
-    thread. ``length`` is the cutting length: the flutes of a drill, or the depth of the flanks of a thread.
-    ``stick_out`` is the length up to the clamping. ``entry`` is the entering angle of the main edge; 0 means
-    that of the holder, or the usual one for the insert. ``rear`` means that the tool works at negative X.
-    ``profile`` is the outline of a form tool, (z, r) from the control point.
+    direction of its end: 7 (or 0) along the spindle toward the chuck, 8 across the spindle from the front,
+    6 across the spindle from the rear. ``insert`` is an ISO 1832 or ANSI B212.4 code. ``holder`` is a shank
+    size (``20x20``, ``3/4"``), a holder code or any name. ``width`` is the width of a groove. ``diameter``
+    is the diameter of a round tool or of a boring bar. ``point`` is the included angle of a thread, or of
+    the point of a drill or center drill. ``length`` is the cutting length: the length of the flutes of a
+    drill, or the depth of the flanks of a thread. ``stick_out`` is the length up to the clamping. ``entry``
+    is the entering angle of the main edge; 0 means the angle of the holder or the usual angle for the
+    insert. ``rear`` means that the tool works at negative X. ``profile`` is the outline of a form tool, as
+    points (z, r) from the control point.
     """
 
     kind: ToolKind = ToolKind.TURNING
@@ -76,24 +80,31 @@ class ToolShape:
 
     @property
     def is_rotating(self) -> bool:
-        """True for a rotating tool: drill, center drill, reamer, tap or end mill."""
+        """Return whether the tool rotates: a drill, center drill, reamer, tap or end mill."""
         return self.kind in ROUND_TOOLS
 
     @property
     def internal(self) -> bool:
-        """True if the tool works in a bore: a boring tool, or a groove or thread tool on a bar."""
+        """Return whether the tool works in a bore.
+
+        Such a tool is a boring tool, or a grooving or threading tool on a bar.
+        """
         on_a_bar = self.kind in {ToolKind.GROOVING, ToolKind.THREADING} and self.diameter > 0.0
         return self.kind is ToolKind.BORING or on_a_bar
 
     @property
     def behind(self) -> bool:
-        """True if the tool works at negative X, as specified or as its tip quadrant implies."""
+        """Return whether the tool works at negative X, as specified or as its tip quadrant implies."""
         across = TIP_DIRECTIONS[self.tip][1]
         return self.rear or (across != 0 and (across > 0) is not self.internal)
 
     @property
     def direction(self) -> tuple[int, int]:
-        """The direction of the tip as (z, x), from the quadrant, or else from kind, hand and side."""
+        """Return the direction of the tip as (z, x).
+
+        The direction follows from the quadrant or, without a quadrant, from the kind, hand and side of the
+        tool.
+        """
         if self.is_rotating and self.tip in {0, 9}:
             return (-1, 0)
         if self.tip not in {0, 9}:

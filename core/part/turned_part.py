@@ -1,8 +1,8 @@
 """The material of a turned part: intervals of r in columns along Z.
 
-A column usually has one interval of r, more with a face groove or a ring. The intervals are stored in layers
-from the axis outward. Radii are exact in the middle of a column, so cylinders, cones and arcs are as exact as
-the cutting outline. A shoulder is within half a column of its position.
+A column usually has one interval of r, and more with a face groove or a ring. The intervals are stored in
+layers from the axis outward. Radii are exact in the middle of a column, so cylinders, cones and arcs are as
+exact as the cutting outline. A shoulder is within half a column of its position.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ ProfilePoints = list[tuple[float, float]]
 
 
 def simplify_polyline(points: FloatArray, tolerance: float) -> FloatArray:
-    """Return a subset (k, 2) of points (n, 2), including the ends, within ``tolerance`` of their polyline."""
+    """Return a subset (k, 2) of points (n, 2) whose polyline is within ``tolerance`` of all points.
+
+    The subset includes both ends.
+    """
     kept = np.zeros(len(points), dtype=bool)
     kept[[0, -1]] = True
     todo = [(0, len(points) - 1)]
@@ -58,10 +61,11 @@ def _distances_from_line(points: FloatArray, start: FloatArray, end: FloatArray)
 
 
 class Cut(NamedTuple):
-    """The material that one move cuts. Lengths are in mm, the area of the half section in mm², volume in mm³.
+    """The material that one move cuts.
 
-    ``depth`` is the greatest thickness along r. ``width_mm`` is the length of Z that is cut, from
-    ``back_z_mm`` to ``front_z_mm``.
+    Lengths are in mm, the area of the half section is in mm², and the volume is in mm³. ``depth_mm`` is the
+    greatest thickness along r. ``width_mm`` is the length along Z that is cut, from ``back_z_mm`` to
+    ``front_z_mm``.
     """
 
     area: float = 0.0
@@ -76,7 +80,7 @@ class Cut(NamedTuple):
         return self.area > 0.0
 
     def combine(self, other: Cut) -> Cut:
-        """Return both cuts together."""
+        """Return the total of both cuts."""
         if not self or not other:
             return self or other
         return Cut(
@@ -90,7 +94,7 @@ class Cut(NamedTuple):
         )
 
     def combine_sequence(self, other: Cut) -> Cut:
-        """Return this cut followed by another one of the same move, with the greater of both depths."""
+        """Return the total of this cut and a later cut of the same move, with the greater of both depths."""
         return self.combine(other)._replace(depth_mm=max(self.depth_mm, other.depth_mm))
 
 
@@ -98,7 +102,10 @@ NO_CUT = Cut()
 
 
 class PartedPiece(NamedTuple):
-    """A piece that was parted off: volume in mm³, outside profile, and bore (None if it is solid)."""
+    """A piece that was parted off, with its volume in mm³ and its profiles.
+
+    ``bore_profile`` is None if the piece is solid.
+    """
 
     volume_mm3: float
     outside_profile: ProfilePoints
@@ -113,7 +120,10 @@ def _radius_range(r0: float, r1: float) -> tuple[float, float]:
 
 
 class TurnedPart:
-    """A part in the lathe: material from ``low`` to ``high`` (layers, columns), as radii in mm."""
+    """A part in the lathe, with its material as radii in mm.
+
+    The material extends from ``inner_radii`` to ``outer_radii`` (layers, columns).
+    """
 
     def __init__(self, stock: Stock, column_width: float = DEFAULT_COLUMN_WIDTH_MM) -> None:
         length = stock.front_z_mm - stock.back_z_mm
@@ -137,26 +147,30 @@ class TurnedPart:
 
     @property
     def volume_mm3(self) -> float:
-        """Volume in mm³ of all the material in the chuck."""
+        """Return the volume in mm³ of all material in the chuck."""
         return self._volume(slice(None))
 
     @property
     def max_radii(self) -> FloatArray:
-        """The greatest radius of each column (columns,); 0 if it contains no material."""
+        """Return the greatest radius of each column (columns,), or 0 for a column without material."""
         there = self.outer_radii > self.inner_radii
         radii: FloatArray = np.max(np.where(there, self.outer_radii, 0.0), axis=0)
         return radii
 
     @property
     def min_radii(self) -> FloatArray:
-        """The least radius of the material in each column (columns,); 0 if it contains none."""
+        """Return the least radius of the material in each column (columns,).
+
+        The radius is 0 for a column without material.
+        """
         there = self.outer_radii > self.inner_radii
         inner = np.min(np.where(there, self.inner_radii, np.inf), axis=0)
         return np.where(np.isfinite(inner), inner, 0.0)
 
     def max_radius_between(self, back_z_mm: float, front_z_mm: float) -> float:
-        """Return the greatest radius of the columns from Z ``back_z_mm`` to ``front_z_mm``; 0 without
-        columns.
+        """Return the greatest radius of the columns from Z ``back_z_mm`` to ``front_z_mm``.
+
+        The result is 0 if there are no columns in this range.
         """
         there = slice(self.columns.find_column(back_z_mm), self.columns.find_column(front_z_mm))
         return float(self.outer_radii[:, there].max(initial=0.0))
@@ -166,7 +180,10 @@ class TurnedPart:
         return math.pi * self.columns.step_mm * float(np.sum(high * high - low * low))
 
     def enters_material(self, points: Sequence[Point], depth: float) -> bool:
-        """Return whether a path of Z and r in mm is more than ``depth`` inside the material anywhere."""
+        """Return whether any point of a path is more than ``depth`` inside the material.
+
+        The path consists of Z and r in mm.
+        """
         return any(self._crossed(start, end, depth) for start, end in pairwise(points))
 
     def _crossed(self, start: Point, end: Point, depth: float) -> bool:
@@ -188,9 +205,9 @@ class TurnedPart:
     # --- cuts
 
     def cut_outside(self, first_column: int, radii: FloatArray, *, remove: bool = True) -> Cut:
-        """Return all material further out than ``radii`` (m,) from column ``first`` on.
+        """Return all material further out than ``radii`` (m,) from column ``first_column`` on.
 
-        The material is removed if ``cut`` is True.
+        The material is removed if ``remove`` is True.
         """
         there = slice(first_column, first_column + len(radii))
         met = NO_CUT
@@ -202,7 +219,10 @@ class TurnedPart:
         return self._taken(met, cut=remove)
 
     def cut_inside(self, first_column: int, radii: FloatArray, *, remove: bool = True) -> Cut:
-        """Return all material closer to the axis than ``radii`` (m,); remove it if ``cut``."""
+        """Return all material closer to the axis than ``radii`` (m,) from column ``first_column`` on.
+
+        The material is removed if ``remove`` is True.
+        """
         there = slice(first_column, first_column + len(radii))
         met = NO_CUT
         for low, high in zip(self.inner_radii[:, there], self.outer_radii[:, there], strict=True):
@@ -215,8 +235,9 @@ class TurnedPart:
     def cut_between(
         self, first_column: int, inner_radii: FloatArray, outer_radii: FloatArray, *, remove: bool = True
     ) -> Cut:
-        """Return all material between the radii ``inner_radii`` and ``outer_radii`` (m,); remove it if
-        ``cut``.
+        """Return all material between ``inner_radii`` and ``outer_radii`` (m,).
+
+        The first radii are those of column ``first_column``. The material is removed if ``remove`` is True.
         """
         there = slice(first_column, first_column + len(inner_radii))
         met = NO_CUT
@@ -230,7 +251,10 @@ class TurnedPart:
         return self._taken(met, cut=remove)
 
     def _split_layer(self, layer: int, there: slice, start: FloatArray, end: FloatArray) -> None:
-        """Remove [start, end] from one layer, and move the material further out to a separate layer."""
+        """Remove the radii from ``start`` to ``end`` from one layer.
+
+        Material further out is moved to a separate layer.
+        """
         low, high = self.inner_radii[layer, there].copy(), self.outer_radii[layer, there].copy()
         taken = end > start
         outer = taken & (high > end)
@@ -260,7 +284,7 @@ class TurnedPart:
     def _measure_cut(
         self, first: int, low: FloatArray, high: FloatArray, start: FloatArray, end: FloatArray
     ) -> Cut:
-        """Return the material between ``start`` and ``end`` of a layer, both within its interval."""
+        """Return the cut between ``start`` and ``end``, which are both within the interval of a layer."""
         thick = end - start
         touched = (thick > _TOUCH).nonzero()[0]
         if not len(touched):
@@ -295,7 +319,10 @@ class TurnedPart:
     # --- parting off
 
     def _drop_unconnected(self) -> None:
-        """Drop the material that is not connected to the end in the chuck. Chips are not counted."""
+        """Drop the material that is not connected to the end in the chuck.
+
+        Chips are not counted as pieces.
+        """
         metal = np.any(self.outer_radii > self.inner_radii + _TOUCH, axis=0)
         there = np.flatnonzero(metal)
         if not len(there):
@@ -314,7 +341,7 @@ class TurnedPart:
         self.inner_radii[:, there] = self.outer_radii[:, there] = 0.0
 
     def remaining_piece(self) -> PartedPiece:
-        """Return the material in the chuck as a piece."""
+        """Return the remaining material in the chuck as a piece."""
         return self._piece(slice(None), self.volume_mm3)
 
     def _piece(self, there: slice, volume: float) -> PartedPiece:
@@ -330,7 +357,10 @@ class TurnedPart:
         return PartedPiece(volume, self._make_profile(z, high), bore, wall)
 
     def _make_profile(self, z: FloatArray, r: FloatArray) -> ProfilePoints:
-        """Return the points from the face toward the chuck, with vertical shoulders between columns."""
+        """Return the profile points from the face toward the chuck.
+
+        The profile has vertical shoulders between columns.
+        """
         half = self.columns.step_mm / 2
         rise = np.abs(np.diff(r))
         beside = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))

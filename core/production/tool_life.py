@@ -1,4 +1,4 @@
-"""Tool life by parts and by cutting time: counts, warning and end of life."""
+"""Tool life by parts and by cutting time, with counts, a warning and the end of the tool life."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ DEFAULT_WARNING_SHARE = 0.9  # share of the life at which a warning is shown
 
 
 class ToolLifeError(CodedError, ValueError):
-    """Raised for invalid limits of a tool life. The message names the limit and the remedy."""
+    """Error raised for invalid limits of a tool life, with a message that names the limit and the remedy."""
 
 
 class ToolLifeState(Enum):
-    """The state of a tool's life."""
+    """The state of a tool's life, from no limit to used up."""
 
     NO_LIMIT = "no limit"
     OK = "good"
@@ -28,9 +28,9 @@ class ToolLifeState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ToolLife:
-    """The life of one tool since its insert was changed. A limit of 0 means no limit.
+    """The life of one tool since its insert was changed.
 
-    ``stops`` means that no other part starts after the end of life.
+    A limit of 0 means no limit. ``stops`` means that no further part starts after the end of the tool life.
     """
 
     number: int
@@ -43,14 +43,20 @@ class ToolLife:
 
     @property
     def share(self) -> float:
-        """The used share of the life, by the limit that is closer; 0 without a limit."""
+        """Return the used fraction of the tool life, or 0 without a limit.
+
+        With two limits, this is the greater of both fractions.
+        """
         by_parts = self.parts / self.limit_parts if self.limit_parts else 0.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else 0.0
         return max(by_parts, by_time)
 
     @property
     def state(self) -> ToolLifeState:
-        """The state of the life: warned from the share ``warn`` on, spent at the limit."""
+        """Return the state of the tool life.
+
+        The state is WARNING from the used fraction ``warn`` on, and USED_UP at the limit.
+        """
         if not (self.limit_parts or self.limit_seconds):
             return ToolLifeState.NO_LIMIT
         if self.share >= 1.0 - 1e-9:
@@ -59,7 +65,10 @@ class ToolLife:
 
     @property
     def parts_left(self) -> int | None:
-        """The number of complete parts until the end of life, from the use per part; None if unknown."""
+        """Return the number of complete parts until the end of the tool life, or None if it is unknown.
+
+        The number is calculated from the use per part.
+        """
         left = []
         if self.limit_parts:
             left.append(max(0, self.limit_parts - self.parts))
@@ -71,7 +80,10 @@ class ToolLife:
 
     @property
     def words(self) -> str:
-        """The used life as a text, such as ``50 of 50 parts`` or ``31 of 30 min``, by the closer limit."""
+        """Return the used tool life as a text, such as ``50 of 50 parts`` or ``31 of 30 min``.
+
+        With two limits, the text is about the limit that will be reached first.
+        """
         by_parts = self.parts / self.limit_parts if self.limit_parts else -1.0
         by_time = self.seconds / self.limit_seconds if self.limit_seconds else -1.0
         if by_parts < 0.0 and by_time < 0.0:

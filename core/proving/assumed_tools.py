@@ -1,7 +1,8 @@
 """Assumed shapes of tools without a specified shape, derived from comments and moves.
 
-A comment next to T has priority, with the words that shops use. Without a comment, the moves decide. The
-proof reports all assumptions. No holder is assumed, so it is not checked.
+A comment next to T has priority; the words that shops use are recognized. Without a comment, the shape is
+derived from the moves. The proof reports all assumptions. No holder is assumed, so collisions of holders
+are not checked.
 """
 
 from __future__ import annotations
@@ -90,7 +91,7 @@ class ToolUse:
 
     @property
     def is_metric(self) -> bool:
-        """True if the program uses mm while it uses this tool."""
+        """Return whether the program uses mm while it uses this tool."""
         modals = [
             *(move.modal for move in self.moves[:1]),
             *(block.modal for block, _ in self.live_steps[:1]),
@@ -99,14 +100,18 @@ class ToolUse:
 
     @property
     def live_blocks(self) -> list[Block]:
-        """The blocks of a live tool that move X, Z or the virtual mill. Indexing of C is left out."""
+        """Return the blocks of a live tool that move X, Z or the virtual mill.
+
+        Blocks that only index C are left out.
+        """
         return [b for b, _ in self.live_steps if b.plane is not None or (b.x, b.z) != (b.x0, b.z0)]
 
     @property
     def first_rapid_position(self) -> TipMove | Block | None:
-        """The first position at the part of a tool whose moves are all rapids, while spindle or C is active.
+        """Return the first position at the part of a tool that makes only rapids.
 
-        None if the tool feeds or if its rapids have another purpose.
+        The position is that of a rapid while the spindle or C is active. The result is None if the tool
+        feeds or if its rapids have another purpose.
         """
         if self.is_bar_stop:
             return None
@@ -126,7 +131,7 @@ class ToolUse:
 
     @property
     def is_radial(self) -> bool:
-        """True if a live tool enters the part along X instead of Z, such as in the plane ZC."""
+        """Return whether a live tool enters the part along X instead of Z, such as in the plane ZC."""
         if any(b.plane is not None and b.plane.is_on_side_plane for b, _ in self.live_steps):
             return True
         feeds = [b for b, _ in self.live_steps if b.plane is None and not b.rapid and b.feed < FAST_FEED_MM_S]
@@ -136,9 +141,9 @@ class ToolUse:
 
 @dataclass(frozen=True, slots=True)
 class AssumedTool:
-    """The assumed shape of a tool, or None for a bar stop, with a sentence about the assumption.
+    """The assumed shape of a tool, with a sentence that explains the assumption.
 
-    ``is_kind_named`` is True if a comment states the kind of tool.
+    The shape is None for a bar stop. ``is_kind_named`` is True if a comment names the kind of tool.
     """
 
     tool_shape: ToolShape | None
@@ -147,9 +152,10 @@ class AssumedTool:
     is_diameter_assumed: bool = False  # the diameter is assumed
 
     def add_diameter(self, tool_use: ToolUse, bore_moves: Sequence[TipMove]) -> AssumedTool:
-        """Return the tool with a diameter if it is a round tool without one.
+        """Return the tool with an assumed diameter if it is a round tool without a diameter.
 
-        The diameter of a drill is slightly less than the ``bore_moves`` that is cut after it.
+        The diameter of a drill is slightly less than the smallest diameter that ``bore_moves`` cut after
+        it.
         """
         shape = self.tool_shape
         if shape is None or not shape.is_rotating or shape.diameter:
@@ -167,7 +173,7 @@ class AssumedTool:
         )
 
     def add_width(self, tool_use: ToolUse, threads: Sequence[TipMove]) -> AssumedTool:
-        """Return the tool with a width if it is a grooving or parting tool without one.
+        """Return the tool with an assumed width if it is a grooving or parting tool without a width.
 
         See ``find_groove_width``.
         """
@@ -182,11 +188,11 @@ class AssumedTool:
 
 
 def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
-    """Return the width in mm of an edge without a specified width.
+    """Return the assumed width in mm of a cutting edge without a specified width.
 
-    The width is 2 mm, or the width that a thread needs to start in the groove. This applies to threads that
-    lead out of the part. The edge of a threading tool is at most as wide as the lead, with half on either
-    side.
+    The width is 2 mm, or the width that a thread needs to start in the groove. Only threads that lead out
+    of the part need this width. The edge of a threading tool is at most as wide as the lead, with half of
+    it on either side.
     """
     forward = shape.direction[0]  # direction of the corner that is set; the edge extends back from it
     plunged = {m.points[-1][0] for m in moves if not m.is_fast and _square(m)}
@@ -200,7 +206,10 @@ def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Itera
 
 
 def assume_tool(tool_use: ToolUse, specified: ToolShape | None = None) -> AssumedTool:
-    """Return the assumed shape of a tool without a shape, or with an incomplete shape ``specified``."""
+    """Return the assumed shape of a tool.
+
+    ``specified`` is the incomplete shape of the tool, or None if the tool has no shape.
+    """
     kind, why = (specified.kind, "based on the tool shape") if specified is not None else _kind(tool_use)
     if kind is None:
         return AssumedTool(
@@ -247,7 +256,7 @@ def _on_axis(cuts: Iterable[TipMove]) -> bool:
 def _has_plunge(cuts: Sequence[TipMove]) -> bool:
     """Return whether a tool cuts perpendicular to the axis inside the part.
 
-    The cuts along Z are at most as long as the cleaning of a groove.
+    Its cuts along Z must not be longer than those that clean a groove.
     """
     if not cuts or any(move.kind is BlockKind.ARC for move in cuts):
         return False
@@ -273,9 +282,9 @@ def works_in_bore(moves: Sequence[TipMove]) -> bool:
 
 
 def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -> bool:
-    """Return whether a contour is that of a bore because its radii decrease from face to chuck.
+    """Return whether the contour is that of a bore, because its radii decrease from the face to the chuck.
 
-    Used if no retract gives a decision.
+    This rule is used if the retracts do not give a decision.
     """
     behind = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
     falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
@@ -308,12 +317,15 @@ def _groover(kind: ToolKind, use: ToolUse, *, rear: bool) -> ToolShape:
 
 
 def _normalize_comment(comment: str) -> str:
-    """Return the comment in capitals, with a decimal point for a P between two digits."""
+    """Return the comment in capitals, with each P between two digits replaced by a decimal point."""
     return _POINT_SIGN.sub(".", comment.upper())
 
 
 def parse_edge_width(comment: str) -> float:
-    """Return the width in mm given in a comment (.045 WIDE, 045 WIDE in thousandths, 3MM WIDE), or 0."""
+    """Return the width in mm that a comment specifies, or 0.
+
+    Examples are .045 WIDE, 045 WIDE (thousandths of an inch) and 3MM WIDE.
+    """
     found = re.search(_WIDTH, _normalize_comment(comment))
     if found is None:
         return 0.0
@@ -335,9 +347,9 @@ def _round_tool(kind: ToolKind, use: ToolUse) -> ToolShape:
 
 
 def parse_tap_size(comment: str) -> tuple[float, float]:
-    """Return diameter and pitch in mm of a tap named in a comment, or 0 for a value that is missing.
+    """Return the diameter and the pitch in mm of a tap that a comment names, or 0 for a missing value.
 
-    Examples are 1/4-20, 10-32, M6X1, and with the characters of the control 1 4 20, 10 32, 20 TPI.
+    Examples are 1/4-20, 10-32 and M6X1, or 1 4 20, 10 32 and 20 TPI with the characters of the control.
     """
     text = _normalize_comment(comment)
     if found := re.search(_TAP_METRIC, text):
@@ -359,7 +371,10 @@ def names_releasing_holder(tool_use: ToolUse) -> bool:
 
 
 def _is_at_rear(moves: Sequence[TipMove]) -> bool:
-    """Return whether a tool works at negative X, ignoring facing slightly beyond the axis."""
+    """Return whether a tool works at negative X.
+
+    Facing slightly beyond the axis is ignored.
+    """
     cuts = [move for move in moves if not move.is_fast]
     behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
     radii = behind or [r for move in cuts for _, r in move.points]
@@ -367,9 +382,9 @@ def _is_at_rear(moves: Sequence[TipMove]) -> bool:
 
 
 def _cuts_away_from_chuck(moves: Iterable[TipMove]) -> bool:
-    """Return whether a tool cuts along Z from the chuck toward the face, like a left-hand tool.
+    """Return whether a tool cuts along Z from the chuck toward the face, as a left-hand tool does.
 
-    A move that ends before the face is a retract at feed.
+    A move that ends in front of the face is a retract at feed.
     """
     cuts = [move for move in moves if not move.is_fast]
     along = [m.points[-1][0] - m.points[0][0] for m in cuts if max(z for z, _ in m.points) < 0.0]
@@ -387,7 +402,10 @@ def _plunges_outward(moves: Iterable[TipMove]) -> bool:
 
 
 def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
-    """Return the tip quadrant of the corner that is set: the left one unless a comment names the right."""
+    """Return the tip quadrant of the corner of the edge that is set.
+
+    This is the left corner unless a comment names the right corner.
+    """
     text = " ".join(use.comments).upper()
     if "RIGHT EDGE" in text or "RIGHT SIDE" in text:
         return 1 if rear else 4
@@ -395,7 +413,7 @@ def _find_tip_quadrant(use: ToolUse, *, rear: bool) -> int:
 
 
 def _parse_diameter(comment: str) -> float:
-    """Return the diameter in mm given in a comment such as 1/4 DRILL or DRILL .250 DIA, or 0."""
+    """Return the diameter in mm that a comment such as 1/4 DRILL or DRILL .250 DIA specifies, or 0."""
     text = _normalize_comment(comment)
     if found := re.search(_MILLIMETERS, text):
         return float(found[1])
@@ -406,7 +424,7 @@ def _parse_diameter(comment: str) -> float:
 
 
 def _format_length(mm: float, use: ToolUse) -> str:
-    """Return a length as text in the unit of the program."""
+    """Return a length as a text in the unit of the program."""
     return (
         Message("{unit} mm", unit=f"{mm:.2f}") if use.is_metric else Message("{mm} in", mm=f"{mm / 25.4:.3f}")
     )

@@ -1,4 +1,4 @@
-"""Generator of the page about the checks: ``python -m core.proving.checks_page docs/checks.md``."""
+"""Generator of the page about the checks, run by ``python -m core.proving.checks_page docs/checks.md``."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ check that is turned off become notes with the reason, and are counted (`silence
 
 
 def render_page() -> str:
-    """Return the text of the page."""
+    """Return the text of the page about the checks."""
     head = _HEAD.format(contents=make_contents([_PART, _PROGRAM]))
     return f"{head}\n## {_PART}\n\n{_rows(PART_CHECKS)}\n## {_PROGRAM}\n\n{_rows(PROGRAM_CHECKS)}"
 
@@ -82,7 +82,7 @@ def _lines(name: str, check: PartCheck) -> Iterator[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the named file."""
+    """Write the page to the file that the first argument names."""
     Path(argv[0]).write_text(render_page(), encoding="utf-8")
     return 0
 

@@ -1,4 +1,4 @@
-"""Live tools on a turned part: their moves, and the polar field that they cut."""
+"""Live tools on a turned part: their moves and the polar field from which they remove material."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _SLOPE_TOLERANCE_MM = 0.002  # mm of tolerance for a slope in a wider column
 
 
 class MillMove(NamedTuple):
-    """One elementary block of a live tool, with its path (n, 3) for ``MilledPart``, axial or radial."""
+    """One elementary block of a live tool, with its axial or radial path (n, 3) for ``MilledPart``."""
 
     block_number: int
     line: int
@@ -38,7 +38,7 @@ class MillMove(NamedTuple):
 
 
 def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> MillMove | None:
-    """Return the path of a block in the part's frame, or None without a move.
+    """Return the move of a block in the part's frame, or None if the block does not move.
 
     ``part_zero`` is added to X and Z of the block.
     """
@@ -62,7 +62,7 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
 
 
 def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
-    """Return the piece of a path between two shares of it, from 0 to 1."""
+    """Return the part of a path between two fractions of the path, from 0 to 1."""
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(
         ([start_fraction], at[(at > start_fraction) & (at < end_fraction)], [end_fraction])
@@ -71,14 +71,17 @@ def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -
 
 
 def point_height_mm(shape: ToolShape) -> float:
-    """Return the height in mm of the point of a live drill; 0 for a mill."""
+    """Return the height in mm of the point of a live drill, or 0 for a mill."""
     if shape.kind not in _CONES or not shape.point:
         return 0.0
     return float(shape.diameter / 2.0 / np.tan(np.radians(shape.point / 2.0)))
 
 
 class MillingState:
-    """A turned part with its polar field. Material that is turned off later is removed from the field too."""
+    """A turned part with its polar field.
+
+    Material that is turned off later is also removed from the field.
+    """
 
     def __init__(self, part: TurnedPart) -> None:
         self._turned = part
@@ -91,34 +94,37 @@ class MillingState:
 
     @classmethod
     def from_field(cls, part: TurnedPart, field: PolarField, volume: float) -> MillingState:
-        """Return the state with an existing field; ``volume`` is the turned volume at its last update."""
+        """Return the state with an existing field.
+
+        ``volume`` is the volume in mm³ of the turned part at the last update of the field.
+        """
         milling = cls.__new__(cls)
         milling._turned, milling._part, milling._volume = part, MilledPart(field), volume
         return milling
 
     @property
     def synced_volume_mm3(self) -> float:
-        """The volume in mm³ of the turned part at the last update of the field."""
+        """Return the volume in mm³ of the turned part at the last update of the field."""
         return self._volume
 
     @property
     def updated_field(self) -> PolarField:
-        """The material, updated with the turned cuts."""
+        """Return the polar field after the turned cuts have been removed from it."""
         self._update_field()
         return self._part.field
 
     @property
     def nbytes(self) -> int:
-        """The memory of the field in bytes."""
+        """Return the memory that the field uses, in bytes."""
         return self._part.field.inner_radii.nbytes + self._part.field.outer_radii.nbytes
 
     @property
     def remaining_volume_mm3(self) -> float:
-        """The volume in mm³ of the material in the chuck."""
+        """Return the volume in mm³ of the material in the chuck."""
         return self.updated_field.volume_mm3
 
     def cut_material(self, move: MillMove, shape: ToolShape) -> RemovedMaterial:
-        """Remove the material that a live tool sweeps, and return it."""
+        """Remove the material that a live tool sweeps, and return the removed material."""
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
@@ -126,7 +132,7 @@ class MillingState:
         return part.mill_radial(move.path, radius, length, point=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
-        """Return whether a live tool moves along a face: it would hit material .001 in deeper."""
+        """Return whether a live tool moves along a face, so that it would hit material .001 in deeper."""
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
@@ -134,7 +140,7 @@ class MillingState:
         return part.hits_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
     def subtract_milled_volume(self, piece: PartedPiece) -> PartedPiece:
-        """Return a piece that was just parted off, without the volume that live tools had removed."""
+        """Return a piece that was just parted off, without the volume that live tools have removed."""
         if not piece.outside_profile:
             return piece
         field = self._part.field
@@ -143,7 +149,7 @@ class MillingState:
         return piece._replace(volume_mm3=min(float(field.column_volumes[there].sum()), piece.volume_mm3))
 
     def section_halves(self) -> tuple[PartedPiece, PartedPiece]:
-        """Return both halves of the section with C at 0: X+, then X-."""
+        """Return both halves of the section with C at 0: first X+, then X-."""
         field = self.updated_field
         rays = field.inner_radii.shape[2]  # =
         upper, lower = (
@@ -185,7 +191,7 @@ def _section_profiles(edges: FloatArray, low: FloatArray, high: FloatArray) -> P
 
 
 def _mill_sizes(shape: ToolShape) -> tuple[float, float, float]:
-    """Return radius, cutting length and height of the point."""
+    """Return the radius, the cutting length and the height of the point of a mill."""
     return shape.diameter / 2.0, shape.length or math.inf, point_height_mm(shape)
 
 

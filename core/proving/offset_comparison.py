@@ -1,7 +1,7 @@
-"""Comparison of the part with other offsets: features and findings with one and the other set.
+"""Comparison of the part with other offsets: the features and findings with each set of offsets.
 
-The tools are at the positions that the offsets of the proof specify. With the other offsets the axes move
-elsewhere, and the part becomes larger, smaller, longer or shorter.
+The tools are at the positions that the offsets of the proof specify. With the other offsets, the axes move
+to other positions, and the part becomes larger, smaller, longer or shorter.
 
 A feature is a straight line of the profile: a diameter along Z, or a shoulder across Z. Cones, arcs and the
 nose radius in a corner are not features.
@@ -45,34 +45,40 @@ class FeatureKind(StrEnum):
 
 
 class PartFeature(NamedTuple):
-    """A feature with its diameter or Z in mm (``at``), and its extent in Z or r (``extent``)."""
+    """A feature with its diameter or Z (``at``) and its extent in Z or r (``extent``), in mm."""
 
     kind: FeatureKind
     at: float
     extent: tuple[float, float]
 
     def distance_to(self, other: PartFeature) -> float:
-        """Return the distance to another feature in mm, where a radius counts like a length."""
+        """Return the distance to another feature in mm.
+
+        A difference of radii counts like a difference of lengths.
+        """
         half = 0.5 if self.kind in {FeatureKind.DIAMETER, FeatureKind.BORE} else 1.0
         return abs(self.at - other.at) * half + math.dist(self.extent, other.extent)
 
 
 class Pair(NamedTuple):
-    """A feature on both parts; None if the other part has no similar feature."""
+    """The same feature on both parts; a feature is None if the part has no similar feature."""
 
     this_feature: PartFeature | None
     other_feature: PartFeature | None
 
     @property
     def difference(self) -> float | None:
-        """The value of the other part minus the value here, in mm, or None."""
+        """Return the dimension of the other part minus the dimension of this part, in mm.
+
+        The result is None if the feature has no counterpart.
+        """
         if self.this_feature is None or self.other_feature is None:
             return None
         return self.other_feature.at - self.this_feature.at
 
 
 def find_features(piece: PartedPiece) -> list[PartFeature]:
-    """Return the features of the outside from the face on, then those of the bore."""
+    """Return the features of the outside from the face on, followed by those of the bore."""
     outside, bore = piece.outside_profile, piece.bore_profile or []
     if not outside:
         return []
@@ -92,9 +98,9 @@ def _of(profile: ProfilePoints, along: FeatureKind, across: FeatureKind) -> Iter
 
 
 def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
-    """Return the end of straight ``k`` that has no fillet, which is next to the longer neighbor.
+    """Return the end of straight ``k`` that has no fillet, which is the end next to the longer neighbor.
 
-    The nose radius at the other end is part of the straight if it is within the tolerance of the profile.
+    The nose radius at the other end belongs to the straight if it is within the tolerance of the profile.
     """
     before = math.dist(profile[k - 1], profile[k]) if k else math.inf
     behind = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
@@ -102,7 +108,10 @@ def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
 
 
 def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) -> list[Pair]:
-    """Return pairs of the closest features of one kind, in the order of ``here``, then the remaining ones."""
+    """Return pairs of the closest features of the same kind.
+
+    The pairs are in the order of ``these``, followed by the features of ``others`` without a counterpart.
+    """
     near = sorted(
         (a.distance_to(b), i, j)
         for i, a in enumerate(these)
@@ -121,7 +130,11 @@ def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) 
 
 @dataclass(frozen=True, slots=True)
 class ComparedPart:
-    """The result of the other offsets: proof, part, pairs of features, and findings of only one proof."""
+    """The result of the other offsets.
+
+    It contains the proof, the part, the pairs of features, and the findings that occur in only one of the
+    two proofs.
+    """
 
     report: ProofReport
     part: PartReport | None
@@ -131,7 +144,7 @@ class ComparedPart:
 
     @property
     def differing_feature_count(self) -> int:
-        """The number of features that differ or have no counterpart."""
+        """Return the number of features that differ or have no counterpart."""
         return sum(
             pair.difference is None or abs(pair.difference) > FEATURE_TOLERANCE_MM
             for pair in self.feature_pairs
@@ -152,7 +165,10 @@ def prove_other_offsets(
     program: ProgramSource | SharedProgram, proved_part: ProvedPart, other_setup: Setup, machine: Machine,
     report_progress: ReportProgress | None = None, *, ideal: bool = False,
 ) -> ComparedPart:  # fmt: skip
-    """Prove the same program, stock and tools with the offsets of ``there``. ``watch`` may cancel."""
+    """Prove the same program, stock and tools with the offsets of ``other_setup``.
+
+    ``report_progress`` may raise to cancel the proof.
+    """
     setting = proved_part.part_settings
     if proved_part.part is not None:
         setting = replace(setting, stock=proved_part.part.stock, tips=_tip_positions(proved_part.setup))
@@ -168,7 +184,7 @@ def prove_other_offsets(
 
 
 def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
-    """Return the positions at which the tips are at part zero, by T and by G54 to G59."""
+    """Return the positions at which the tips are at part zero, by T number and by G54 to G59."""
     own = {n: (tool.x, tool.z) for n, tool in setup.tools.items()}
     return own | {n: (zero.x, zero.z) for n, zero in setup.zero.items()}
 
@@ -176,7 +192,7 @@ def _tip_positions(setup: Setup) -> dict[int, tuple[float, float]]:
 def _find_unmatched(
     own_findings: Iterable[Diagnostic], there: Iterable[Diagnostic]
 ) -> tuple[tuple[Diagnostic, ...], tuple[Diagnostic, ...]]:
-    """Return the findings that only one side has, compared by line and code."""
+    """Return the findings that exist on one side only, compared by line and code."""
 
     def key(each: Diagnostic) -> tuple[int, str]:
         return each.line, each.code

@@ -1,9 +1,9 @@
-"""The part at any time of a program, replayed from stored copies, and the finished part for a picture.
+"""The part at any time of a program, reproduced from stored copies, and the finished part for a picture.
 
-All results are independent arrays, because another thread may show them.
+All results are independent arrays, because another thread may display them.
 
-The finished part is the material in the chuck just before the last piece is parted off. If no piece is parted
-off, it is the material at the end or before the collet opens, whichever is less.
+The finished part is the material in the chuck just before the last piece is parted off. If no piece is
+parted off, it is the material at the end or before the collet opens, whichever has the smaller volume.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ ReportProgress = Callable[[float], None]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ProgramSteps:
-    """All blocks of a program in their order, with the settings of stock and tools."""
+    """All blocks of a program in their order, with the settings of the stock and the tools."""
 
     parts: tuple[BlockGroup, ...]
     part_settings: PartSettings
@@ -64,14 +64,14 @@ class ProgramSteps:
 
 @dataclass(slots=True)
 class StepCollector:
-    """Collects the blocks of a pass through a program, up to the limit for the operator screen."""
+    """A collector of the blocks of one pass through a program, up to the limit for the operator screen."""
 
     part_settings: PartSettings
     _parts: list[BlockGroup] = field(default_factory=list)
     _blocks: int = 0
 
     def add_span(self, span: MotionSpan | RestSpan) -> None:
-        """Add the next span of the program."""
+        """Add the blocks of the next span of the program."""
         if isinstance(span, MotionSpan):
             parts = span.block_groups
         else:
@@ -84,7 +84,7 @@ class StepCollector:
 
     @property
     def overflow_reason(self) -> str:
-        """The reason why the part cannot be made, as a sentence, or an empty string."""
+        """Return the reason why the part cannot be made, as a sentence, or an empty text."""
         if self._blocks <= MAX_MOVES:
             return ""
         way = "use 'turndesk prove --stock' for longer programs"
@@ -97,14 +97,14 @@ class StepCollector:
         )
 
     def collected_steps(self) -> ProgramSteps | None:
-        """Return the collected blocks, or None if there are none or too many."""
+        """Return the collected blocks, or None if there are no blocks or too many."""
         return ProgramSteps(tuple(self._parts), self.part_settings) if self._parts else None
 
 
 class PartHistory:
-    """Makes the part at any block of a program, forward and, from stored copies, backward.
+    """The part at any block of a program, calculated forward or, from stored copies, backward.
 
-    Used by one thread at a time.
+    Only one thread may use it at a time.
     """
 
     def __init__(self, program_steps: ProgramSteps) -> None:
@@ -139,9 +139,10 @@ class PartHistory:
     def at(
         self, block: int, fraction: float = 0.0, check_canceled: CheckCanceled | None = None
     ) -> PartInstant:
-        """Return the part when ``block`` blocks and the ``share`` (0 to 1) of the next one are done.
+        """Return the part after ``block`` blocks and the given fraction (0 to 1) of the next block.
 
-        ``watch`` is called regularly during long work and may raise. The work done until then is stored.
+        ``check_canceled`` is called regularly during long work and may raise. The work done until then is
+        stored.
         """
         self._last = None
         done = int(np.searchsorted(self._numbers, block, side="right"))
@@ -153,7 +154,7 @@ class PartHistory:
     def simulation_at(
         self, block: int, tip: Point | None = None, check_canceled: CheckCanceled | None = None
     ) -> PartSimulation:
-        """Return a copy of the part before a block, or with the block done up to the ``tip`` (Z, r in mm)."""
+        """Return a copy of the part before a block, or with the block executed up to ``tip`` (Z, r in mm)."""
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):
@@ -163,11 +164,14 @@ class PartHistory:
 
     @property
     def tools(self) -> ProgramTools:
-        """The tools of the program, as specified or assumed."""
+        """Return the tools of the program, as specified or as assumed."""
         return self._tools
 
     def find_part_zero(self, tool: int) -> Point | None:
-        """Return machine X and Z at which the tip of this tool is at part zero, or None if it never moves."""
+        """Return the machine X and Z at which the tip of a tool is at part zero.
+
+        The result is None if the tool never moves.
+        """
         for step in reversed(self.steps):
             if isinstance(step, TipMove) and step.modal.tool == tool:
                 return step.part_zero
@@ -177,15 +181,16 @@ class PartHistory:
 
     @property
     def end_position(self) -> Point | None:
-        """Machine X and Z at the end of the program, or None if no axis moves."""
+        """Return the machine X and Z at the end of the program, or None if no axis moves."""
         for step in reversed(self.steps):
             if isinstance(step, TipMove):
                 return step.points[-1][1] + step.part_zero[0], step.points[-1][0] + step.part_zero[1]
         return None
 
     def executed_fraction(self, block: int, offset_from_end: Point) -> float:
-        """Return the share of a block that is done when the tool is ``offset_from_end`` (Z, r) from its
-        end.
+        """Return the fraction of a block that has been executed.
+
+        ``offset_from_end`` (Z, r) is the position of the tool relative to the end of the block.
         """
         step = self._step(block)
         if isinstance(step, LiveToolStep):
@@ -198,20 +203,23 @@ class PartHistory:
 
     @property
     def block_count(self) -> int:
-        """The number of the last block."""
+        """Return the number of the last block, or 0 without blocks."""
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
     def current_part(self) -> PartInstant:
-        """Return the part as far as the present work has made it."""
+        """Return the part as far as the work in progress has calculated it."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
 
     def is_current(self, instant: PartInstant) -> bool:
-        """Return whether ``instant`` is the last one returned, so that the part is unchanged."""
+        """Return whether ``instant`` is the instant that was returned last, so that the part is unchanged."""
         return instant is self._last
 
     def make_solid(self, instant: PartInstant) -> Solid | None:
-        """Return the solid of the last instant, for this thread only, or None without material."""
+        """Return the solid of the last instant, or None without material.
+
+        Only the calling thread may use the solid.
+        """
         if instant.x_plus_half is None:
             return None
         milling = self._seen.milling
@@ -220,7 +228,7 @@ class PartHistory:
         return make_turned_solid(*instant.x_plus_half)
 
     def scene_at(self, instant: PartInstant) -> PartScene:
-        """Return the objects around the part at an instant: chuck or collet, and the tool."""
+        """Return the objects around the part at an instant: the chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
             return PartScene(self._chuck)
@@ -248,7 +256,7 @@ class PartHistory:
             self._kept.store_if_due(self._done, self._making)
 
     def _apply_step(self, step: ProgramStep) -> None:
-        """Apply the next block and store its hits."""
+        """Apply the next block, and store its collisions."""
         making, known = self._making, len(self._making.findings.diagnostics)
         before = copy_material(making.part)
         making.apply_step(step)
@@ -293,7 +301,10 @@ class PartHistory:
         )
 
     def _milled_part(self, step: LiveToolStep, fraction: float) -> PartSimulation:
-        """Return the part with a live tool's block in progress, continued from the last view if possible."""
+        """Return the part while a block of a live tool is in progress.
+
+        The calculation continues from the previous view if possible.
+        """
         done, gone, ahead = self._ahead or (-1, 0.0, self._making)
         if done != self._done or gone > fraction:
             gone, ahead = 0.0, self._making.copy()
@@ -303,7 +314,10 @@ class PartHistory:
         return ahead
 
     def _tip_range(self, current_step: ProgramStep | None) -> tuple[Point, Point] | None:
-        """Return the machine limits in tip positions, with the offset of the last moving block."""
+        """Return the travel limits of the machine as tip positions.
+
+        The limits are shifted by the offset of the last moving block.
+        """
         last = self.steps[max(0, self._done - 200) : self._done]
         for step in (*((current_step,) if current_step is not None else ()), *reversed(last)):
             if self._travel is None or not isinstance(step, TipMove | LiveToolStep):
@@ -314,7 +328,7 @@ class PartHistory:
         return None
 
     def _c_angle(self, current_step: ProgramStep | None, fraction: float) -> float:
-        """Return C of the block in progress, or of the last block that engaged C."""
+        """Return the C angle of the block in progress, or of the last block that engaged C, in degrees."""
         if isinstance(current_step, LiveToolStep):
             return _c_at(current_step, fraction)
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
@@ -323,7 +337,7 @@ class PartHistory:
         return 0.0
 
     def _last_position(self) -> Point | None:
-        """Return the end of the last moving block."""
+        """Return the end position of the last moving block."""
         for step in reversed(self.steps[max(0, self._done - 200) : self._done]):
             if isinstance(step, TipMove):
                 return step.points[-1]
@@ -357,7 +371,7 @@ def _round(shape: ToolShape | None, axial: bool) -> RoundAxis:
 
 
 def polyline_fraction(points: Sequence[Point], position: Point) -> float:
-    """Return the share of a polyline that is before its nearest position to a point."""
+    """Return the fraction of a polyline before its point that is nearest to ``position``."""
     gone = best = 0.0
     least = math.inf
     total = sum(math.dist(a, b) for a, b in pairwise(points))
@@ -373,7 +387,7 @@ def polyline_fraction(points: Sequence[Point], position: Point) -> float:
 
 
 def _first_part(move: TipMove, fraction: float) -> TipMove:
-    """Return the first part of a move."""
+    """Return the first part of a move, up to ``fraction`` of its length."""
     left, points = fraction * move.length_mm, [move.points[0]]
     for a, b in pairwise(move.points):
         size = math.dist(a, b)
@@ -397,7 +411,7 @@ def _line(step: ProgramStep | None) -> int:
 
 
 def _c_at(step: LiveToolStep, fraction: float) -> float:
-    """Return C in degrees at a share of a live tool's block."""
+    """Return the C angle in degrees at a fraction of a live tool's block."""
     block = step.block
     if block.plane is not None:
         return float(block.plane.machine_positions(np.array([fraction]))[0, 2])
@@ -428,10 +442,10 @@ def _halves(making: PartSimulation) -> tuple[SectionHalf | None, SectionHalf | N
 
 
 class FinishedPart(NamedTuple):
-    """The finished part. ``back_z_mm`` and ``front_z_mm`` are the ends of its stock in Z, ``radius`` that of
-    the stock.
+    """The finished part with the dimensions of its stock, in mm.
 
-    Lengths are in mm.
+    ``back_z_mm`` and ``front_z_mm`` are the ends of the stock in Z, and ``radius_mm`` is the radius of the
+    stock.
     """
 
     solid: Solid
@@ -443,7 +457,7 @@ class FinishedPart(NamedTuple):
 def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> FinishedPart | None:
     """Return the finished part, or None if nothing is cut.
 
-    ``watch`` receives the block number regularly and may raise to cancel.
+    ``report_progress`` receives the block number regularly and may raise to cancel.
     """
     history = PartHistory(steps)
 
@@ -467,7 +481,7 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
 
 
 def _find_block_before_opening(history: PartHistory) -> list[int]:
-    """Return the block before the last opening of the collet."""
+    """Return the number of the block before the collet last opens, or an empty list."""
     for step in reversed(history.steps):
         if not isinstance(step, TipMove | LiveToolStep) and step.action == ColletSwitch(closed=False):
             return [max(step.n - 1, 0)]
@@ -475,7 +489,7 @@ def _find_block_before_opening(history: PartHistory) -> list[int]:
 
 
 def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
-    """Return the last block before the last piece was parted off.
+    """Return the last block before the last piece is parted off.
 
     A binary search is possible, because the number of pieces never decreases.
     """
@@ -487,7 +501,7 @@ def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, p
 
 
 def _section_volume(half: SectionHalf | None) -> float:
-    """Return the volume of the section rotated about the axis, in mm³."""
+    """Return the volume in mm³ of the body that results from rotating the section about the axis."""
     if half is None:
         return 0.0
     wide = half.column_edges[1:] - half.column_edges[:-1]

@@ -1,4 +1,4 @@
-"""The part at one time of a program: section, tool and hits, and copies from which to continue.
+"""The part at one time of a program: section, tool and collisions, and copies from which work can continue.
 
 All arrays are independent, so another thread may store them.
 """
@@ -35,10 +35,10 @@ _MAX_BYTES = 96e6  # bytes of all copies
 
 
 class SectionHalf(NamedTuple):
-    """One side of the section.
+    """One half of the section of a part.
 
-    ``column_edges`` (columns + 1,) are ascending Z. The material is from ``low`` to ``high`` (layers,
-    columns), as radii in mm.
+    ``column_edges`` (columns + 1,) are Z, ascending. The material extends from ``inner_radii`` to
+    ``outer_radii`` (layers, columns), as radii in mm.
     """
 
     column_edges: FloatArray
@@ -47,10 +47,10 @@ class SectionHalf(NamedTuple):
 
 
 class MaterialHit(NamedTuple):
-    """Material that was hit by a fault of the program.
+    """The material that a tool hits because of a program fault.
 
-    ``finding`` is the diagnostic. The hit is from ``low`` to ``high`` at each ``z_positions`` (n,), with a
-    width of ``column_width_mm`` mm in Z each.
+    ``finding`` is the diagnostic. At each of ``z_positions`` (n,), the hit extends from ``inner_radii`` to
+    ``outer_radii``, with a width along Z of ``column_width_mm``.
     """
 
     finding: Diagnostic
@@ -61,10 +61,10 @@ class MaterialHit(NamedTuple):
 
 
 class PlacedTool(NamedTuple):
-    """A tool at its position: its control point ``control_point``, and its outlines (k, 2) of Z and r in mm.
+    """A tool at its position, with its control point and its outlines (k, 2) of Z and r in mm.
 
-    ``is_assumed`` means that its shape is not specified, so its body is a typical one. ``round_axis`` is the
-    axis about which it is round.
+    ``is_assumed`` means that the shape of the tool is not specified, so its body is a typical one.
+    ``round_axis`` is the axis about which the tool is round.
     """
 
     tool_number: int
@@ -76,11 +76,11 @@ class PlacedTool(NamedTuple):
 
 
 class PartInstant(NamedTuple):
-    """The part when ``block_count`` blocks and the ``next_block_fraction`` of the next one are done.
+    """The part after ``block_count`` blocks and the fraction ``next_block_fraction`` of the next block.
 
-    ``x_plus_half`` is the side of the section at X+, and ``x_minus_half`` the opposite side; None means no
-    material. ``hits`` and ``findings`` are those up to this time. ``tip_range`` is the range of the tip in Z
-    and r.
+    ``x_plus_half`` is the half of the section at X+, and ``x_minus_half`` is the opposite half; None means
+    no material. ``hits`` and ``findings`` include everything up to this time. ``tip_range`` is the range of
+    the tip in Z and r.
     """
 
     block_count: int
@@ -110,9 +110,9 @@ def find_hit(
     simulation: PartSimulation,
     previous_material: MaterialRadii | None,
 ) -> MaterialHit | None:
-    """Return the hit of the last block for one of its findings, or None.
+    """Return the material that the last block hit according to one of its findings, or None.
 
-    ``before`` is the material before that block.
+    ``previous_material`` is the material before that block.
     """
     if not is_serious(finding):
         return None
@@ -131,7 +131,10 @@ def find_hit(
 def _clamping_hit(
     finding: Diagnostic, cut: Cut | None, clamping: Clamping | None, stock: Stock | None
 ) -> MaterialHit | None:
-    """Return the hit of a tool in chuck, collet or tailstock, from its outside to the depth of the cut."""
+    """Return the hit of a tool in the chuck, collet or tailstock.
+
+    The hit extends from the outside of this body to the depth of the cut.
+    """
     if cut is None or clamping is None or stock is None:
         return None
     body = clamping.tailstock if finding.check_name == "into-tailstock" else clamping.chuck_around(stock)
@@ -151,7 +154,7 @@ def _clamping_hit(
 def _removed_material_hit(
     finding: Diagnostic, previous_material: MaterialRadii, part: TurnedPart
 ) -> MaterialHit | None:
-    """Return the material that a block has removed, from the lowest to the highest of each column."""
+    """Return the material that a block has removed, from the least to the greatest radius of each column."""
     layers = len(previous_material[0])
     low, high = part.inner_radii[:layers], part.outer_radii[:layers]
     was = previous_material[1] > previous_material[0]
@@ -188,9 +191,10 @@ def _milled_hit(finding: Diagnostic, removed: RemovedMaterial) -> MaterialHit | 
 
 
 class PartCopies:
-    """Copies of the part by the number of steps done. If there are too many, every second one is dropped.
+    """Copies of the part by the number of completed steps.
 
-    Copies of a milled part share the columns that did not change between them.
+    If there are too many copies, every second copy is dropped. Copies of a milled part share the columns
+    that did not change between them.
     """
 
     def __init__(self) -> None:
@@ -198,11 +202,11 @@ class PartCopies:
         self._every = _COPY_INTERVAL
 
     def last_copy_before(self, step_count: int) -> int:
-        """Return the number of steps of the last copy at or before ``step_count`` steps."""
+        """Return the step count of the last copy at or before ``step_count`` steps."""
         return max(each for each in self._copies if each <= step_count)
 
     def copy(self, step_count: int) -> PartSimulation:
-        """Return a part from which to continue."""
+        """Return a copy of the part from which work can continue."""
         kept, field, even_with = self._copies[step_count]
         making = kept.copy()
         if field is not None and making.part is not None:
@@ -210,12 +214,12 @@ class PartCopies:
         return making
 
     def store_if_due(self, step_count: int, simulation: PartSimulation) -> None:
-        """Store a copy if the interval has passed."""
+        """Store a copy if the interval since the last copy has passed."""
         if step_count % self._every == 0 and step_count not in self._copies:
             self.store_copy(step_count, simulation)
 
     def store_copy(self, step_count: int, simulation: PartSimulation) -> None:
-        """Store a copy of the part after ``step_count`` steps."""
+        """Store a copy of the part in its state after ``step_count`` steps."""
         milling = simulation.milling
         field, even_with = None, 0.0
         if milling is not None:
@@ -232,7 +236,7 @@ class PartCopies:
 
     @property
     def _total_bytes(self) -> int:
-        """The memory of all copies in bytes; shared columns count once."""
+        """Return the memory of all copies in bytes, counting shared columns once."""
         columns = {
             id(column): column.nbytes
             for _, field, _ in self._copies.values()

@@ -1,6 +1,6 @@
 """The proof of the part: the blocks of a program remove material from the stock, and faults are reported.
 
-All moves are collected first, because unspecified stock and tools are derived from them.
+All moves are collected first, because stock and tools that are not specified are derived from the moves.
 """
 
 from __future__ import annotations
@@ -38,9 +38,10 @@ def prove_with_part(
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
     check_canceled: Callable[[float], None] | None = None,
 ) -> tuple[ProofReport, PartReport | None]:  # fmt: skip
-    """Return the proof of a program including the findings of its part. A mill has no part proof.
+    """Return the proof of a program including the findings of its part.
 
-    ``on_span`` receives each span, as in ``prove``. ``check_canceled`` may cancel while the part is made.
+    The proof of a mill program includes no part. ``on_span`` receives each span, as in ``prove``.
+    ``check_canceled`` may raise to cancel while the part is made.
     """
     if machine.kind != "lathe":
         return prove(program, setup, machine, report_progress, ideal=ideal, on_span=on_span), None
@@ -61,9 +62,10 @@ def prove_with_part(
 
 
 def require_tool_offsets(report: ProofReport, setup: Setup) -> ProofReport:
-    """Return the report of ``prove`` with a missing tool offset as an error if offsets are known.
+    """Return the report of ``prove`` with each missing tool offset as an error, if any offsets are known.
 
-    The machine would not start with it. The operator screen and ``run`` refuse such a start themselves.
+    The machine would not start with a missing offset. The operator screen and the command ``run`` reject
+    such a start themselves.
     """
     if not setup.tools:
         return report
@@ -85,7 +87,7 @@ _WEAKER_CHECKS = {
 def _remove_weaker_findings(report: Iterable[Diagnostic], findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     """Return the report without warnings that an error of the part confirms.
 
-    The error must be on the same line or later.
+    The error must be on the line of the warning or on a later line.
     """
     left = list(report)
     for error in findings:
@@ -109,7 +111,7 @@ def _not_made(moves: int) -> PartReport:
 
 
 class PartProof:
-    """Collects the blocks of a pass and makes the part from them."""
+    """The proof of the part from the blocks that are collected during a pass."""
 
     def __init__(self, part_settings: PartSettings, parts: Iterable[BlockGroup] = ()) -> None:
         self._setting = part_settings
@@ -117,7 +119,7 @@ class PartProof:
         self._moves = sum(map(len, self._parts))
 
     def add_span(self, span: MotionSpan | RestSpan) -> None:
-        """Add the next span of the program."""
+        """Add the blocks of the next span of the program."""
         if isinstance(span, MotionSpan):
             parts = span.block_groups
         else:
@@ -133,9 +135,10 @@ class PartProof:
         return self._moves > MAX_MOVES and self._setting.stock is None
 
     def make_report(self, check_canceled: Callable[[float], None] | None = None) -> PartReport:
-        """Return the part after the whole program. A very long program needs a specified stock.
+        """Return the report on the part after the whole program.
 
-        ``check_canceled`` receives the number of moves done regularly and may raise to cancel.
+        A very long program needs a specified stock. ``check_canceled`` regularly receives the number of
+        completed moves and may raise to cancel.
         """
         if self._too_many:
             return _not_made(self._moves)
@@ -147,7 +150,10 @@ class PartProof:
         return making.make_report()
 
     def material_before_blocks(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
-        """Return the material before each of these elementary blocks, by number, without live tools."""
+        """Return the material before each of the given elementary blocks, by block number.
+
+        Material that live tools remove is not subtracted.
+        """
         making, steps = self._start_part()
         held: dict[int, PartedPiece] = {}
         for step in steps:
@@ -157,7 +163,7 @@ class PartProof:
         return held
 
     def _start_part(self) -> tuple[PartSimulation, list[ProgramStep]]:
-        """Return the part with the stock in the chuck, and the steps of the program."""
+        """Return the part simulation with the stock in the chuck, and the steps of the program."""
         reading = StepConverter(self._setting.tips)
         steps = [step for part in self._parts for step in reading.convert_blocks(part)]
         tools = ProgramTools(steps, self._setting)

@@ -1,4 +1,4 @@
-"""The part while a program makes it block by block, and the list of checks that lacked data."""
+"""The part while a program makes it block by block, and the list of data that the checks lacked."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ def describe_missing_data(
     clamping: Clamping | None,
     gang_positions: Mapping[int, Point],
 ) -> tuple[str, ...]:
-    """Return short phrases, one for each kind of missing data; ``tool_uses`` are the tools of the program."""
+    """Return one short phrase for each kind of missing data.
+
+    ``tool_uses`` are the tools of the program.
+    """
     return tuple(
         _phrases(
             [n for n in sorted(tool_uses) if tool_uses[n].moves or tool_uses[n].live_steps],
@@ -101,7 +104,7 @@ def _names(numbers: Iterable[int]) -> str:
 
 
 class PartSimulation:
-    """The part while the program makes it."""
+    """The simulation of the part while the program makes it."""
 
     def __init__(
         self, tools: ProgramTools, stock: Stock | None, part_settings: PartSettings | None = None
@@ -142,33 +145,33 @@ class PartSimulation:
 
     @property
     def active_tool(self) -> int:
-        """T of the active tool; 0 without a tool."""
+        """Return the T number of the active tool, or 0 without a tool."""
         return self._tool
 
     @property
     def initial_stock(self) -> Stock | None:
-        """The stock in the chuck before the first cut, or None if it is unknown."""
+        """Return the stock in the chuck before the first cut, or None if it is unknown."""
         return self._stock
 
     @property
     def is_collet_open(self) -> bool:
-        """True if the collet is open."""
+        """Return whether the collet is open."""
         return self._is_open
 
     @property
     def parted_piece_count(self) -> int:
-        """The number of pieces that have been parted off."""
+        """Return the number of pieces that have been parted off."""
         return len(self._pieces) + (len(self.part.parted_pieces) if self.part is not None else 0)
 
     @property
     def nbytes(self) -> int:
-        """The approximate memory of the material in bytes."""
+        """Return the approximate memory that the material uses, in bytes."""
         part, milling = self.part, self.milling
         turned = part.inner_radii.nbytes + part.outer_radii.nbytes if part is not None else 0
         return turned + (milling.nbytes if milling is not None else 0)
 
     def _find_unspecified_data(self, required_data: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the unspecified data on which a finding depends, for the active tool."""
+        """Return the data that are not specified for the active tool and on which a finding depends."""
         names = [STOCK] if STOCK in required_data and not self._stock_said else []
         assumed = self._tools.assumed_tools.get(self._tool)
         if assumed is not None and (
@@ -180,14 +183,14 @@ class PartSimulation:
         return tuple(names)
 
     def copy(self) -> PartSimulation:
-        """Return an independent copy that shares the constant data."""
+        """Return an independent copy of the simulation, which shares the constant data."""
         found = self.findings
         shared: tuple[object, ...] = (self._tools, self._stock, found.clamping, found.neighbors)
         shared += (*self._cutters.values(), *found.diagnostics)
         return copy.deepcopy(self, {id(each): each for each in shared})
 
     def apply_step(self, step: ProgramStep) -> None:
-        """Apply the next block."""
+        """Apply the next step of the program to the part."""
         if isinstance(step, TipMove):
             if not self._begun:  # the first move starts at an unknown position
                 step, self._begun = step._replace(points=step.points[-1:] * 2), True
@@ -209,7 +212,10 @@ class PartSimulation:
                 pass
 
     def _move_collet(self, is_closed: bool) -> None:
-        """Open or close the collet. After it has opened and closed, the bar has a new face."""
+        """Open or close the collet.
+
+        After the collet has opened and closed, the bar has a new face.
+        """
         self.findings.record_pause()
         if not is_closed:
             self._is_open = True
@@ -222,7 +228,7 @@ class PartSimulation:
     def apply_milling(
         self, step: LiveToolStep, start_fraction: float = 0.0, end_fraction: float = 1.0
     ) -> None:
-        """Apply a block of a live tool, or the piece of it between two shares."""
+        """Apply a block of a live tool, or the part of the block between two fractions."""
         move, shape = self.make_mill_move(step), self._tools.find_shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
@@ -245,7 +251,7 @@ class PartSimulation:
         )
 
     def make_mill_move(self, step: LiveToolStep) -> MillMove | None:
-        """Return the path of a live tool in the part's frame, or None if no cutting shape is known."""
+        """Return the move of a live tool in the part's frame, or None if no cutting shape is known."""
         shape = self._tools.find_shape(self._tool)
         if shape is None or not shape.diameter:
             return None
@@ -276,7 +282,7 @@ class PartSimulation:
     def _detect_stationary_cut(self, move: TipMove, cutter: Cutter, part: TurnedPart) -> bool:
         """Return whether a cut with a stopped spindle removes nothing, or follows such a cut.
 
-        A spindle that never turns in the program is switched manually.
+        A spindle that never turns in the program is assumed to be switched manually.
         """
         behind, self._in_cut = self._in_cut, False
         shape = self._tools.find_shape(self._tool)
@@ -296,9 +302,10 @@ class PartSimulation:
         return self._in_cut
 
     def _is_stationary(self, modal: ModalState, shape: ToolShape) -> bool:
-        """Return whether a tool that must rotate, or needs a rotating part, has neither.
+        """Return whether neither the tool nor the part rotates although the tool requires it.
 
-        Other tools may be broaches. On a machine without a code for the live tool, it is switched manually.
+        Other tools may be broaches. On a machine without a code for the live tool, the live tool is
+        switched manually.
         """
         live = any(name.startswith(LIVE_TOOL) for name in modal.outputs)
         return shape.kind in _TURN and self._live_codes and not live and not modal.spindle
@@ -322,7 +329,7 @@ class PartSimulation:
         self.part = self.milling = None
 
     def make_report(self) -> PartReport:
-        """Return the result of the program for the stock."""
+        """Return the report on the part after the program."""
         left = self.part.volume_mm3 if self.part is not None else 0.0
         if self.milling is not None:
             left = self.milling.remaining_volume_mm3

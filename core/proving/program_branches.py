@@ -1,8 +1,8 @@
 """All paths through a program: at M95 and M97, both states of the input are proved before the start.
 
-The first path uses the given inputs. At each conditional call, a copy of the pass is stored for the other
-state. A path ends where it reaches a line in the same state as an earlier path, because everything after that
-has been proved. Paths that are not proved are listed.
+The first path uses the present inputs. At each conditional call, a copy of the pass is stored for the other
+state. A path ends where it reaches a line in the same state as an earlier path, because the rest has
+already been proved. Paths that are not proved are listed.
 """
 
 from __future__ import annotations
@@ -36,7 +36,10 @@ from core.proving.spindle_forecast import SETTLING_TIME_S
 
 
 class BranchFork(NamedTuple):
-    """The place where another path leaves a path: blocks executed before, the time, and the other path."""
+    """The point at which another path leaves a path.
+
+    It contains the number of blocks that were executed before, the time in seconds, and the other path.
+    """
 
     block_count: int
     time_s: float
@@ -45,9 +48,10 @@ class BranchFork(NamedTuple):
 
 @dataclass(slots=True, eq=False)
 class ProgramBranch:
-    """One path through the program, in seconds from its start.
+    """One path through the program; times are in seconds from its start.
 
-    ``block_end_times`` contains the end times of its blocks from ``first`` + 1 on.
+    ``block_end_times`` contains the end times of the blocks after the first ``preceding_block_count``
+    blocks.
     """
 
     preceding_block_count: int = 0
@@ -62,7 +66,7 @@ class ProgramBranch:
     has_failed: bool = False
 
     def time_after_blocks(self, blocks: int) -> float:
-        """Return the time in seconds when ``blocks`` blocks have been executed."""
+        """Return the time in seconds at which the first ``blocks`` blocks have been executed."""
         made = blocks - self.preceding_block_count
         if made <= 0 or not self.block_end_times:
             return self.start_time_s
@@ -74,7 +78,7 @@ _Node = tuple[ProgramBranch, int]
 
 
 def cycle_time_range(first_branch: ProgramBranch) -> ValueRange:
-    """Return the least and the greatest cycle time of all proved paths."""
+    """Return the least and the greatest cycle time of all proved paths, in seconds."""
     known: dict[tuple[int, int], ValueRange] = {}
     todo: list[_Node] = [(first_branch, 0)]
     while todo:
@@ -101,7 +105,7 @@ def _time(node: _Node) -> float:
 
 
 def _next_nodes(node: _Node) -> list[tuple[_Node, float]]:
-    """Return the nodes that follow, each with the seconds to it."""
+    """Return the nodes that follow a node, each with the time in seconds to reach it."""
     branch, at = node
     if at < len(branch.forks):
         here, other = branch.forks[at].time_s, branch.forks[at].other_branch
@@ -151,7 +155,10 @@ def _reached(program: Program) -> set[int]:
 
 
 def _enclosing_subroutine(program: Program, line_index: int) -> int:
-    """Return the number of the subroutine that contains the line with this index; 0 for the main program."""
+    """Return the number of the subroutine that contains the line with this index.
+
+    The result is 0 for the main program.
+    """
     structure = program.structure
     if line_index < structure.main_end_index:
         return 0
@@ -172,7 +179,7 @@ _MAX_STATES = 500_000
 
 @dataclass(frozen=True, slots=True)
 class InputChoice:
-    """The assumed state of one input at one line."""
+    """The assumed state of one input at one program line."""
 
     line: int
     terminal: str
@@ -180,7 +187,7 @@ class InputChoice:
 
     @property
     def description(self) -> str:
-        """The choice as a text for the operator."""
+        """Return the choice as a text for the operator."""
         name = "7" if self.terminal == "TB2-9" else self.terminal
         return Message(
             "input {number} is {state} at line {line}",
@@ -192,7 +199,7 @@ class InputChoice:
 
 @dataclass(slots=True)
 class _BranchPass:
-    """One path through the program that is being proved or waits for its proof."""
+    """One path through the program that is being proved or is waiting to be proved."""
 
     branch: ProgramBranch
     source: BranchingPass | None
@@ -204,7 +211,7 @@ class _BranchPass:
 
 
 def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
-    """Return a message with the last two inputs of its path, which the operator can check."""
+    """Return the message preceded by the last two input states of its path, which the operator can check."""
     if len(choices) == 1:
         return Message("If {input}: {message}", input=choices[0].description, message=message)
     return Message(
@@ -216,8 +223,9 @@ def _add_choices(choices: Sequence[InputChoice], message: str) -> str:
 
 
 class BranchProof:
-    """Proves all paths of a program: the first one in ``iter_spans``, the others in
-    ``report_all_branches``.
+    """The proof of all paths of a program.
+
+    ``iter_spans`` proves the first path, and ``report_all_branches`` proves the other paths.
     """
 
     def __init__(self, reading: SharedProgram, setup: Setup, machine: Machine, *, ideal: bool) -> None:
@@ -240,7 +248,7 @@ class BranchProof:
     # Called by the interpreter:
 
     def is_known(self, branch: BranchingPass) -> bool:
-        """Return whether an earlier path has been in this state."""
+        """Return whether an earlier path has reached this state."""
         key = branch.state_key
         found = self._known.get(key)
         if found is not None and found[0] is not self._current.branch:
@@ -251,7 +259,7 @@ class BranchProof:
         return False
 
     def record_branch(self, branch: BranchingPass, statement: Statement, is_call_made: bool) -> None:
-        """Store a copy of the pass for the other state of a conditional call."""
+        """Store a copy of the pass for the other state of the input at a conditional call."""
         on = is_call_made == (statement.flow_code == "M95" or statement.get_value("C") == 1)
         self._covered.add((statement.line, on))
         if branch.is_stopped:
@@ -277,7 +285,7 @@ class BranchProof:
     # Called by the proof:
 
     def iter_spans(self, proof_pass: ProofPass, timeline: Timeline) -> Iterator[MotionSpan | RestSpan]:
-        """Yield the spans of the present path while it is executed."""
+        """Yield the spans of the present path while the path is executed."""
         if self.root_pass is None:
             yield from timeline.iter_spans()
             return
@@ -302,7 +310,7 @@ class BranchProof:
     def _record_rest_state(
         self, current_pass: _BranchPass, proof_pass: ProofPass, timeline: Timeline
     ) -> None:
-        """Record the state at a conditional call, from which the copy continues."""
+        """Record the state at a conditional call, from which the copy of the pass continues."""
         branch_pass = (
             current_pass.asked[current_pass.answered]
             if current_pass.answered < len(current_pass.asked)
@@ -322,7 +330,7 @@ class BranchProof:
     def report_all_branches(
         self, report: ProofReport, report_progress: Callable[[float], None] | None
     ) -> ProofReport:
-        """Return the report of the first path together with the findings of all other paths."""
+        """Return the report of the first path, together with the findings of all other paths."""
         found = [*report.diagnostics, *find_uncalled_subroutines(self._reading)]
         if self.root_pass is None:
             return replace(

@@ -1,4 +1,4 @@
-"""A program on a time scale: every elementary block with its start and end, planned as in a run."""
+"""A program on a time scale, where every elementary block has a start and an end, planned as in a run."""
 
 from __future__ import annotations
 
@@ -51,14 +51,17 @@ BlockGroup = list[Block] | StraightMoveSeries
 
 
 class PendingBlocks:
-    """Blocks that were passed to the planner but are not timed yet. Series remain whole if possible."""
+    """Blocks that have been passed to the planner but have no times yet.
+
+    Series remain whole if possible.
+    """
 
     def __init__(self) -> None:
         self._parts: deque[BlockGroup] = deque()
 
     @property
     def first_block(self) -> Block | None:
-        """The oldest block, or None."""
+        """Return the oldest pending block, or None."""
         return self._parts[0][0] if self._parts else None
 
     def append(self, blocks: Block | StraightMoveSeries) -> None:
@@ -91,7 +94,10 @@ TimedBlock = tuple[Block, float, float]
 
 
 class MotionSpan(NamedTuple):
-    """A span of motion from ``t0`` on, with the blocks that end in it and their times."""
+    """A span of motion with the blocks that end in it and their times.
+
+    The span starts at ``start_time_s``.
+    """
 
     start_time_s: float
     chunk: PlannedChunk
@@ -99,21 +105,27 @@ class MotionSpan(NamedTuple):
 
     @property
     def blocks(self) -> list[Block]:
-        """The blocks that end in the span. Blocks of series are created on each access."""
+        """Return the blocks that end in the span.
+
+        Blocks of series are created on each access.
+        """
         return list(chain.from_iterable(self.block_groups))
 
     @property
     def last_block(self) -> Block | None:
-        """The last block that ends in the span, or None."""
+        """Return the last block that ends in the span, or None."""
         return self.block_groups[-1][-1] if self.block_groups else None
 
     @property
     def end_time_s(self) -> float:
-        """The end of the span. The next span may continue without a stop."""
+        """Return the end time of the span in seconds.
+
+        The next span may continue without a stop.
+        """
         return self.start_time_s + self.chunk.profile.duration_s
 
     def iter_block_times(self) -> Iterator[TimedBlock]:
-        """Yield each block with its start and end on the program's clock."""
+        """Yield each block with its start and end time in seconds on the program's time scale."""
         for each in self.iter_group_times():
             if isinstance(each, TimedSeries):
                 yield from zip(
@@ -123,7 +135,7 @@ class MotionSpan(NamedTuple):
                 yield each
 
     def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same as ``iter_block_times``, but each series as one item."""
+        """Yield the same values as ``iter_block_times``, but with each series as one item."""
         shift, first = self.start_time_s - self.chunk.start_time_s, 0
         for part in self.block_groups:
             there = slice(first, first + len(part))
@@ -136,19 +148,22 @@ class MotionSpan(NamedTuple):
 
 
 class RestSpan(NamedTuple):
-    """A rest from ``t0`` to ``t1``: a block without motion, or (None) a wait before the next motion."""
+    """A rest from ``start_time_s`` to ``end_time_s``.
+
+    ``block`` is a block without motion, or None for a wait before the next motion.
+    """
 
     start_time_s: float
     end_time_s: float
     block: Block | None
 
     def iter_block_times(self) -> Iterator[TimedBlock]:
-        """Yield the block, if any, with its start and end on the program's clock."""
+        """Yield the block, if any, with its start and end time in seconds on the program's time scale."""
         if self.block is not None:
             yield self.block, self.start_time_s, self.end_time_s
 
     def iter_group_times(self) -> Iterator[TimedBlock | TimedSeries]:
-        """Yield the same as ``iter_block_times``."""
+        """Yield the same values as ``iter_block_times``."""
         return self.iter_block_times()
 
 
@@ -156,7 +171,11 @@ _IDEAL_ACCELERATION = 1e12  # mm/s²; the ramps of an ideal machine are shorter 
 
 
 class RestState(NamedTuple):
-    """The state at rest between two blocks: time, spindle, pending speed wait, and path section rules."""
+    """The state at rest between two blocks.
+
+    It contains the time, the spindle, whether the spindle must still reach its speed, and the detector of
+    the ends of path sections.
+    """
 
     time_s: float
     spindle: SpindleForecast
@@ -165,7 +184,7 @@ class RestState(NamedTuple):
 
 
 class Timeline:
-    """One pass through a program in constant memory; spans are yielded as they become final.
+    """One pass through a program in constant memory, which yields spans as they become final.
 
     If the machine cannot execute a block, the pass ends with an error in ``diagnostics``. An ``ideal``
     machine needs no time to accelerate, settle or plan, but has the same speed limits.
@@ -195,7 +214,7 @@ class Timeline:
     def from_program(
         cls, program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, *, ideal: bool = False
     ) -> Timeline:
-        """Return the timeline of a program's text, or of its parsed form."""
+        """Return the timeline of a program, given as its source or in its parsed form."""
         reading = (
             program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
         )
@@ -203,11 +222,14 @@ class Timeline:
 
     @property
     def rest_state(self) -> RestState:
-        """The state from which another path through the program continues."""
+        """Return the state from which another path through the program continues."""
         return RestState(self.time_s, copy(self.spindle), self._speed_wanted, copy(self._ends))
 
     def continue_from(self, rest_state: RestState) -> None:
-        """Continue from the state of another timeline at rest instead of the start of the program."""
+        """Continue from the rest state of another timeline.
+
+        Without this call, the timeline starts at the beginning of the program.
+        """
         self.time_s, self.spindle, self._speed_wanted = (
             rest_state.time_s,
             copy(rest_state.spindle),
@@ -217,16 +239,16 @@ class Timeline:
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics of reading and interpreting so far, in the order of lines."""
+        """Return the diagnostics of parsing and interpreting so far, in the order of lines."""
         return sort_findings([*self.interpreter.diagnostics, *self._refused])
 
     @property
     def has_errors(self) -> bool:
-        """True if the diagnostics contain an error."""
+        """Return whether the diagnostics contain an error."""
         return any(d.severity is Severity.ERROR for d in self.diagnostics)
 
     def iter_spans(self) -> Iterator[MotionSpan | RestSpan]:
-        """Yield the program in time order, without gaps."""
+        """Yield the spans of the program in time order, without gaps."""
         while (each := self._next()) is not None:
             if isinstance(each, StraightMoveSeries) or each.moves:
                 yield from self._path_section(each)
@@ -240,7 +262,7 @@ class Timeline:
         return next(self._source, None)
 
     def _path_section(self, each: Block | StraightMoveSeries) -> Iterator[MotionSpan | RestSpan]:
-        """Yield one path section, from rest to rest."""
+        """Yield the spans of one path section, which starts and ends at rest."""
         first = _template_block(each)
         if self._ends.needs_standstill_before(first):
             self._ends.record_standstill(first)
@@ -262,7 +284,7 @@ class Timeline:
     def _section_blocks(
         self, each: Block | StraightMoveSeries | None
     ) -> Iterator[Block | StraightMoveSeries]:
-        """Yield the blocks of a path section that starts with ``each``."""
+        """Yield the blocks of the path section that starts with ``each``."""
         while each is not None:
             self._moving.append(each)
             yield each
@@ -272,9 +294,9 @@ class Timeline:
         self._back = each
 
     def _make_index_wait(self, block: Block) -> RestSpan:
-        """Return the wait until the axes may start in step with the spindle index, up to one revolution.
+        """Return the wait until the axes may start in step with the spindle index, at most one revolution.
 
-        The rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
+        The corresponding rule of the executor is in docs/decisions/0016-threads-follow-the-spindle.md.
         """
         turn = abs(self.spindle.speed_at(self.time_s)) / 60.0
         if not turn:
@@ -294,20 +316,23 @@ class Timeline:
         return span
 
     def _follow_css(self, rpm: float) -> None:
-        """Set the speed reached by constant surface speed, or ramp to it if it has not been reached."""
+        """Set the spindle speed to ``rpm``, which constant surface speed has reached.
+
+        If the spindle has not yet reached its speed, command a ramp to ``rpm``.
+        """
         if self._speed_wanted:
             self.spindle.command_speed(self.time_s, rpm)
         else:
             self.spindle.set_speed(self.time_s, rpm)
 
     def _wait_for_speed(self) -> Iterator[RestSpan]:
-        """Yield the wait for the spindle to be at speed before a feed."""
+        """Yield the wait for the spindle to reach its speed before a feed."""
         if self._speed_wanted:
             self._speed_wanted = False
             yield self._rest(self._wait_seconds(max(0.0, self.spindle.at_speed_time_s() - self.time_s)))
 
     def _wait_seconds(self, seconds: float) -> float:
-        """Return the wait of a real machine; 0 for an ideal machine."""
+        """Return the wait in seconds for a real machine, or 0 for an ideal machine."""
         return 0.0 if self._ideal else seconds
 
     def _rest(self, seconds: float, block: Block | None = None) -> RestSpan:
@@ -355,17 +380,20 @@ class Timeline:
 
 
 def _template_block(each: Block | StraightMoveSeries) -> Block:
-    """Return the block, or the pattern of a series."""
+    """Return the block itself, or the pattern block of a series."""
     return each.pattern if isinstance(each, StraightMoveSeries) else each
 
 
 def iter_timed_blocks(timeline: Timeline) -> Iterator[TimedBlock]:
-    """Yield every elementary block with its start and end in seconds. Waits belong to no block."""
+    """Yield every elementary block with its start and end time in seconds.
+
+    Waits do not belong to a block.
+    """
     for span in timeline.iter_spans():
         yield from span.iter_block_times()
 
 
 def iter_timed_series(timeline: Timeline) -> Iterator[TimedBlock | TimedSeries]:
-    """Yield the same as ``iter_timed_blocks``, but each series of moves as one item."""
+    """Yield the same values as ``iter_timed_blocks``, but with each series of moves as one item."""
     for span in timeline.iter_spans():
         yield from span.iter_group_times()

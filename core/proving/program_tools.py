@@ -50,7 +50,10 @@ _MAX_FEED_FRACTION = 0.5  # fraction of all feeds
 
 @dataclass(frozen=True, slots=True)
 class PartSettings:
-    """The specified stock, tools (by T) and clamping. Nose radii in mm come from the offsets."""
+    """The specified stock, tools (by T number) and clamping.
+
+    The nose radii in mm are those of the tool offsets.
+    """
 
     stock: Stock | StockSpec | None = None
     shapes: Mapping[int, ToolShape] = field(default_factory=dict)
@@ -66,12 +69,18 @@ class PartSettings:
 
     @property
     def can_refuse_start(self) -> bool:
-        """True if enough is specified for an error of the part that depends on no assumption."""
+        """Return whether an error of the part can be independent of assumptions.
+
+        This requires that the stock or the clamping is specified.
+        """
         return self.stock is not None or self.clamping is not None
 
 
 class ProgramTools:
-    """The tools of a program by T. All moves are collected first, because assumptions depend on them."""
+    """The tools of a program by T number.
+
+    All moves are collected first, because assumptions depend on them.
+    """
 
     def __init__(self, steps: Sequence[ProgramStep], part_settings: PartSettings) -> None:
         self.tool_uses: dict[int, ToolUse] = {}
@@ -124,7 +133,7 @@ class ProgramTools:
         return said is None or (said.kind in GROOVING_TOOLS and not said.width)
 
     def _assume_sizes(self) -> None:
-        """Set the unknown sizes of drills and grooving tools from the tools that follow them."""
+        """Set the unknown sizes of drills and grooving tools from the tools that are used after them."""
         bore = [
             m
             for n, use in self.tool_uses.items()
@@ -137,14 +146,14 @@ class ProgramTools:
             self.assumed_tools[number] = each.add_diameter(use, bore).add_width(use, threads)
 
     def find_shape(self, number: int) -> ToolShape | None:
-        """Return the shape of a tool; None for a bar stop or if no cutting shape is known."""
+        """Return the shape of a tool, or None for a bar stop or if no cutting shape is known."""
         if number in self.assumed_tools:
             return self.assumed_tools[number].tool_shape
         return self._setting.shapes.get(number)
 
     @property
     def unsized_drills(self) -> list[int]:
-        """The drills and reamers of the program with an assumed diameter, by T."""
+        """Return the T numbers of the drills and reamers of the program with an assumed diameter."""
         return [
             n
             for n, each in sorted(self.assumed_tools.items())
@@ -160,7 +169,10 @@ class ProgramTools:
         return names_releasing_holder(self.tool_uses[number]) if number in self.tool_uses else False
 
     def make_cutter(self, number: int) -> Cutter | None:
-        """Return the tool ready to cut. Without a specified holder, only its edges are used."""
+        """Return a cutter for the tool, or None.
+
+        Without a specified holder, only the edges of the tool are used.
+        """
         shape = self.find_shape(number)
         if shape is None or (shape.is_rotating and shape.direction[0] == 0):
             return None  # a live tool across the spindle cannot turn
@@ -172,13 +184,13 @@ class ProgramTools:
 
     @property
     def unit_mm(self) -> float:
-        """The unit of length of the program in mm, from its first move."""
+        """Return the length unit of the program in mm, from its first move."""
         metric = (use.is_metric for use in self.tool_uses.values() if use.moves or use.live_steps)
         return 1.0 if next(metric, False) else MM_PER_INCH
 
     @property
     def back_z_mm(self) -> float:
-        """The least Z of all cuts, in mm."""
+        """Return the least Z of all cuts, in mm."""
         moves = (
             m for use in self.tool_uses.values() for m in use.moves if not (m.is_fast or use.is_bar_stop)
         )
@@ -186,7 +198,7 @@ class ProgramTools:
 
     @property
     def part_off_z(self) -> float | None:
-        """The deepest Z of a parting tool that feeds toward the axis, or None."""
+        """Return the deepest Z of a parting tool that feeds toward the axis, or None."""
         deepest: list[float] = []
         for number, use in self.tool_uses.items():
             shape = self.find_shape(number)
@@ -200,7 +212,10 @@ class ProgramTools:
         return min(deepest, default=None)
 
     def find_uncut_feeds(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
-        """Yield line, block and sentence for tools that never feed and for feeds away from the part."""
+        """Yield the line, block number and message for each tool or feed that cuts nothing.
+
+        These are tools that never feed, and feeds away from the part.
+        """
         cutting = [use for n, use in self.tool_uses.items() if self.find_shape(n) is not None]
         for use in cutting:
             if (move := use.first_rapid_position) is not None:
@@ -241,7 +256,7 @@ class ProgramTools:
 
     @property
     def longest_feed_away(self) -> TipMove | None:
-        """The longest feed away from the chuck if all feeds together lead away, or None."""
+        """Return the longest feed away from the chuck if all feeds in total lead away from it, or None."""
         feeds = [
             m for n, use in self.tool_uses.items() if self.find_shape(n) for m in use.moves if not m.is_fast
         ]
@@ -251,7 +266,7 @@ class ProgramTools:
         return feeds[along.index(max(along))]
 
     def assume_stock(self) -> Stock | None:
-        """Return the assumed stock for the cuts of the tools, or None."""
+        """Return the stock that the cuts of the tools suggest, or None."""
         outside: list[TipMove] = []
         bore: list[TipMove] = []
         for number, use in self.tool_uses.items():
@@ -282,8 +297,8 @@ def assume_stock(
     """Return a bar for the moves of outside tools, or a tube if boring tools start without a drill.
 
     ``bar_stop_z`` is the Z in mm of the bar stop; None means Z0. ``max_drill_diameter`` is the diameter of
-    the largest drill, or
-    0. Returns None if nothing is cut past the face, or if part zero is not at the face.
+    the largest drill, or 0. Returns None if no move cuts beyond the face, or if part zero is not at the
+    face.
     """
     cuts = [move for move in (*outside, *bore) if not move.is_fast]
     if bar_stop_z is None and is_zero_at_chuck(cuts):
@@ -303,13 +318,19 @@ def assume_stock(
 
 
 def is_zero_at_chuck(cuts: Sequence[TipMove]) -> bool:
-    """Return whether part zero is at the chuck end of the part, because most feeds are before Z0."""
+    """Return whether part zero is at the chuck end of the part.
+
+    This is assumed if most feeds are in front of Z0.
+    """
     before = sum(move.length_mm for move in cuts if min(z for z, _ in move.points) > _FACE_MARGIN_MM)
     return before > _MAX_FEED_FRACTION * sum(move.length_mm for move in cuts)
 
 
 def _find_face_z(moves: Sequence[TipMove]) -> float:
-    """Return Z of the face: slightly before the first face cut and clear of rapids, or 0 without one."""
+    """Return the Z of the face of the stock.
+
+    It is slightly in front of the first face cut and clear of rapids, or 0 without a face cut.
+    """
     faced = [m.points[-1][0] for m in moves if _cuts_face(m)]
     if not faced:
         return 0.0
@@ -319,16 +340,20 @@ def _find_face_z(moves: Sequence[TipMove]) -> float:
 
 
 def _cuts_face(move: TipMove) -> bool:
-    """Return whether a move goes from outside to the axis near Z0, even as a rapid left on by mistake."""
+    """Return whether a move goes from outside to the axis near Z0.
+
+    Such a move may be a rapid because G00 was left active by mistake.
+    """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     across = abs(z1 - z0) <= _SAME and abs(r1) < _CENTRE < abs(r0) - _CENTRE
     return across and -_SAME <= z1 < _NEAR_FACE / 2.0
 
 
 def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: float) -> float:
-    """Return slightly more than the radius of the largest cut, but not so much that a rapid hits it.
+    """Return slightly more than the radius of the largest cut, but not so much that a rapid hits the bar.
 
-    If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of them.
+    If only grooves or faces are cut, the bar is slightly smaller than the start of the largest of these
+    cuts.
     """
     feeds = [move for move in outside if not move.is_fast]
     behind = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
@@ -347,13 +372,16 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
 
 
 def _is_turning_move(move: TipMove, front: float) -> bool:
-    """Return whether a move goes along Z in the part. A move that ends before the face is a retract."""
+    """Return whether a move goes along Z in the part.
+
+    A move that ends in front of the face is a retract.
+    """
     z0, z1 = move.points[0][0], move.points[-1][0]
     return abs(z1 - z0) > _SAME and not z1 > max(z0, front + _NEAR_FACE)
 
 
 def _is_plunge(move: TipMove) -> bool:
-    """Return whether a move goes perpendicular toward the axis and ends before it."""
+    """Return whether a move goes perpendicularly toward the axis and ends before it reaches the axis."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) <= _SAME and abs(r0) > abs(r1) > _CENTRE
 
@@ -363,7 +391,7 @@ def _radii(moves: Iterable[TipMove]) -> Iterator[float]:
 
 
 def _live_tool_radius(step: LiveToolStep) -> float:
-    """Return slightly less than the outer end of a live tool's cut."""
+    """Return a radius slightly less than the outer end of a live tool's cut."""
     low, high, _, _ = step.block.reach()
     return (
         max(
@@ -376,7 +404,10 @@ def _live_tool_radius(step: LiveToolStep) -> float:
 
 
 def _facing_start_radius(feeds: Iterable[TipMove], front: float) -> float:
-    """Return the start radius of the first cut if it faces the part, otherwise inf. No bar is larger."""
+    """Return the start radius of the first cut if it faces the part, otherwise inf.
+
+    The bar is never larger than this radius.
+    """
     for move in feeds:
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         if abs(abs(r1) - abs(r0)) > _CENTRE:
@@ -388,15 +419,15 @@ def _facing_start_radius(feeds: Iterable[TipMove], front: float) -> float:
 
 
 def _bar_radius_for_move(move: TipMove) -> float:
-    """Return the bar radius that a move along Z needs.
+    """Return the bar radius that a move along Z requires.
 
-    An arc may bulge outward, and a line outward may leave the part.
+    An arc may bulge outward, and an outward line may leave the part.
     """
     radii = [abs(r) for _, r in move.points]
     return max(radii) if move.kind is BlockKind.ARC else min(radii)
 
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
-    """Return slightly less than the smallest radius cut in the bore, or 0."""
+    """Return slightly less than the smallest radius that is cut in the bore, or 0."""
     behind = [m for m in bore if not m.is_fast and min(z for z, _ in m.points) < front - _SAME]
     return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _EXTRA_RADIUS_MM, 0.0)

@@ -1,4 +1,4 @@
-"""One proved pass through a program: findings in its blocks, and sums of times and lengths."""
+"""One proved pass through a program: the findings in its blocks, and the totals of times and lengths."""
 
 from __future__ import annotations
 
@@ -44,31 +44,37 @@ _ROUNDING = 1e-9
 
 
 class RangeTracker:
-    """The range of values; (0, 0) without values."""
+    """The range of the values that were added; (0, 0) without values."""
 
     def __init__(self) -> None:
         self.minimum, self.maximum = math.inf, -math.inf
 
     def extend(self, *values: float) -> None:
-        """Extend the range to these values."""
+        """Extend the range to include the given values."""
         self.minimum = min(self.minimum, *values)
         self.maximum = max(self.maximum, *values)
 
     @property
     def min_and_max(self) -> ValueRange:
-        """The least and the greatest value."""
+        """Return the least and the greatest value that were added."""
         return (self.minimum, self.maximum) if self.minimum <= self.maximum else (0.0, 0.0)
 
 
 def modulo_angle_range(minimum: float, maximum: float) -> ValueRange:
-    """Return the range of a modulo axis in degrees; 0 to 360 if it has passed through 0."""
+    """Return the range of a modulo axis in degrees.
+
+    The range is 0 to 360 if the axis has passed through 0.
+    """
     turns = math.floor(minimum / _TURN + _ROUNDING) * _TURN
     minimum, maximum = minimum - turns, maximum - turns
     return (max(minimum, 0.0), maximum) if maximum <= _TURN + _ROUNDING else (0.0, _TURN)
 
 
 class ProgramTotals:
-    """Sums of lengths in mm, and ranges in the program's frame, from the blocks in order."""
+    """Totals of lengths in mm, and ranges in the program's frame.
+
+    Blocks must be added in their order.
+    """
 
     def __init__(self) -> None:
         self.x_range, self.z_range, self.c_range, self.rpm_range, self.feed_range = (
@@ -84,7 +90,7 @@ class ProgramTotals:
 
     @property
     def ranges(self) -> ProgramRanges:
-        """The ranges that the program uses."""
+        """Return the ranges that the program uses."""
         return ProgramRanges(
             self.x_range.min_and_max,
             self.z_range.min_and_max,
@@ -119,7 +125,10 @@ class ProgramTotals:
         self._add_spindle_speeds(table[5, ~(turned | locked)])
 
     def _add_series(self, parts: Sequence[StraightMoveSeries]) -> None:
-        """Add series that are all rapids or all feeds, without a table of their equal values."""
+        """Add series that are all rapids or all feeds.
+
+        No table of the values that are equal in all moves is created.
+        """
         x0, z0, x, z = (np.concatenate([getattr(part, name) for part in parts]) for name in _ENDS)
         length = np.hypot(x - x0, z - z0)
         total = float(length.sum())
@@ -142,7 +151,7 @@ class ProgramTotals:
                 self._add_spindle_speeds(rpm)
 
     def _add_curved(self, blocks: Sequence[Block], length: FloatArray) -> None:
-        """Store the lengths of moves that are not straight lines of X and Z."""
+        """Set the lengths of moves that are not straight lines of X and Z."""
         for index, block in enumerate(blocks):
             if block.travel is not None:
                 length[index] = 0.0 if block.has_angular_feed else block.travel.length
@@ -179,14 +188,14 @@ class ProgramTotals:
         self.feed_range.extend(float(path_speed.min()), float(path_speed.max()))
 
     def _add_spindle_speeds(self, rpm: FloatArray) -> None:
-        """Extend the range of spindle speeds, without those of the C axis."""
+        """Extend the range of spindle speeds, ignoring rotations of the C axis."""
         turning = np.abs(rpm[rpm != 0])
         if turning.size:
             self.rpm_range.extend(float(turning.min()), float(turning.max()))
 
 
 def _summed_columns(part: BlockGroup) -> FloatArray:
-    """Return the values of m blocks that are summed: columns (11, m)."""
+    """Return the values of m blocks that contribute to the totals, as columns (11, m)."""
     if not isinstance(part, StraightMoveSeries):
         return np.array([_figures(block) for block in part]).T
     columns = np.repeat(np.array([_figures(part.pattern)]).T, len(part), axis=1)
@@ -210,7 +219,7 @@ MAX_FINDINGS = 100  # A wrong offset can make every line leave the travel, so mo
 
 
 class ProofPass:
-    """Findings and sums of one pass through a program."""
+    """The findings and the totals of one pass through a program."""
 
     def __init__(self, machine: Machine, checks: CuttingChecks) -> None:
         self._machine = machine
@@ -229,7 +238,7 @@ class ProofPass:
 
     @property
     def checks(self) -> CuttingChecks:
-        """The cutting checks in their present state."""
+        """Return the cutting checks in their present state."""
         return self._checks
 
     def add_span(self, span: MotionSpan | RestSpan) -> None:
@@ -255,7 +264,10 @@ class ProofPass:
             self._evaluate_pending()
 
     def _evaluate_pending(self) -> None:
-        """Evaluate the collected blocks together, which is faster for short motions."""
+        """Evaluate the collected blocks together.
+
+        This is faster for short motions.
+        """
         parts, self._unseen, self._waiting = self._unseen, [], 0
         self._tally.add_blocks(parts)
         for part in parts:
@@ -272,7 +284,10 @@ class ProofPass:
                 return
 
     def _collect_needs(self, blocks: BlockGroup) -> None:
-        """Collect the required machine functions, which only a controller with its own planner can lack."""
+        """Collect the required machine functions.
+
+        Only a controller with its own planner can lack such functions.
+        """
         if blocks and self._machine.backend == "grblhal":
             # all blocks of a series need the same
             unlike = blocks[:1] if isinstance(blocks, StraightMoveSeries) else blocks
@@ -299,7 +314,7 @@ class ProofPass:
             self._wait += spent
 
     def make_report(self, timeline: Timeline, source: ProgramSource) -> ProofReport:
-        """Return the report after the whole program."""
+        """Return the report of the pass after the whole program has been added."""
         self._evaluate_pending()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
         told = map(_weaken_to_warning, timeline.diagnostics)
@@ -331,7 +346,10 @@ class ProofPass:
         )
 
     def _lathe_ranges(self, source: ProgramSource) -> ProgramRanges:
-        """Return the ranges of a lathe, with C of a SINUMERIK program as its axis counts."""
+        """Return the ranges of a lathe program.
+
+        The C range of a SINUMERIK program is given as its C axis counts the angle.
+        """
         reach = self._tally.ranges
         modulo = source.dialect is Dialect.SINUMERIK and self._machine.c_enabled and self._machine.is_c_modulo
         return replace(reach, c_range=modulo_angle_range(*reach.c_range)) if modulo else reach
@@ -352,7 +370,10 @@ class ProofPass:
 
 
 def _weaken_to_warning(finding: Diagnostic) -> Diagnostic:
-    """Return an error that depends on an assumed position as a warning, because a run would stop there."""
+    """Return the finding as a warning if it is an error that depends on an assumed position.
+
+    A run would stop at such an error.
+    """
     if not finding.assumptions or finding.severity is not Severity.ERROR:
         return finding
     hint = Message(
@@ -364,7 +385,7 @@ def _weaken_to_warning(finding: Diagnostic) -> Diagnostic:
 
 
 def _find_rapids(parts: Sequence[BlockGroup]) -> npt.NDArray[np.bool_]:
-    """Return for each block whether it is a rapid."""
+    """Return a mask of the blocks that are rapids."""
     found = [np.empty(0, bool)]
     for part in parts:
         alike = [part.pattern] if isinstance(part, StraightMoveSeries) else part
@@ -374,10 +395,10 @@ def _find_rapids(parts: Sequence[BlockGroup]) -> npt.NDArray[np.bool_]:
 
 
 def _lathe_position(start: tuple[float, ...]) -> tuple[float, float, float]:
-    """Return X, Z and C of a start in the machine's order."""
+    """Return the X, Z and C of a start position, in the machine's order."""
     return start[0], start[1], start[-1]
 
 
 def _displayed_c(block: Block) -> float:
-    """Return C at the end of a block as the program counts it."""
+    """Return the C angle at the end of a block as the program counts it, in degrees."""
     return block.c % 360.0 if block.modal.is_c_modulo else block.c

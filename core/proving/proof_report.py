@@ -22,9 +22,9 @@ ValueRange = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class ProgramTimes:
-    """Times in seconds that add up to the cycle time.
+    """Times in seconds whose sum is the cycle time.
 
-    ``wait_s`` is the time for spindle, collet and the start of each motion.
+    ``wait_s`` is the time for the spindle, the collet and the start of each motion.
     """
 
     cutting_s: float = 0.0
@@ -34,13 +34,19 @@ class ProgramTimes:
 
     @property
     def cycle_s(self) -> float:
-        """The cycle time. Waits for the operator at M00 and M01 are not included."""
+        """Return the cycle time in seconds.
+
+        Waits for the operator at M00 and M01 are not included.
+        """
         return self.cutting_s + self.rapid_s + self.dwell_s + self.wait_s
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramRanges:
-    """The ranges that the program uses: program frame, unsigned rpm, and path feed in mm/s."""
+    """The ranges that the program uses.
+
+    Positions are in the program's frame, spindle speeds are unsigned rpm, and path feeds are in mm/s.
+    """
 
     x_range: ValueRange = (0.0, 0.0)
     z_range: ValueRange = (0.0, 0.0)
@@ -53,7 +59,7 @@ class ProgramRanges:
 class MillResults:
     """The results of a program on a mill.
 
-    ``axis_names`` is the order of the axes, and ``reach`` their ranges in machine positions.
+    ``axis_names`` is the order of the axes, and ``axis_ranges`` are their ranges in machine positions.
     ``final_position`` is the end of the last block in its working plane, or None without a block.
     """
 
@@ -64,10 +70,10 @@ class MillResults:
 
 @dataclass(frozen=True, slots=True)
 class BranchSummary:
-    """The paths through a program, by its inputs and by block delete on and off.
+    """The paths through a program, which result from its inputs and from block delete on and off.
 
-    ``cycle`` is the least and the greatest cycle time of the paths in seconds. ``unproved_count`` is the
-    number of paths that were not proved.
+    ``cycle_time_range`` is the least and the greatest cycle time of the paths in seconds.
+    ``unproved_count`` is the number of paths that were not proved.
     """
 
     proved_count: int = 1
@@ -77,7 +83,10 @@ class BranchSummary:
 
 @dataclass(frozen=True, slots=True)
 class ProofReport:
-    """The proof of one program. If it has errors, the values cover only what could be interpreted."""
+    """The proof of one program.
+
+    If it has errors, the values cover only the part of the program that could be interpreted.
+    """
 
     name: str
     dialect: Dialect
@@ -103,12 +112,12 @@ class ProofReport:
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics that prevent a start."""
+        """Return the diagnostics that prevent a start."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
 
 def sort_findings(findings: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return the findings in the order of lines and columns."""
+    """Return the findings in the order of their lines and columns."""
     return tuple(sorted(findings, key=lambda each: (each.line, each.column)))
 
 
@@ -117,8 +126,9 @@ class PartReport:
     """The results of the part, in mm and mm³.
 
     ``last_piece`` is the last piece that was parted off, or the material in the chuck. ``shapes`` are the
-    tools by T, specified or assumed, or None if no cutting shape is known. ``assumptions`` contains a
-    sentence for each assumption, and ``unchecked_data`` the checks that lacked data.
+    tool shapes by T number, specified or assumed; a shape is None if no cutting shape is known.
+    ``assumptions`` contains a sentence for each assumption, and ``unchecked_data`` lists the missing data
+    that prevented checks.
     """
 
     stock: Stock | None

@@ -1,7 +1,7 @@
 """Proof of a program, with block delete both on and off.
 
 Cycle Start uses the present position of the switch. A fault that occurs only in the other position is a
-warning, because the program is proved again when the switch is turned.
+warning, because the program is proved again when the switch position changes.
 """
 
 from __future__ import annotations
@@ -78,14 +78,15 @@ def prove(
     ideal: bool = False,
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
 ) -> ProofReport:
-    """Check a whole program: syntax, travel and times. ``progress`` receives the number of blocks done.
+    """Return the proof of a whole program: syntax, travel and times.
 
-    A program that other code also uses should be passed in its parsed form.
+    ``report_progress`` receives the number of completed blocks. If other code also uses the program, pass
+    its parsed form.
 
     The values apply to the inputs and the block delete of ``setup``. Other inputs and the other position of
-    block delete are also proved, with their faults in ``diagnostics``. With ``ideal``, times depend on feeds
-    and speed limits only, without accelerations and waits. ``on_span`` receives each span of the timeline, so
-    that a caller who draws the program needs no second pass.
+    block delete are also proved; their faults are in the diagnostics of the report. If ``ideal`` is True,
+    times depend only on feeds and speed limits, without accelerations and waits. ``on_span`` receives each
+    span of the timeline, so that a caller that draws the program needs no second pass.
     """
     reading = program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
     report = _prove_branches(reading, setup, machine, report_progress, on_span, ideal=ideal)

@@ -19,9 +19,9 @@ REST_BATCH_ROWS = 10_000  # rows yielded together while the machine rests
 class SetpointRows(NamedTuple):
     """k rows of setpoints.
 
-    They contain the time in seconds and the machine positions (k, axes) in the machine's order, in mm (X of a
-    lathe as a radius) and degrees. ``spindle_angles_deg`` is the continuous spindle angle in degrees from
-    the start, and ``line`` the source line.
+    ``times_s`` (k,) are in seconds. ``positions`` (k, axes) are machine positions in the machine's order,
+    in mm (X of a lathe as a radius) or degrees. ``spindle_angles_deg`` is the continuous spindle angle in
+    degrees from the start, and ``line_numbers`` are the source lines.
     """
 
     times_s: FloatArray
@@ -31,7 +31,7 @@ class SetpointRows(NamedTuple):
 
 
 def iter_setpoints(timeline: Timeline, interval_s: float) -> Iterator[SetpointRows]:
-    """Yield rows every ``dt`` seconds from 0 to the first one after the end of the program."""
+    """Yield rows every ``interval_s`` seconds, from time 0 to the first row after the end of the program."""
     sampler = _SpanSampler(timeline, interval_s)
     for span in timeline.iter_spans():
         if isinstance(span, MotionSpan):
@@ -42,7 +42,7 @@ def iter_setpoints(timeline: Timeline, interval_s: float) -> Iterator[SetpointRo
 
 
 class _SpanSampler:
-    """Samples the spans of a timeline at equal intervals."""
+    """A sampler of the spans of a timeline at equal intervals."""
 
     def __init__(self, timeline: Timeline, dt: float) -> None:
         self._spindle = timeline.spindle
@@ -54,7 +54,7 @@ class _SpanSampler:
         self._rpm = 0.0  # rpm of the last row
 
     def moved(self, span: MotionSpan) -> SetpointRows:
-        """Return the rows of a motion."""
+        """Return the rows of a span of motion."""
         profile = span.chunk.profile
         _, positions, numbers = sample_positions(
             profile, self._dt, max(0.0, self._row * self._dt - span.start_time_s)
@@ -68,7 +68,7 @@ class _SpanSampler:
         return self._rows(positions, lines, by_radius)
 
     def rested(self, span: RestSpan) -> Iterator[SetpointRows]:
-        """Yield the rows of a rest."""
+        """Yield the rows of a span at rest."""
         if span.block is not None:
             self._line = span.block.line
         count = max(0, math.ceil((span.end_time_s - self._row * self._dt) / self._dt - 1e-9))
@@ -87,7 +87,10 @@ class _SpanSampler:
         return SetpointRows(t, at, turned, lines)
 
     def _turned(self, speeds: FloatArray) -> FloatArray:
-        """Return the angles, calculated with the mean of the speeds at both ends of each interval."""
+        """Return the spindle angles in degrees.
+
+        They are calculated with the mean of the speeds at both ends of each interval.
+        """
         before = np.concatenate([[self._rpm], speeds])
         steps = (before[:-1] + speeds) / 2 * self._dt * 6  # 1 rpm is 6 degrees/s
         if not self._row:
@@ -97,9 +100,10 @@ class _SpanSampler:
         return angles[1:]
 
     def _speeds(self, t: FloatArray, machine_x: FloatArray, by_radius: Mapping[int, Block]) -> FloatArray:
-        """Return the signed rpm of the rows; ``by_radius`` has the blocks with constant surface speed.
+        """Return the signed rpm of the rows.
 
-        The forecast of the timeline is not changed, because its waits must not depend on the sampling.
+        ``by_radius`` contains the blocks with constant surface speed. The forecast of the timeline is not
+        changed, because its waits must not depend on the sampling.
         """
         speeds = self._spindle.speeds_at(t)
         for row, block in by_radius.items():
@@ -109,7 +113,7 @@ class _SpanSampler:
         return speeds
 
     def _by_radius(self, block: Block, machine_x: float) -> float:
-        """Return the signed rpm for the surface speed of the block at the present position."""
+        """Return the signed rpm that the surface speed of the block requires at the present position."""
         modal, most = block.modal, self._spindle.max_rpm
         rpm = find_surface_rpm(
             block.css or 0.0, machine_x - block.offset_x, modal.min_css_rpm, modal.max_css_rpm or most
@@ -131,6 +135,9 @@ def _follows_radius(block: Block) -> bool:
 
 
 def _radius_following_blocks(parts: tuple[BlockGroup, ...]) -> dict[int, Block]:
-    """Return the blocks by number in which the spindle follows the radius; series have none."""
+    """Return the blocks in which the spindle speed follows the radius, by block number.
+
+    Series contain no such blocks.
+    """
     alone = (block for part in parts if not isinstance(part, StraightMoveSeries) for block in part)
     return {block.n: block for block in alone if _follows_radius(block)}

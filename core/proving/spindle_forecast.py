@@ -1,4 +1,4 @@
-"""Times that the machine needs: spindle ramps, collet, and the start and end of a motion."""
+"""Times that the machine needs for spindle ramps, the collet, and the start and end of a motion."""
 
 from __future__ import annotations
 
@@ -22,17 +22,18 @@ THREAD_START_LEAD_S = 0.01
 
 
 def max_orientation_time_s(spindle: SpindleModel, direction: int) -> float:
-    """Return the longest time in seconds from standstill to an angle.
+    """Return the longest time in seconds to orient the spindle from standstill to an angle.
 
-    The rotation is half a revolution, or a full one in a given direction.
+    The rotation is at most half a revolution, or a full revolution if the direction is specified.
     """
     return DRIVE_LATENCY_S + (60.0 if direction else 30.0) / spindle.orient_rpm
 
 
 class SpindleForecast:
-    """The forecast spindle speed: signed rpm over time as the drive ramps it, and at-speed times.
+    """The forecast of the spindle speed over time, and of the times at which the spindle is at speed.
 
-    Times must not decrease between calls of ``command_speed``.
+    The speed is signed rpm while the drive ramps. Times must not decrease between calls of
+    ``command_speed``.
     """
 
     def __init__(self, machine: Machine) -> None:
@@ -44,11 +45,14 @@ class SpindleForecast:
 
     @property
     def target_rpm(self) -> float:
-        """The commanded speed in signed rpm."""
+        """Return the commanded speed in rpm, with its sign."""
         return self._to
 
     def command_speed(self, time_s: float, rpm: float) -> None:
-        """Command a new speed at time ``t``. The ramp starts from the speed at that time."""
+        """Command a new speed at ``time_s``.
+
+        The ramp starts from the speed at that time.
+        """
         if rpm == self._to:
             return
         self._turns, self._counted = self.revolutions_at(time_s), time_s
@@ -60,15 +64,15 @@ class SpindleForecast:
         return present_rpm + max(-rate * interval_s, min(rate * interval_s, rpm - present_rpm))
 
     def set_speed(self, time_s: float, rpm: float) -> None:
-        """Set the speed to ``rpm`` at time ``t``, after a move with constant surface speed."""
+        """Set the speed to ``rpm`` at ``time_s``, after a move with constant surface speed."""
         self._turns, self._counted = self.revolutions_at(time_s), time_s
         self._from = self._to = rpm
         self._since = time_s
 
     def revolutions_at(self, time_s: float) -> float:
-        """Return the signed revolutions from the start of the program to ``t``.
+        """Return the signed number of revolutions from the start of the program to ``time_s``.
 
-        ``t`` must not be before the last command.
+        ``time_s`` must not be before the last command.
         """
         at, ends = self._since, [self._counted, time_s]
         rpm = self._from
@@ -83,11 +87,11 @@ class SpindleForecast:
 
     @property
     def max_rpm(self) -> float:
-        """The maximum speed of the machine, in rpm."""
+        """Return the maximum speed of the machine, in rpm."""
         return self._model.max_rpm
 
     def speed_at(self, time_s: float) -> float:
-        """Return the signed rpm at time ``t``."""
+        """Return the signed rpm at ``time_s``."""
         left = max(0.0, time_s - self._since)
         rpm = self._from
         for goal, rate in self._ramp_legs():
@@ -99,7 +103,10 @@ class SpindleForecast:
         return self._to
 
     def speeds_at(self, times_s: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        """Return ``speed_at`` at the times ``t`` (k,). Only times within the ramp are computed singly."""
+        """Return the signed rpm at each of ``times_s`` (k,).
+
+        Only the speeds within the ramp are calculated individually.
+        """
         ends = self._since + (abs(self._from) + abs(self._to)) / min(self._model.accel, self._model.decel)
         found = np.full(len(times_s), self._to)
         for at in np.flatnonzero(times_s <= ends).tolist():
@@ -107,14 +114,17 @@ class SpindleForecast:
         return found
 
     def _ramp_legs(self) -> list[tuple[float, float]]:
-        """Return the ramp as (target rpm, rpm/s). A reversal decelerates to rest first."""
+        """Return the legs of the ramp as (target rpm, rpm/s).
+
+        A reversal first decelerates to rest.
+        """
         slow, fast = self._model.decel, self._model.accel
         if self._from * self._to < 0:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
     def slow_time_s(self, threshold_rpm: float) -> float:
-        """Return the time at which a stopping spindle is slower than ``threshold_rpm`` rpm.
+        """Return the time at which a stopping spindle becomes slower than ``threshold_rpm``.
 
         The time is in the past if the spindle is already slower.
         """
@@ -122,7 +132,10 @@ class SpindleForecast:
         return self._since + over / self._model.decel if over > 0.0 else 0.0
 
     def at_speed_time_s(self) -> float:
-        """Return the time at which the spindle has been within the at-speed band long enough."""
+        """Return the time in seconds at which the spindle counts as at speed.
+
+        The spindle has then been within the at-speed band long enough.
+        """
         rpm, t = self._from, self._since
         band = self._model.at_speed * abs(self._to)
         for goal, rate in self._ramp_legs():

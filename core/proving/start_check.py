@@ -1,8 +1,8 @@
 """Check of the first move of a start against the present part, up to the first known position.
 
-The proof of a program starts at its first known position. The moves before it depend on the axis positions at
-Cycle Start. For example, after an E-stop in a bore, the straight line to the first position passes through
-the wall of the bore. The check runs on a worker thread.
+The proof of a program starts at its first known position. The moves before this position depend on the axis
+positions at Cycle Start. For example, after an E-stop in a bore, the straight line to the first position
+passes through the wall of the bore. The check runs on a worker thread.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ IterStartBlocks = Callable[[tuple[float, ...]], Iterable[Block]]
 
 
 class CollisionBody(Enum):
-    """The objects that a tool may hit."""
+    """The bodies that a tool may hit."""
 
     PART = "part"
     CHUCK = "into-chuck"
@@ -47,11 +47,11 @@ class CollisionBody(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StartState:
-    """The machine at a start: axis positions (machine mm, X as a radius, then Z) and the active tool.
+    """The machine at a start: the axis positions (machine mm, X as a radius, then Z) and the active tool.
 
-    ``interrupted_block`` is the interrupted elementary block with its machine X and Z, or None.
-    ``starts_at_first_line`` means that a program starts at its first line, so that it only positions before
-    its first known position.
+    ``interrupted_block`` is the number of the interrupted elementary block with its machine X and Z, or
+    None. ``starts_at_first_line`` means that the program starts at its first line, so that it only
+    positions the axes before its first known position.
     """
 
     axis_positions: tuple[float, ...]
@@ -64,11 +64,12 @@ class StartState:
 class FirstMove:
     """The finding about a first move.
 
-    ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``zero`` is machine X and Z at
-    which the displayed tip is at part zero. It belongs to the tool that hits something, or otherwise to the
-    tool at the end of the move. ``met`` is the object that ``tool`` hits at Z ``z`` (mm, part's frame), even
-    before it moves if ``starts_inside`` is True. ``safe_jog_direction`` is the direction of a safe jog, such
-    as ``Z+``, or empty if no direction is certain.
+    ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``part_zero`` is the machine
+    X and Z at which the displayed tip is at part zero. It belongs to the tool that hits a body, or
+    otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool`` hits at
+    ``hit_z_mm`` (part's frame). If ``starts_inside`` is True, the tool is inside the body before it moves.
+    ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or empty if no direction is
+    certain to be safe.
     """
 
     path: tuple[tuple[float, float, bool], ...]
@@ -101,7 +102,7 @@ def _is_known(one: Block, other: Block) -> bool:
 
 
 def make_unchecked_move(moves: Sequence[TipMove]) -> FirstMove:
-    """Return the first move that consists of these moves, without a check for hits."""
+    """Return the first move that consists of the given moves, without a collision check."""
     if not moves:
         return FirstMove(())
     legs = [(*_machine(moves[0].points[0], moves[0].part_zero), True)]
@@ -111,7 +112,7 @@ def make_unchecked_move(moves: Sequence[TipMove]) -> FirstMove:
 
 
 def _tip_position(axis_position: Point, zero: Point) -> Point:
-    """Return Z and r of the tip in the part's frame in mm, with the axes at machine X and Z."""
+    """Return the Z and r in mm of the tip in the part's frame, with the axes at the given machine X and Z."""
     return axis_position[1] - zero[1], axis_position[0] - zero[0]
 
 
@@ -121,7 +122,10 @@ def _machine(point: Point, zero: Point) -> tuple[float, float]:
 
 @dataclass(slots=True)
 class StartCheck:
-    """Checks starts against the part of one program; ``offsets`` are those of its job, by T."""
+    """A check of starts against the part of one program.
+
+    ``offsets`` are the tool offsets of the job, by T number.
+    """
 
     part_history: PartHistory
     offsets: dict[int, ToolOffset]
@@ -135,7 +139,7 @@ class StartCheck:
         start_state: StartState,
         check_canceled: CheckCanceled | None = None,
     ) -> FirstMove:
-        """Return the first move of this start and the object that it hits, if any."""
+        """Return the first move of a start with the body that it hits, if any."""
         moves = find_first_moves(iter_blocks, start_state.axis_positions)
         making = self._making(start_state, check_canceled)
         known = making.milling is None and (making.part is not None or self.part_history.stock is None)
@@ -170,7 +174,8 @@ class StartCheck:
     def _is_assumed(self, body: CollisionBody, tool: int, start_state: StartState) -> bool:
         """Return whether the finding depends on an assumption.
 
-        A tool that was stopped in a cut is certainly in the part. Without an active tool, the tip is unknown.
+        A tool that was stopped in a cut is certainly in the part. Without an active tool, the position of
+        the tip is unknown.
         """
         if tool == 0:
             return True
@@ -188,7 +193,10 @@ class StartCheck:
     def _find_hit(
         self, body: CollisionBody, metal: TurnedPart, moves: Sequence[TipMove], start_state: StartState
     ) -> tuple[int, float, bool] | None:
-        """Return tool, Z, and whether the tool is inside before it moves; None without a hit."""
+        """Return the tool that hits the body, the Z of the hit, and whether the tool starts in the body.
+
+        The result is None without a hit.
+        """
         here = (start_state.axis_positions[0], start_state.axis_positions[1])
         if start_state.active_tool == 0 and start_state.interrupted_block is None:
             start_state = replace(
@@ -218,7 +226,8 @@ class StartCheck:
     def _find_bore_hit(self, metal: TurnedPart, start_state: StartState) -> tuple[int, float, bool] | None:
         """Return the hit of a tool that stopped in a bore, or None if no material is outside its tip.
 
-        The first move may remain in the bore, but the next tools would then move this tool through the wall.
+        The first move may remain in the bore, but the moves of the next tools would move this tool through
+        the wall.
         """
         zero = self._part_zero_for_tool(start_state.active_tool)
         if zero is None:
@@ -232,7 +241,7 @@ class StartCheck:
         return None
 
     def _is_intended_cut(self, body: CollisionBody, move: TipMove, start_state: StartState) -> bool:
-        """Return whether the move is meant to cut this material."""
+        """Return whether the move is intended to cut this material."""
         return (
             body is CollisionBody.PART
             and not start_state.starts_at_first_line
@@ -251,7 +260,7 @@ class StartCheck:
                 cutter.cut_material(metal, a, b)
 
     def _find_safe_jog(self, simulation: PartSimulation, start_state: StartState) -> str:
-        """Return the direction of a jog along one axis that moves the active tool out without a hit."""
+        """Return the direction of a jog along one axis that retracts the active tool without a collision."""
         tool, (x, z) = start_state.active_tool, start_state.axis_positions[:2]
         zero = self._part_zero_for_tool(tool) or (0.0, 0.0)
         side = 1.0 if x >= zero[0] else -1.0
@@ -279,7 +288,10 @@ class StartCheck:
         return met if met.depth_mm > TOUCH_TOLERANCE_MM and met.width_mm > TOUCH_TOLERANCE_MM else NO_CUT
 
     def _part_zero_for_tool(self, tool: int) -> Point | None:
-        """Return machine X and Z at which this tool is at part zero, or None if unknown, as for T0."""
+        """Return the machine X and Z at which a tool is at part zero.
+
+        The result is None if they are unknown, as for T0.
+        """
         zero, offset = self.part_history.find_part_zero(tool), self.offsets.get(tool)
         if zero is None and offset is not None:
             return offset.x, offset.z
@@ -291,7 +303,10 @@ class StartCheck:
         return self._solids[tool]
 
     def _tool_outlines(self, tool: int) -> tuple[FloatArray, ...]:
-        """Return edges and body of a specified tool, or else its certain parts: nose, or drill flutes."""
+        """Return the edges and the body of a specified tool.
+
+        For other tools, return only the parts that are certain: the nose, or the flutes of a drill.
+        """
         tools = self.part_history.tools
         shape = tools.find_shape(tool)
         if shape is None:

@@ -1,4 +1,4 @@
-"""The moves of a program in the part's frame: the path of the tool's control point."""
+"""The moves of a program in the part's frame, which are the path of the tool's control point."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _TURNED = frozenset({BlockKind.RAPID, BlockKind.FEED, BlockKind.ARC, BlockKind.T
 
 
 class TipMove(NamedTuple):
-    """The move of one elementary block. Its points are Z and r in mm from part zero.
+    """The move of one elementary block, with its points as Z and r in mm from part zero.
 
-    ``speed_mm_s`` is along the path in mm/s. ``is_fast`` is True for a rapid, or for a feed per minute of
-    the same speed. ``per_rev`` is the feed per revolution in mm, or 0 for a feed per minute. ``part_zero``
-    is machine X and Z at which the tip is at part zero.
+    ``speed_mm_s`` is the speed along the path in mm/s. ``is_fast`` is True for a rapid, or for a feed per
+    minute of the same speed. ``feed_per_rev_mm`` is the feed per revolution in mm, or 0 for a feed per
+    minute. ``part_zero`` is the machine X and Z at which the tip is at part zero.
     """
 
     n: int
@@ -46,12 +46,12 @@ class TipMove(NamedTuple):
 
     @property
     def length_mm(self) -> float:
-        """Length of the move, in mm."""
+        """Return the length of the move, in mm."""
         return sum(math.dist(a, b) for a, b in pairwise(self.points))
 
     @property
     def duration_s(self) -> float:
-        """Time of the move at its speed in seconds; 0 without a speed."""
+        """Return the duration of the move at its speed in seconds, or 0 without a speed."""
         return self.length_mm / self.speed_mm_s if self.speed_mm_s else 0.0
 
 
@@ -74,13 +74,14 @@ ProgramStep = TipMove | LiveToolStep | Block
 
 
 class StepConverter:
-    """Converts the blocks of a program, in order, to steps.
+    """A converter of the blocks of a program, in their order, to steps.
 
     A G92 before the first move of a tool specifies the position of part zero. A later G92 shifts the part,
     like G10.
 
-    ``tip_positions`` are the true positions at which tips are at part zero, machine X and Z in mm, by T or
-    G54 to G59. If the active offsets differ from them, the tool is displaced from the programmed position.
+    ``tip_positions`` are the true positions at which tips are at part zero, as machine X and Z in mm, by T
+    number or by G54 to G59. If the active offsets differ from these positions, the tool is displaced from
+    its programmed position.
     """
 
     def __init__(self, tip_positions: Mapping[int, MachineXZ] | None = None) -> None:
@@ -119,7 +120,10 @@ class StepConverter:
             self._zero = modal.preset_x, modal.preset_z
 
     def _part_zero(self, block: Block) -> MachineXZ:
-        """Return work shift, preset and zero offset together, without presets that only specify part zero."""
+        """Return the sum of the work shift, the preset and the zero offset.
+
+        Presets that only specify part zero are not included.
+        """
         modal = block.modal
         x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
         if modal.settable:
@@ -139,7 +143,7 @@ class StepConverter:
 
 
 def find_part_zero(block: Block, part_shift: MachineXZ) -> MachineXZ:
-    """Return machine X and Z at which the tip is at part zero."""
+    """Return the machine X and Z at which the tip is at part zero."""
     return block.offset_x - part_shift[0], block.offset_z - part_shift[1]
 
 
@@ -150,7 +154,7 @@ def step_end_points(step: LiveToolStep) -> tuple[Point, Point]:
 
 
 def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
-    """Return the position of the axes after a share of a live tool's block."""
+    """Return the position of the axes after a fraction of a live tool's block."""
     plane = step.block.plane
     if plane is not None:
         x, z, _ = plane.machine_positions(np.array([fraction]))[0].tolist()
@@ -160,14 +164,17 @@ def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
 
 
 def make_live_tool_move(step: LiveToolStep) -> TipMove:
-    """Return the move of the axes in a block of a live tool, for drawing."""
+    """Return the move of the axes during a block of a live tool, for drawing."""
     pieces = _MOVE_PIECES if step.block.plane is not None else 1
     points = tuple(axis_position_at(step, k / pieces) for k in range(pieces + 1))
     return _move(step.block, step.block.n, step.block.line, points, step.part_zero)
 
 
 def is_rigid_tap(block: Block) -> bool:
-    """Return whether the engaged spindle turns proportionally to a move along Z on the axis: a rigid tap."""
+    """Return whether the block is a rigid tap.
+
+    In a rigid tap, the engaged spindle turns in proportion to a move along Z on the axis.
+    """
     turned = block.kind is BlockKind.FEED and block.c != block.c0 and block.z != block.z0
     return turned and block.modal.c_locked and block.x == block.x0 and abs(block.x) < _ON_AXIS
 

@@ -1,1 +1,1 @@
-"""Scope records: channels, the ring in memory and on the disk, record files and analyses."""
+"""Scope records: channels, the ring buffer in memory and on disk, record files, and analyses."""

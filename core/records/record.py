@@ -1,8 +1,8 @@
 """A scope record: samples of a period of time, derived quantities and errors.
 
-Channels have descriptive names, such as ``X demand``, ``X actual``, ``X following error`` (mm, or degrees for
-rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``. ``list_machine_channels``
-lists all.
+Channels have descriptive names, such as ``X demand``, ``X actual``, ``X following error`` (mm, or degrees
+for rotary axes), ``spindle command``, ``spindle speed`` (rpm) and ``feed override``.
+``list_machine_channels`` lists all channels.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ RIPPLE_SPAN_S = 0.5  # s, the span of the mean speed from which ripple is calcul
 
 
 class InconsistentRecordError(ValueError):
-    """The contents of a record file are inconsistent; the text has the cause."""
+    """Error raised if the contents of a record file are inconsistent, with the cause as its text."""
 
 
 class Channel(NamedTuple):
-    """A recorded quantity: its name and internal unit.
+    """A recorded quantity with its name and internal unit.
 
     ``logic`` means that the values are 0 (off) and 1 (on).
     """
@@ -67,7 +67,10 @@ MACHINE_CHANNELS = (
 def list_machine_channels(
     axes: Mapping[str, bool], inputs: tuple[str, ...], outputs: tuple[str, ...]
 ) -> tuple[Channel, ...]:
-    """Return all channels recorded for a machine. ``axes`` maps each letter to whether the axis is rotary."""
+    """Return all channels that are recorded for a machine.
+
+    ``axes`` maps each axis letter to whether the axis is rotary.
+    """
     of_axes = [
         Channel(f"{letter} {name}", unit or ("deg" if rotary else "mm"))
         for letter, rotary in axes.items()
@@ -80,12 +83,12 @@ def list_machine_channels(
 
 @dataclass(frozen=True, slots=True)
 class ScopeRecord:
-    """Samples between two points in time; values that a driver does not report are NaN.
+    """Samples of a period of time; values that a driver does not report are NaN.
 
-    ``times`` (n,) are seconds of the monotonic clock in ascending order. ``values_by_channel`` has an array
-    (n,) for each channel name. ``start_time_utc_s`` is the time of the first sample in seconds since 1970.
-    ``sampling_rate_hz`` is the driver's sampling rate in samples per second. Quantities of the control
-    retain their value from the last tick.
+    ``times_s`` (n,) are seconds of the monotonic clock in ascending order. ``values_by_channel`` has an
+    array (n,) for each channel name. ``start_time_utc_s`` is the time of the first sample in seconds since
+    1970. ``sampling_rate_hz`` is the driver's sampling rate in samples per second. Quantities of the
+    control retain the value of the last tick.
     """
 
     channels: tuple[Channel, ...]
@@ -96,7 +99,7 @@ class ScopeRecord:
     about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
     def select_between(self, begin: float, end: float) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the monotonic clock."""
+        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the monotonic clock."""
         first, last = np.searchsorted(self.times_s, (begin, np.nextafter(end, np.inf)))
         cut = slice(int(first), int(last))
         started = self.start_time_utc_s + (
@@ -109,12 +112,18 @@ class ScopeRecord:
 
 
 def _is_unicode(text: str) -> bool:
-    """Return whether a text can be shown and exported; JSON can contain unpaired surrogates."""
+    """Return whether a text can be displayed and exported.
+
+    JSON can contain unpaired surrogates, which cannot be exported.
+    """
     return not any("\ud800" <= sign <= "\udfff" for sign in text)
 
 
 def check_record(record: ScopeRecord) -> ScopeRecord:
-    """Check a record from a file and return it with infinite values as NaN. Raises UnsoundError."""
+    """Check a record from a file and return it with infinite values replaced by NaN.
+
+    Raises InconsistentRecordError if the record is inconsistent.
+    """
     if not 0.0 <= record.start_time_utc_s <= _LATEST:
         raise InconsistentRecordError(
             Message(
@@ -143,15 +152,18 @@ def check_record(record: ScopeRecord) -> ScopeRecord:
 
 
 class RecordError(CodedError):
-    """A record file cannot be used. The text has the file, the reason and a remedy."""
+    """Error raised if a record file cannot be used, with the file, the reason and a remedy as its text."""
 
 
 class AnalysisError(CodedError):
-    """A record lacks data that an analysis needs. The text names the missing data and a remedy."""
+    """Error raised if a record lacks data that an analysis needs.
+
+    The text names the missing data and a remedy.
+    """
 
 
 def make_damage_error(path: Path, error: Exception) -> RecordError:
-    """Return the RecordError for a file with damaged contents."""
+    """Return a RecordError for a file with damaged contents."""
     if isinstance(error, InconsistentRecordError):
         return RecordError(
             Message("{path} is damaged ({error}); open another scope record", path=path, error=error),
@@ -161,7 +173,7 @@ def make_damage_error(path: Path, error: Exception) -> RecordError:
 
 
 def why(path: Path, error: OSError) -> RecordError:
-    """Return the RecordError for an OSError of the file ``path``."""
+    """Return a RecordError for an OSError that occurred with the file ``path``."""
     if isinstance(error, TooLargeError):
         return RecordError(
             Message(
@@ -181,10 +193,11 @@ def why(path: Path, error: OSError) -> RecordError:
 def calculate_velocity(
     times: FloatArray, position: FloatArray, span_s: float = VELOCITY_SPAN_S
 ) -> FloatArray:
-    """Return the mean velocity across ``span`` s, in units per second.
+    """Return the mean velocity over ``span_s`` seconds, in units per second.
 
-    The span is at least two sample intervals. The result is exact for constant acceleration. The amplitude of
-    a sine of ω rad/s is multiplied by sin(ω·span/2)/(ω·span/2). The first and last half span are NaN.
+    The span is at least two sample intervals. The result is exact for constant acceleration. The amplitude
+    of a sine of ω rad/s is multiplied by sin(ω·span/2)/(ω·span/2). The values of the first and the last
+    half span are NaN.
     """
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)
@@ -197,12 +210,12 @@ def calculate_velocity(
 def calculate_acceleration(
     times: FloatArray, position: FloatArray, span_s: float = ACCELERATION_SPAN_S
 ) -> FloatArray:
-    """Return the mean acceleration across ``span`` s, in units per second squared.
+    """Return the mean acceleration over ``span_s`` seconds, in units per second squared.
 
     The result is the change of the mean velocity from the first to the second half of the span. With h =
     span/2 and evenly spaced samples, it is (p(t+h) − 2p(t) + p(t−h))/h². It is exact for constant
-    acceleration. The amplitude of a sine is multiplied by (sin(ωh/2)/(ωh/2))². The first and last half span
-    are NaN.
+    acceleration. The amplitude of a sine is multiplied by (sin(ωh/2)/(ωh/2))². The values of the first and
+    the last half span are NaN.
     """
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)
@@ -215,9 +228,10 @@ def calculate_acceleration(
 
 
 def calculate_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPLE_SPAN_S) -> FloatArray:
-    """Return the speed minus its mean over ``span`` s.
+    """Return the speed minus its mean over ``span_s`` seconds.
 
-    Ripple with a whole number of waves in the span cancels in the mean. The first and last half span are NaN.
+    Ripple with a whole number of waves in the span cancels out of the mean. The values of the first and the
+    last half span are NaN.
     """
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)
@@ -232,7 +246,10 @@ def calculate_ripple(times: FloatArray, speed: FloatArray, span_s: float = RIPPL
 
 
 def _half(times: FloatArray, span: float) -> int:
-    """Return the number of samples in half the span, at least 1, from the median sample distance."""
+    """Return the number of samples in half the span, at least 1.
+
+    The number is calculated from the median sample interval.
+    """
     if len(times) < 2:
         return 1
     step = float(np.median(np.diff(times)))

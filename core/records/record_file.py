@@ -1,4 +1,4 @@
-"""Record files of the scope: saving, opening and export as CSV.
+"""Record files of the scope: saving, opening and CSV export.
 
 A file is an npz archive with one column for each channel, the times, and the description as JSON.
 """
@@ -41,7 +41,10 @@ _ROWS = 2000  # CSV rows written at a time
 
 
 def save_record(record: ScopeRecord, path: Path) -> None:
-    """Write a record file completely or not at all. Raises RecordError."""
+    """Write a record file completely or not at all.
+
+    Raises RecordError if the file cannot be written.
+    """
     told = {
         "version": _VERSION,
         "started": record.start_time_utc_s,
@@ -71,7 +74,7 @@ def _packed(record: ScopeRecord, channel: Channel) -> np.ndarray[tuple[int, ...]
 
 
 def open_record(path: Path) -> ScopeRecord:
-    """Return the record in a file, or the last minutes from the file of a ring.
+    """Return the record in a file, or the last minutes from the file of a ring buffer.
 
     Raises RecordError if the file cannot be read or is damaged.
     """
@@ -130,7 +133,10 @@ def _read(path: Path, data: io.BytesIO) -> ScopeRecord:
 
 
 def _check_size(data: io.BytesIO) -> None:
-    """Raise UnsoundError before unpacking an archive that would be far larger than any record."""
+    """Check, before an archive is unpacked, that it is not far larger than any record.
+
+    Raises InconsistentRecordError if the archive is too large.
+    """
     with zipfile.ZipFile(data) as archive:
         size = sum(each.file_size for each in archive.infolist())
     if size > MAX_RECORD_BYTES:
@@ -143,9 +149,10 @@ def _check_size(data: io.BytesIO) -> None:
 
 
 def _record(told: dict[str, object], column: Callable[[str], object]) -> ScopeRecord:
-    """Return the record with this description and these columns.
+    """Return the record with the given description and columns.
 
-    Raises UnsoundError if they are inconsistent, and ValueError, KeyError or TypeError if they are malformed.
+    Raises InconsistentRecordError if they are inconsistent, and ValueError, KeyError or TypeError if they
+    are malformed.
     """
     channels, about = told["channels"], told["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
@@ -173,7 +180,10 @@ def _record(told: dict[str, object], column: Callable[[str], object]) -> ScopeRe
 
 
 def write_csv_lines(record: ScopeRecord, write: Callable[[str], object]) -> None:
-    """Write a record as CSV lines, with times in s from its start; unknown values are empty."""
+    """Write a record as CSV lines.
+
+    Times are in seconds from the start of the record, and unknown values are empty.
+    """
     names = [
         Message("{item} [{unit}]", item=each.name, unit=each.unit) if each.unit else each.name
         for each in record.channels
@@ -190,7 +200,10 @@ def write_csv_lines(record: ScopeRecord, write: Callable[[str], object]) -> None
 
 
 def save_csv(record: ScopeRecord, path: Path) -> None:
-    """Write a record to a CSV file completely or not at all. Raises RecordError."""
+    """Write a record to a CSV file completely or not at all.
+
+    Raises RecordError if the file cannot be written.
+    """
     unfinished = path.with_name(path.name + ".part")
     try:
         with unfinished.open("w", encoding="utf-8", newline="") as file:
@@ -203,7 +216,10 @@ def save_csv(record: ScopeRecord, path: Path) -> None:
 
 
 def _texts(column: FloatArray, *, whole: bool) -> list[str]:
-    """Return the values of a column as text with all digits; unknown values are empty."""
+    """Return the values of a column as texts with all digits.
+
+    Unknown values become empty texts.
+    """
     if whole:
         return ["" if math.isnan(value) else str(int(value)) for value in column.tolist()]
     return ["" if math.isnan(value) else repr(value) for value in column.tolist()]

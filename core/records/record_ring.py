@@ -1,8 +1,8 @@
-"""Ring buffer of the scope with the samples of the last minutes, in memory.
+"""The ring buffer of the scope in memory, with the samples of the last minutes.
 
-One thread writes and any thread reads without a lock. The ring has two buffers: samples at the driver's rate,
-and quantities of the control at each tick. A row is written before it is counted, and it ends with its
-number, so a partly written row is never used.
+One thread writes and any thread reads without a lock. The ring consists of two buffers: one for samples at
+the driver's rate, and one for quantities of the control at each tick. A row is written before it is
+counted, and it ends with its number, so a partly written row is never used.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ SAMPLE_CHANNELS = ("spindle speed", "spindle turns", "spindle load", "queue")
 
 @dataclass(frozen=True, slots=True)
 class RingLayout:
-    """Layout of a ring: the machine's channels, the sampling rate and the duration.
+    """The layout of a ring: the machine's channels, the sampling rate and the duration.
 
-    ``axes`` maps each letter to whether the axis is rotary. ``clock_zero_utc_s`` is the time of the clock's
-    zero, in seconds since 1970. ``state_names`` are the texts of the values of the channel ``state``.
-    ``duration_s`` is in seconds.
+    ``is_rotary_by_axis`` maps each axis letter to whether the axis is rotary. ``clock_zero_utc_s`` is the
+    time of the clock's zero, in seconds since 1970. ``state_names`` are the texts of the values of the
+    channel ``state``. ``duration_s`` is in seconds.
     """
 
     is_rotary_by_axis: Mapping[str, bool]
@@ -57,12 +57,12 @@ class RingLayout:
 
     @property
     def channels(self) -> tuple[Channel, ...]:
-        """Channels of a record from this ring."""
+        """Return the channels of a record from this ring."""
         return list_machine_channels(self.is_rotary_by_axis, self.inputs, self.outputs)
 
     @property
     def sample_width(self) -> int:
-        """Number of values in a driver's sample.
+        """Return the number of values in a driver's sample.
 
         The values are the time, the demand, actual and load of all axes, and SAMPLE_CHANNELS.
         """
@@ -70,19 +70,22 @@ class RingLayout:
 
     @property
     def tick_width(self) -> int:
-        """Number of values in a tick: the time, TICK_CHANNELS, and the inputs and outputs as bits."""
+        """Return the number of values in a tick.
+
+        The values are the time, TICK_CHANNELS, and the inputs and outputs as bits.
+        """
         return 1 + len(TICK_CHANNELS) + _words(self.inputs) + _words(self.outputs)
 
     @property
     def row_capacities(self) -> tuple[int, int]:
-        """Numbers of samples and of ticks that the ring can store."""
+        """Return the numbers of samples and of ticks that the ring can store."""
         return max(2, round(self.duration_s * self.sampling_rate_hz)), max(
             2, round(self.duration_s * TICK_RATE_HZ)
         )
 
     @property
     def size_bytes(self) -> int:
-        """Size of the ring in memory, in bytes."""
+        """Return the size of the ring in memory, in bytes."""
         samples, ticks = self.row_capacities
         return calculate_buffer_size(samples, self.sample_width) + calculate_buffer_size(
             ticks, self.tick_width
@@ -90,7 +93,7 @@ class RingLayout:
 
     @property
     def description(self) -> dict[str, str]:
-        """Machine and states as text, for the description of a record."""
+        """Return the machine and the states as texts, for the description of a record."""
         return {"machine": self.machine_name, "states": "|".join(self.state_names)}
 
 
@@ -99,8 +102,9 @@ def _words(names: Collection[str]) -> int:
 
 
 def pack_bits(names: tuple[str, ...], active_names: Collection[str]) -> list[float]:
-    """Return logic channels as bits, 48 in each value. ``active_names`` has the names of those that are
-    on.
+    """Return logic channels as bits, 48 in each value.
+
+    ``active_names`` contains the names of the channels that are on.
     """
     words = [0] * _words(names)
     for i, name in enumerate(names):
@@ -113,10 +117,10 @@ def pack_bits(names: tuple[str, ...], active_names: Collection[str]) -> list[flo
 
 
 class RowBuffer:
-    """Ring buffer of rows of one kind; one thread writes, and any thread reads without a lock.
+    """A ring buffer of rows of one kind.
 
-    Column 0 is the time. ``memory`` has ``calculate_buffer_size(capacity, width)`` bytes and can be shared
-    with another process.
+    One thread writes, and any thread reads without a lock. Column 0 is the time. ``memory`` has
+    ``calculate_buffer_size(capacity, width)`` bytes and can be shared with another process.
     """
 
     def __init__(self, capacity: int, width: int, memory: memoryview | None = None) -> None:
@@ -131,7 +135,7 @@ class RowBuffer:
 
     @property
     def rows_started(self) -> int:
-        """Number of rows whose writing has started."""
+        """Return the number of rows whose writing has started."""
         return int(self._counts[0])
 
     @rows_started.setter
@@ -140,7 +144,7 @@ class RowBuffer:
 
     @property
     def rows_completed(self) -> int:
-        """Number of rows that are completely written."""
+        """Return the number of rows that have been written completely."""
         return int(self._counts[1])
 
     @rows_completed.setter
@@ -148,7 +152,10 @@ class RowBuffer:
         self._counts[1] = count
 
     def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
-        """Append rows and return the changed slots with their contents, for the file."""
+        """Append rows, and return the changed slots with their contents.
+
+        The caller must write these slots to the file.
+        """
         rows = rows[-self.capacity :]
         first, end = self.rows_completed, self.rows_completed + len(rows)
         numbered = np.column_stack((rows, np.arange(first, end, dtype=np.float64)))
@@ -163,7 +170,7 @@ class RowBuffer:
         return parts
 
     def copy_between(self, begin: float, end: float) -> FloatArray:
-        """Return a copy of the rows from ``begin`` to ``end`` inclusive.
+        """Return a copy of the rows from ``begin`` to ``end``, inclusive.
 
         Rows that are being written are omitted.
         """
@@ -187,7 +194,7 @@ class RowBuffer:
 
     @property
     def last_time_s(self) -> float:
-        """Time of the newest row; minus infinity if there are no rows."""
+        """Return the time of the newest row in seconds, or minus infinity without rows."""
         return (
             float(self.array[(self.rows_completed - 1) % self.capacity, 0])
             if self.rows_completed
@@ -196,7 +203,7 @@ class RowBuffer:
 
     @property
     def first_time_s(self) -> float:
-        """Time of the oldest row that is still available; infinity if there are no rows."""
+        """Return the time of the oldest available row in seconds, or infinity without rows."""
         return (
             float(self.array[max(0, self.rows_started - self.capacity) % self.capacity, 0])
             if self.rows_completed
@@ -205,12 +212,15 @@ class RowBuffer:
 
 
 def calculate_buffer_size(capacity: int, width: int) -> int:
-    """Return the size in bytes of a ``RowBuffer`` buffer with this number of rows and columns."""
+    """Return the size in bytes of the memory of a ``RowBuffer`` with this number of rows and columns."""
     return 8 * (2 + capacity * (width + 1))
 
 
 def select_valid_rows(rows: FloatArray, first: int) -> FloatArray:
-    """Return the valid rows without their numbers: numbered from ``first`` on, with ascending times."""
+    """Return the valid rows without their numbers.
+
+    Valid rows are numbered from ``first`` on and have ascending times.
+    """
     if not len(rows):
         return rows[:, :-1]
     times = rows[:, 0]
@@ -224,7 +234,10 @@ def select_valid_rows(rows: FloatArray, first: int) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class ScopeRing:
-    """Samples and ticks of the last minutes. Any thread may call ``get_record_since`` and ``between``."""
+    """The samples and ticks of the last minutes.
+
+    Any thread may call ``get_record_since`` and ``get_record_between``.
+    """
 
     layout: RingLayout
     samples: RowBuffer
@@ -232,7 +245,7 @@ class ScopeRing:
 
     @classmethod
     def from_layout(cls, layout: RingLayout, memory: memoryview | None = None) -> ScopeRing:
-        """Return the ring in ``memory``, which has ``layout.size_bytes`` bytes, or a new, empty ring."""
+        """Return the ring in ``memory``, which has ``layout.size_bytes`` bytes, or a new and empty ring."""
         room, ticks = layout.row_capacities
         cut = calculate_buffer_size(room, layout.sample_width)
         return cls(
@@ -244,16 +257,16 @@ class ScopeRing:
     def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
         """Return the samples after ``since``, in seconds of the clock.
 
-        ``names`` selects channels; None selects all.
+        ``names`` selects channels; None selects all channels.
         """
         return self.get_record_between(np.nextafter(since, np.inf), np.inf, names)
 
     def get_record_between(
         self, begin: float, end: float, names: Collection[str] | None = None
     ) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end`` inclusive.
+        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the clock.
 
-        ``names`` selects channels; None selects all.
+        ``names`` selects channels; None selects all channels.
         """
         return make_record(
             self.layout,
@@ -266,7 +279,10 @@ class ScopeRing:
 def make_record(
     layout: RingLayout, samples: FloatArray, ticks: FloatArray, names: Collection[str] | None = None
 ) -> ScopeRecord:
-    """Return a record made from samples and ticks. A tick's values apply until the next tick."""
+    """Return a record that is made from samples and ticks.
+
+    The values of a tick apply until the next tick.
+    """
     times = samples[:, 0].copy()
     seen = np.searchsorted(ticks[:, 0], times, side="right") - 1
     source = _Source(layout, samples, ticks, seen)
@@ -277,7 +293,7 @@ def make_record(
 
 
 class _Source:
-    """Access to the values of each channel in the rows."""
+    """An accessor for the values of each channel in the rows."""
 
     def __init__(self, layout: RingLayout, samples: FloatArray, ticks: FloatArray, seen: object) -> None:
         self._recorded, self._samples, self._ticks, self._seen = layout, samples, ticks, np.asarray(seen)
@@ -321,9 +337,9 @@ class _Source:
         return bits
 
     def _worst(self, column: int) -> FloatArray:
-        """Return the largest value of the ticks since the previous sample.
+        """Return the largest value of all ticks since the previous sample.
 
-        At standstill there are fewer samples than ticks.
+        At standstill, samples are less frequent than ticks.
         """
         held = self._select_tick_values(column)
         known = np.flatnonzero(self._seen >= 0)
@@ -336,7 +352,7 @@ class _Source:
         return held
 
     def _select_tick_values(self, column: int) -> FloatArray:
-        """Return the value of the latest tick at each sample; NaN before the first tick."""
+        """Return the value of the latest tick at each sample, or NaN before the first tick."""
         if not len(self._ticks):
             return np.full(len(self._seen), np.nan)
         figures = self._ticks[np.maximum(self._seen, 0), column]

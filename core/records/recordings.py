@@ -1,4 +1,4 @@
-"""Access to the scope's data: the last minutes in memory, and the record files of alarms."""
+"""Access to the data of the scope: the last minutes in memory, and the record files of alarms."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ MAX_ALARM_RECORDS = 50  # records of alarms that are stored
 
 
 class ScopeRecordings:
-    """The ring and the folder of the records, readable from any thread.
+    """The ring and the folder of the record files, readable from any thread.
 
     ``folder`` is None if no files are written. If the ring file cannot be written, the samples are only in
-    memory, and the last argument is the reason.
+    memory, and ``storage_error`` is the reason.
     """
 
     def __init__(self, ring: ScopeRing, folder: Path | None, storage_error: str = "") -> None:
@@ -26,16 +26,16 @@ class ScopeRecordings:
     def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
         """Return the samples after ``since``, in seconds of the clock.
 
-        ``names`` selects channels; None selects all.
+        ``names`` selects channels; None selects all channels.
         """
         return self.ring.get_record_since(since, names)
 
     def get_record_between(
         self, begin: float, end: float, names: Collection[str] | None = None
     ) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end`` inclusive, in seconds of the clock.
+        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the clock.
 
-        ``names`` selects channels; None selects all.
+        ``names`` selects channels; None selects all channels.
         """
         return self.ring.get_record_between(begin, end, names)
 
@@ -46,9 +46,8 @@ class ScopeRecordings:
     def open_alarm_record(self, name: str) -> ScopeRecord:
         """Return the record of an alarm by the file name in its log entry.
 
-        Do not call it in the screen's thread.
-
-        Raises RecordError while the record is being written, and if the record has been deleted.
+        Do not call this function in the thread of the operator screen. Raises RecordError while the record
+        is being written, and if the record has been deleted.
         """
         if self.is_saving(name):
             raise RecordError("the record of this alarm is still being saved; try again in 2 s")

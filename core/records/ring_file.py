@@ -1,8 +1,8 @@
-"""File of the scope's ring: the samples of the last minutes on the disk, which remain after a crash.
+"""The file of the scope's ring, with the samples of the last minutes on disk, which remain after a crash.
 
-The file has its full size from the start, so a disk that fills up later does not affect it. It is written
-instead of memory-mapped, because a failing disk then raises an error instead of ending the process. Rows are
-counted after they are written. Rows that were being written when the process ended are not read.
+The file has its full size from the start, so a disk that becomes full later does not affect it. The file is
+written instead of memory-mapped, because a failing disk then raises an error instead of ending the process.
+Rows are counted after they are written. Rows that were being written when the process ended are not read.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
 
 
 class RingFile:
-    """File of a ring on the disk, created in full size and locked by the one process that writes it.
+    """The file of a ring on disk, created in full size and locked by the only process that writes it.
 
     The constructor and ``write_rows`` raise RecordError if the file cannot be written.
     """
@@ -90,7 +90,10 @@ class RingFile:
             raise
 
     def write_rows(self, rows: RowBuffer, parts: list[tuple[int, FloatArray]]) -> None:
-        """Write rows that were appended to the ring, then count them. Raises RecordError."""
+        """Write rows that were appended to the ring, and then count them.
+
+        Raises RecordError if the file cannot be written.
+        """
         first = rows is self._ring.samples
         start = self._head if first else self._head + self._ring.samples.array.nbytes
         counts = self._head - (2 if first else 1) * _COUNTS.size
@@ -105,7 +108,7 @@ class RingFile:
             raise why(self.path, error) from error
 
     def close(self) -> None:
-        """Close the file. Its contents remain."""
+        """Close the file without deleting its contents."""
         os.close(self._file)
 
 
@@ -120,7 +123,10 @@ def _lock(file: int, path: Path) -> None:
 
 
 def _allocate(file: int, size: int) -> None:
-    """Allocate the full size now, so that a disk that fills up later does not end the record."""
+    """Allocate the full size of the file now.
+
+    A disk that becomes full later then does not end the record.
+    """
     if hasattr(os, "posix_fallocate"):
         os.posix_fallocate(file, 0, size)
         return
@@ -145,9 +151,10 @@ RUN_RING_NAME = "run.ring"  # file of the last run without the operator screen
 
 
 def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
-    """Create the ring file of this start. The last file of the operator screen is renamed to LAST.
+    """Create the ring file for this start of TurnDesk.
 
-    Raises RecordError if the file cannot be created.
+    The previous file of the operator screen is renamed to LAST. Raises RecordError if the file cannot be
+    created.
     """
     with suppress(OSError):
         if name == NOW and _free(folder / NOW):
@@ -156,7 +163,10 @@ def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
 
 
 def _free(path: Path) -> bool:
-    """Return whether no other process writes the file. Raises OSError."""
+    """Return whether no other process is writing the file.
+
+    Raises OSError if the file cannot be opened.
+    """
     file = os.open(path, os.O_RDWR | getattr(os, "O_BINARY", 0))
     try:
         _lock(file, path)
@@ -171,7 +181,10 @@ def _free(path: Path) -> bool:
 
 
 def is_ring_file(path: Path) -> bool:
-    """Return whether a file begins like a ring file; False if it cannot be read."""
+    """Return whether a file begins like a ring file.
+
+    The result is False if the file cannot be read.
+    """
     try:
         with open_input_file(path) as file:
             return file.read(len(_MAGIC)) == _MAGIC
@@ -181,7 +194,7 @@ def is_ring_file(path: Path) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """Header of a ring file."""
+    """The header of a ring file."""
 
     recorded: RingLayout
     rooms: tuple[int, int]
@@ -189,7 +202,10 @@ class _Found:
 
 
 def read_ring_file(path: Path, begin: float = -np.inf, end: float = np.inf) -> ScopeRecord:
-    """Return the record in a ring file, also while the file is being written. Raises RecordError."""
+    """Return the record in a ring file, even while the file is being written.
+
+    Raises RecordError if the file cannot be read or is damaged.
+    """
     with convert_exceptions(partial(make_damage_error, path)):
         return check_record(_read_ring(path, begin, end))
 
@@ -275,7 +291,10 @@ def _rings(path: Path, found: _Found, read: Callable[[int], bytes]) -> Iterator[
 
 
 def _unrolled(data: FloatArray, whole: int, begun: int) -> FloatArray:
-    """Return the rows in order of time, without rows that were being written during reading or at a crash."""
+    """Return the rows in chronological order.
+
+    Rows that were being written during reading or at a crash are omitted.
+    """
     room = len(data)
     first = max(0, whole - room)
     at = first % room

@@ -43,9 +43,9 @@ Found = dict[tuple[str, object], str]
 
 
 def find_problems(path: Path) -> tuple[str, ...]:
-    """Return the problems found inside the store file ``path``, without writing to the file.
+    """Return the problems that are found in the store file ``path``, without writing to the file.
 
-    The check covers database pages, references between tables, program texts and row checksums. Raises
+    The check includes database pages, references between tables, program texts and row checksums. Raises
     StoreError if the file is not a TurnDesk store or has a newer version.
     """
     return _looked_through(path, _found)
@@ -54,7 +54,7 @@ def find_problems(path: Path) -> tuple[str, ...]:
 def find_all_problems(path: Path) -> tuple[str, ...]:
     """Return the problems of a store file, including damaged history entries.
 
-    History entries are checked only if ``find_problems`` finds nothing. A backup with damaged history
+    History entries are checked only if ``find_problems`` finds no problem. A backup with damaged history
     entries is still usable.
     """
     return find_problems(path) or _looked_through(path, _of_histories)
@@ -97,11 +97,11 @@ def _found(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def back_up_store(folder: Path, target: Path) -> None:
-    """Copy the store of ``folder`` to ``target`` in its present state, even while the store is being written.
+    """Copy the store of ``folder`` to ``target`` in its present state.
 
-    The copy contains the names and levels of the users, but no PINs, because anyone with the file could try
-    all PINs. Raises StoreError if the folder has no intact store, or if ``target`` exists and is not a backup
-    of a store.
+    This is possible even while the store is being written. The copy contains the names and levels of the
+    users, but no PINs, because anyone with the file could try all PINs. Raises StoreError if the folder has
+    no intact store, or if ``target`` exists and is not a backup of a store.
     """
     path = folder / STORE_FILE_NAME
     if not has_store(folder):
@@ -133,7 +133,7 @@ def back_up_store(folder: Path, target: Path) -> None:
 
 
 def restore_store(folder: Path, source: Path) -> Path | None:
-    """Replace the store of ``folder`` by a backup and return the path of the saved old store.
+    """Replace the store of ``folder`` by a backup, and return the path of the copy of the old store.
 
     The result is None if the folder had no store. The backup is checked first. The users and PINs of this
     machine remain. A machine without a store gets the users of the backup. If the old store cannot be read,
@@ -172,7 +172,7 @@ def restore_store(folder: Path, source: Path) -> Path | None:
 
 
 def _read_users(path: Path) -> tuple[UserRow, ...]:
-    """Return the users of the store that is about to be replaced; () if they cannot be read."""
+    """Return the users of the store that is about to be replaced, or () if they cannot be read."""
     try:
         database.check_header(path)
         with closing(connect_store(path, read_only=True)) as connection:
@@ -184,7 +184,7 @@ def _read_users(path: Path) -> tuple[UserRow, ...]:
 def _replace_users(rows: tuple[UserRow, ...] | None, copy: sqlite3.Connection) -> None:
     """Replace the users of the restored copy by ``rows``.
 
-    None means that no store existed before, so the copy retains the users of the backup.
+    If ``rows`` is None, no store existed before, so the copy retains the users of the backup.
     """
     if rows or (rows is not None and row_checksums.list_checksummed_columns(copy, "people")):
         database.migrate(copy, database.load_migrations())
@@ -199,7 +199,7 @@ def _is_there(target: Path) -> bool:
 
 
 def _save_old_store(path: Path) -> Path:
-    """Copy the store that is about to be replaced, intact or damaged, with its log if it has one."""
+    """Copy the store that is about to be replaced, intact or damaged, together with its log if one exists."""
     _empty_log(path)
     stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
     kept = path.with_name(f"{path.stem}-replaced-{stamp}.db")
@@ -238,10 +238,10 @@ def _empty_log(path: Path) -> None:
 
 
 def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], None]) -> None:
-    """Copy a store with SQLite's backup function, so that ``target`` is complete at any time.
+    """Copy a store with SQLite's backup function, so that ``target`` is always complete.
 
-    ``change`` modifies the copy before it receives its final name. Raises StoreError if the copy cannot be
-    written.
+    ``change`` modifies the copy before the copy receives its final name. Raises StoreError if the copy
+    cannot be written.
     """
     try:
         with create_unfinished_file(target) as unfinished:
@@ -274,11 +274,11 @@ def _unwritable(target: Path, error: Exception) -> StoreError:
 
 
 class BackupVerdict(NamedTuple):
-    """The result of checking a backup: its first problem and its differences from the store.
+    """The result of checking a backup: its first problem, and its differences from the store.
 
-    ``first_problem`` is empty if the backup is intact. ``difference_counts`` has the number of changed,
-    missing or new items by table. ``is_older`` means that the backup has an older store version without
-    comparable checksums; only its programs are then compared.
+    ``first_problem`` is empty if the backup is intact. ``difference_counts`` contains the number of
+    changed, missing or new items for each table. ``is_older`` means that the backup has an older store
+    version without comparable checksums, so only its programs are compared.
     """
 
     first_problem: str = ""
@@ -287,9 +287,9 @@ class BackupVerdict(NamedTuple):
 
 
 def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
-    """Check a backup page by page and compare it with the open store, without writing to either.
+    """Check a backup page by page and compare it with the open store.
 
-    The check reads the whole file and may take some time.
+    The function writes to neither of them. It reads the whole file and may take some time.
     """
     try:
         found = find_problems(path)
@@ -307,7 +307,10 @@ def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
 def _count_differences(
     now: sqlite3.Connection, then: sqlite3.Connection, *, has_checksums: bool
 ) -> tuple[tuple[str, int], ...]:
-    """Return the number of differing items by table, compared by checksum and text and not by time."""
+    """Return the number of different items for each table.
+
+    Items are compared by checksum and text, and not by time.
+    """
     counts: dict[str, int] = {}
     here, there = _by_row(now, sums=has_checksums), _by_row(then, sums=has_checksums)
     for row in here.keys() | there.keys():

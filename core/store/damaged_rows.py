@@ -1,7 +1,7 @@
 """Detection and repair of database rows that do not match their checksums.
 
-A damaged row is restored from the history where possible. Otherwise the row is not used, and a message
-reports it.
+A damaged row is restored from the history where possible. Otherwise, the row is not used, and a message
+reports the damage.
 """
 
 from __future__ import annotations
@@ -47,10 +47,10 @@ _OTHERS = {
 
 
 def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Restore damaged rows from the history and discard rows that can start from zero.
+    """Restore damaged rows from the history, and discard damaged rows that can start from zero.
 
-    The result has one message for each row. A row is restored if its last history entry matches the saved
-    checksum, or if this entry equals the row and only the checksum is damaged.
+    The result contains one message for each row. A row is restored if its last history entry matches the
+    saved checksum. It is also restored if this entry equals the row, so that only the checksum is damaged.
     """
     told: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
@@ -86,7 +86,10 @@ def _begin_anew(connection: sqlite3.Connection, program: RowKey) -> str:
 
 
 def _retire_damaged_feature(connection: sqlite3.Connection, feature: RowKey) -> str:
-    """Retire a damaged feature, or delete it with its readings if it has a value that no feature can have."""
+    """Retire a damaged feature.
+
+    If the feature has a value that no feature can have, delete it with its readings.
+    """
     row = row_checksums.read_row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
     told = Message(
@@ -124,7 +127,7 @@ _DISCARD_FUNCTIONS = {"runs": _begin_anew, "part_features": _retire_damaged_feat
 def _discard_row(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
     """Discard a row that cannot be entered again and is useless without its values.
 
-    If the row is gone, its checksum is deleted too.
+    If this deletes the row, its checksum is deleted too.
     """
     told = _DISCARD_FUNCTIONS[table](connection, key)
     if row_checksums.read_row(connection, table, key) is None:
@@ -142,7 +145,7 @@ def find_damaged_rows(
 ) -> tuple[str, ...]:
     """Return a message for each row that does not match its checksum.
 
-    Such a row is read as if it had never been set. ``tables`` and ``settings`` limit the check to these
+    Such a row is treated as if it had never been set. ``tables`` and ``settings`` limit the check to these
     tables and to these keys of the table of settings.
     """
     looked = [table for table in KEY_COLUMNS if table in tables or (table == "settings" and settings)]
@@ -160,9 +163,9 @@ def find_damaged_rows(
 
 
 def find_damaged_history(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Return a message for each damaged row of a history table, and one if the database schema has changed.
+    """Return a message for each damaged row of a history table, and a message if the schema has changed.
 
-    These tables grow for years. They are checked completely only by ``verify``.
+    These tables grow for years. They are checked completely only by the command ``verify``.
     """
     tables = () if row_checksums.is_schema_intact(connection) else (SCHEMA_CHANGED_MESSAGE,)
     return tables + tuple(
@@ -178,7 +181,7 @@ def _broken(connection: sqlite3.Connection, tables: Collection[str]) -> list[tup
 
 
 def make_row_label(name: str, key: row_checksums.RowKey) -> str:
-    """Return the operator's name for a row of a table with checksums."""
+    """Return the operator's name for a row of a table that has checksums."""
     table = next((each for each in OFFSET_TABLES.values() if each.name == name), None)
     if any(log.name == name for log in HISTORY_TABLES):
         return Message("entry {key} of the offset history", key=key)

@@ -1,4 +1,4 @@
-"""The store's database file: identification, creation, checks and migrations."""
+"""The database file of the store: identification, creation, checks and migrations."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _REPAIRABLE_PATTERN = re.compile(rf"{_INDEX.pattern}|{_VALUE}")
 
 
 def load_migrations() -> tuple[str, ...]:
-    """Return the SQL script of each store version, the first version first."""
+    """Return the SQL script of each store version, starting with the first version."""
     scripts = sorted(_MIGRATIONS.glob("*.sql"))
     numbers = [int(script.name.partition("_")[0]) for script in scripts]
     # a store counts them, so it would skip a script inserted later
@@ -55,11 +55,11 @@ def load_migrations() -> tuple[str, ...]:
 
 
 def check_header(path: Path) -> None:
-    """Raise StoreError if ``path`` does not begin like a TurnDesk store.
+    """Raise StoreError if the file ``path`` does not begin like a TurnDesk store.
 
     The function reads 100 bytes and does not open the database. It skips a store that this process has open
-    for writing: when a process closes any handle of the file, it releases all locks that SQLite holds on the
-    file in this process. The next program that reads the store would then remove its log.
+    for writing: when a process closes any handle of the file, it releases all locks that SQLite holds on
+    the file in this process. The next program that reads the store would then remove its log.
     """
     if path.name == STORE_FILE_NAME and path.parent.resolve() in FOLDERS_OPEN_FOR_WRITING:
         return
@@ -89,7 +89,7 @@ def check_header(path: Path) -> None:
 def check_is_file(path: Path) -> None:
     """Raise StoreError if ``path`` is not a file or a link to a file.
 
-    A pipe is not opened, because opening it could block.
+    A pipe is not opened, because opening it could block the process.
     """
     try:
         mode = path.stat().st_mode
@@ -123,14 +123,17 @@ def check_is_file(path: Path) -> None:
 def check_file(path: Path, *, thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
-    ``thorough`` checks every page. Raises StoreError if the file is not a TurnDesk store, has a newer version
-    or is damaged.
+    If ``thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
+    has a newer version or is damaged.
     """
     return _checked(path, thorough=thorough)[0]
 
 
 def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
-    """Return the store's version and SQLite's messages about damage that opening the store repairs."""
+    """Return the store's version, and SQLite's messages about repairable damage.
+
+    Opening the store repairs this damage.
+    """
     check_header(path)
     newest = len(load_migrations())
     try:
@@ -165,7 +168,7 @@ def _find_damage(connection: sqlite3.Connection) -> list[str]:
 def _rebuild_indexes(
     connection: sqlite3.Connection, path: Path, damage_messages: list[str]
 ) -> tuple[str, ...]:
-    """Rebuild the indexes if one does not match its table, and return a message about the repair.
+    """Rebuild the indexes if an index does not match its table, and return a message about the repair.
 
     Raises StoreError if the indexes cannot be rebuilt.
     """
@@ -179,10 +182,10 @@ def _rebuild_indexes(
 
 
 def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
-    """Upgrade the tables to the newest version, each version in one transaction.
+    """Upgrade the tables to the newest version, with one transaction for each version.
 
-    Afterwards this connection writes a checksum for every row that it changes. Raises StoreError if a
-    migration fails; the store then remains at the previous version.
+    After the upgrade, this connection writes a checksum for every row that it changes. Raises StoreError if
+    a migration fails; the store then remains at the previous version.
     """
     for number, script in enumerate(scripts, start=1):
         if number <= read_store_version(connection):
@@ -208,7 +211,7 @@ def migrate(connection: sqlite3.Connection, scripts: Sequence[str]) -> None:
 def _run_migration(connection: sqlite3.Connection, number: int, script: str) -> None:
     """Run one migration and recalculate the checksums of all rows that were intact before.
 
-    The checksums depend on the columns, which a migration can change.
+    The checksums depend on the columns, and a migration can change the columns.
     """
     damaged = row_checksums.find_all_broken_rows(
         connection, row_checksums.list_tables_with_checksums(number - 1)
@@ -225,7 +228,7 @@ def _find_database_path(connection: sqlite3.Connection) -> Path:
 
 
 def create_store_file(path: Path) -> None:
-    """Create an empty store that appears under its name only when it is complete.
+    """Create an empty store, which appears under its name only when it is complete.
 
     Raises StoreError if the store cannot be created.
     """
@@ -249,7 +252,7 @@ def create_store_file(path: Path) -> None:
 
 
 def create_empty_store() -> sqlite3.Connection:
-    """Return an empty store in memory, for reading before the store file exists."""
+    """Return an empty store in memory, for reading as long as the store file does not exist."""
     connection = configure_connection(
         sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
     )
@@ -262,7 +265,10 @@ def create_empty_store() -> sqlite3.Connection:
 
 @dataclass(frozen=True, slots=True)
 class OpenedStore:
-    """The connections of an open store; ``writer`` is None if the store is open read-only."""
+    """The connections of an open store.
+
+    ``writer`` is None if the store is open read-only.
+    """
 
     path: Path
     reader: sqlite3.Connection
@@ -271,7 +277,10 @@ class OpenedStore:
     repair_messages: tuple[str, ...] = ()  # messages about repaired damage of the file itself
 
     def close(self) -> None:
-        """Close the connections, then release the lock. Calling it again has no effect."""
+        """Close the connections, and then release the lock.
+
+        Further calls have no effect.
+        """
         self.reader.close()
         if self.writer:
             self.writer.close()
@@ -280,10 +289,10 @@ class OpenedStore:
 
 
 def open_read_only(folder: Path) -> OpenedStore:
-    """Open the store read-only; open an empty store in memory if the file does not exist.
+    """Open the store read-only, or an empty store in memory if the file does not exist.
 
-    Raises StoreError if the file is damaged, has another version, or has a log with lost changes, because the
-    store would be read in its state before these changes.
+    Raises StoreError if the file is damaged or has another version. Also raises StoreError if the log has
+    lost changes, because the store would be read in its state before these changes.
     """
     path = folder / STORE_FILE_NAME
     if not has_store(folder):
@@ -304,7 +313,7 @@ def open_read_only(folder: Path) -> OpenedStore:
 
 
 def open_for_writing(folder: Path) -> OpenedStore:
-    """Lock the store and open it for writing; create or upgrade it if necessary.
+    """Lock the store and open it for writing, and create or upgrade it if necessary.
 
     Raises StoreError if the store is in use, damaged or of a newer version.
     """
@@ -328,9 +337,10 @@ def open_for_writing(folder: Path) -> OpenedStore:
 
 
 def create_store_folder(folder: Path) -> None:
-    """Create the store's folder and prevent other users from reading the folder, its logs and its backups.
+    """Create the folder of the store, and protect its contents from other users.
 
-    Raises StoreError if the folder cannot be created.
+    Other users cannot read the folder, its logs and its backups. Raises StoreError if the folder cannot be
+    created.
     """
     try:
         file_replacement.create_synced_folder(folder)
@@ -385,7 +395,10 @@ def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connec
 
 
 def _save_copy(connection: sqlite3.Connection, target: Path) -> None:
-    """Save a copy of the store next to it before the store is upgraded. Raises OSError."""
+    """Save a copy of the store in its folder before the store is upgraded.
+
+    Raises OSError if the copy cannot be written.
+    """
     with create_unfinished_file(target) as unfinished:
         with closing(sqlite3.connect(unfinished)) as copy:
             connection.backup(copy)

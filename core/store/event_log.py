@@ -26,9 +26,9 @@ def add_events(connection: sqlite3.Connection, events: Iterable[EventRow]) -> No
 def find_events(
     connection: sqlite3.Connection, search_text: str, limit: int, kinds: Collection[str] = ()
 ) -> tuple[EventRow, ...]:
-    """Return the latest events whose kind or text contains ``search``, newest first.
+    """Return the latest events whose kind or text contains ``search_text``, newest first.
 
-    Case is ignored. Empty ``kinds`` selects all kinds.
+    Case is ignored. If ``kinds`` is empty, events of all kinds are returned.
     """
     rows = connection.execute(
         "SELECT at, kind, text, line, record, who, message FROM events"
@@ -68,8 +68,8 @@ class EventLog:
     ) -> tuple[EventRow, ...]:
         """Return the latest events, newest first.
 
-        ``search`` selects events whose kind or text contains it, ignoring case. ``kinds`` selects events of
-        these kinds; all kinds if empty.
+        ``search`` selects events whose kind or text contains this text, ignoring case. ``kinds`` selects
+        events of these kinds; if it is empty, all kinds are selected.
         """
         return self._store.run_query(find_events, search, limit, kinds)
 

@@ -36,9 +36,9 @@ Pair = tuple[int, int]
 
 
 class _Frame(NamedTuple):
-    """An entry of the log, with the data from which its checksum is calculated.
+    """An entry of the log with the data from which its checksum is calculated.
 
-    ``is_commit`` is true for the last entry of a change.
+    ``is_commit`` is True for the last entry of a change.
     """
 
     is_commit: bool
@@ -50,8 +50,8 @@ class _Frame(NamedTuple):
 def count_lost_changes(log: Path, index: Path) -> int:
     """Return the number of complete changes in ``log`` that SQLite ignores according to its ``index``.
 
-    A reader must have the store open, and no process may write the store. Raises OSError if a file cannot be
-    read.
+    While this function runs, a reader must have the store open, and no process may write to the store.
+    Raises OSError if a file cannot be read.
     """
     with log.open("rb") as file:
         head, content = file.read(_HEAD.size), file.read()
@@ -84,10 +84,10 @@ def _frames(content: bytes, page: int) -> list[_Frame]:
 
 
 def _has_equal_salt(its: Pair, salts: tuple[int, ...]) -> bool:
-    """Return whether one of two salts matches the log's salts.
+    """Return whether one of two salts matches the salts of the log.
 
-    An entry of an earlier use of the log has two different salts. An entry with one damaged salt still has
-    one that matches.
+    An entry of an earlier use of the log has two different salts. If one salt of an entry is damaged, the
+    other salt still matches.
     """
     return its[0] == salts[0] or its[1] == salts[1]
 
@@ -97,10 +97,10 @@ def _has_equal_salt(its: Pair, salts: tuple[int, ...]) -> bool:
 
 
 def _is_torn(frames: list[_Frame], previous_sums: Pair, salts: tuple[int, ...], order: str) -> bool:
-    """Return whether parts of the last change never reached the disk.
+    """Return whether parts of the last change were never written to the disk.
 
     The result is False if a single damaged word explains the wrong checksums. A disk writes whole sectors,
-    whereas a bit that flips later is in one word and has a known effect on the checksums.
+    whereas a bit that flips later affects one word and has a known effect on the checksums.
     """
     if not all(_has_equal_salt(frame.salts, salts) for frame in frames):
         return True
@@ -119,7 +119,7 @@ def _is_torn(frames: list[_Frame], previous_sums: Pair, salts: tuple[int, ...], 
 
 
 def _is_one_word(checksum_differences: Pair, size: int) -> bool:
-    """Return whether one damaged word of an entry or of its checksum explains the error of the checksums."""
+    """Return whether a single damaged word of an entry or of its checksum explains the checksum error."""
     if 0 in checksum_differences:
         return True
     effects = [(1, 1), (0, 1)]  # effects of the two words of the last pair on both checksums
@@ -154,8 +154,8 @@ def _calculate_checksums(checksummed_data: bytes, previous_sums: Pair, order: st
 def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
     """Raise StoreError if changes in the log cannot be read and TurnDesk is not running.
 
-    A running TurnDesk has already reported the damage. The check is then skipped, because it opens and closes
-    SQLite's index (see ``check_header``).
+    A running TurnDesk has already reported the damage. The check is then skipped, because it opens and
+    closes SQLite's index (see ``database.check_header``).
     """
     if is_open_for_writing(path.parent):
         return
@@ -176,7 +176,8 @@ def check_log_is_readable(path: Path, reader: sqlite3.Connection) -> None:
 def save_damaged_log(path: Path) -> tuple[str, ...]:
     """Save a copy of a log that has lost changes before the log is overwritten.
 
-    The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError.
+    The result is a message that reports the lost changes, or () if the log is intact. Raises StoreError if
+    the copy cannot be saved.
     """
     log, _ = get_log_and_index_paths(path)
     with closing(connect_store(path, read_only=True)) as reader:

@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
 
 class ProgramArchive:
-    """Programs by name, each with its versions. Methods raise StoreError as described in ``StoreAccess``."""
+    """Programs by name, each with all its versions.
+
+    Methods raise StoreError as described in ``StoreAccess``.
+    """
 
     def __init__(self, store: StoreAccess, loaded: LoadedTexts) -> None:
         self._store, self._loaded = store, loaded
@@ -26,24 +29,31 @@ class ProgramArchive:
         return self._store.run_query(program_records.read_programs)
 
     def list_versions(self, name: str) -> tuple[VersionRow, ...]:
-        """Return every version of a program, newest first; () for an unknown program."""
+        """Return every version of a program, newest first, or () for an unknown program."""
         return self._store.run_query(program_records.read_versions, name)
 
     def load_version(self, name: str, version: int | None = None) -> bytes:
-        """Return the text of a version as it was saved; None as ``version`` selects the newest version.
+        """Return the text of a version as it was saved.
 
-        Raises StoreError if the version is unknown or does not match its checksum.
+        If ``version`` is None, the newest version is returned. Raises StoreError if the version is unknown
+        or does not match its checksum.
         """
         return self._store.run_query(program_records.load_version, name, version)
 
     def save_version(self, name: str, text: bytes, reason: str, *, author: str = "") -> Future[int]:
-        """Save a version; the result is its number. A text equal to the newest version is not saved again."""
+        """Save a new version of a program.
+
+        The result is the version number. A text that equals the newest version is not saved again.
+        """
         return self._store.write(
             lambda c: program_records.save_program_version(c, name, text, reason, author)
         )
 
     def save_loaded_version(self, name: str, text: bytes, reason: str) -> Future[None]:
-        """Save the version that is about to run. Later runs of this name are recorded for this text."""
+        """Save the version that is about to run.
+
+        Later runs under this name are recorded for this text.
+        """
         key = program_records.make_bytes_key(text)
         self._loaded.add(name, key)
 

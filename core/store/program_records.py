@@ -1,8 +1,8 @@
 """Stored records of programs: versions, part counts, runs, proofs and settings.
 
-Counts, runs and proofs are stored by the SHA-256 of the text and not by file name. The setting ``text:NAME``
-specifies which text was last loaded under a name. A name without this setting has rows of an older version of
-TurnDesk, which stored them by name.
+Counts, runs and proofs are stored by the SHA-256 of the text and not by the file name. The setting
+``text:NAME`` specifies which text was last loaded under a name. If a name has no such setting, its rows
+come from an older version of TurnDesk, which stored them by name.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def check_program_name(name: str) -> None:
 def save_program_version(
     connection: sqlite3.Connection, name: str, text: bytes, reason: str, author: str = ""
 ) -> int:
-    """Save ``text`` as the newest version and return its number.
+    """Save ``text`` as the newest version, and return the version number.
 
-    A text equal to the newest version is not saved again. Raises StoreError if the name is invalid.
+    A text that equals the newest version is not saved again. Raises StoreError if the name is invalid.
     """
     check_program_name(name)
     now, digest = get_utc_now_text(), sha256(text).hexdigest()
@@ -79,7 +79,7 @@ def read_programs(connection: sqlite3.Connection) -> tuple[ProgramRow, ...]:
 
 
 def read_versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow, ...]:
-    """Return every version of a program, newest first; () for an unknown program."""
+    """Return every version of a program, newest first, or () for an unknown program."""
     rows = connection.execute(
         "SELECT number, sha256, saved, why, length(text), who FROM program_versions"
         " JOIN programs ON program = programs.id WHERE name = ? ORDER BY number DESC",
@@ -89,9 +89,10 @@ def read_versions(connection: sqlite3.Connection, name: str) -> tuple[VersionRow
 
 
 def load_version(connection: sqlite3.Connection, name: str, version: int | None) -> bytes:
-    """Return the text of a version; None as ``version`` selects the newest version.
+    """Return the text of a version.
 
-    Raises StoreError if the version is unknown or does not match its checksum.
+    If ``version`` is None, the newest version is returned. Raises StoreError if the version is unknown or
+    does not match its checksum.
     """
     row = connection.execute(
         "SELECT number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
@@ -122,7 +123,7 @@ def load_version(connection: sqlite3.Connection, name: str, version: int | None)
 
 
 def find_damaged_versions(connection: sqlite3.Connection) -> tuple[str, ...]:
-    """Return name and number of every version whose text does not match its checksum."""
+    """Return the name and number of every version whose text does not match its checksum."""
     rows = connection.execute(
         "SELECT name, number, text, sha256 FROM program_versions JOIN programs ON program = programs.id"
     )
@@ -134,7 +135,10 @@ def find_damaged_versions(connection: sqlite3.Connection) -> tuple[str, ...]:
 
 
 def _flatten_number(number: object) -> str:
-    """Return a version number as one line of text, because a damaged number may be any text."""
+    """Return a version number as a single line of text.
+
+    A damaged number may be any text.
+    """
     return " ".join(str(number).split())
 
 
@@ -144,7 +148,7 @@ def _matches_checksum(text: object, digest: object) -> bool:
 
 
 def read_part_count(connection: sqlite3.Connection, program: str) -> int:
-    """Return the parts made since the count was last reset; 0 if the row is damaged."""
+    """Return the number of parts made since the last reset of the count, or 0 if the row is damaged."""
     row = row_checksums.read_intact_row(connection, "part_counts", find_loaded_key(connection, program))
     return _count(row[1]) if row else 0
 
@@ -154,8 +158,9 @@ def _count(value: row_checksums.ColumnValue) -> int:
 
 
 def add_parts(connection: sqlite3.Connection, program: str, added_count: int, counted_at: str) -> None:
-    """Add ``added_count`` parts to the part count, or subtract them if ``added_count`` is negative, down to
-    zero.
+    """Add ``added_count`` parts to the part count.
+
+    A negative ``added_count`` subtracts parts, down to zero.
     """
     program = find_loaded_key(connection, program)
     count = max(0, read_part_count(connection, program) + added_count)
@@ -173,9 +178,9 @@ def reset_parts(connection: sqlite3.Connection, program: str) -> None:
 
 
 def read_run_records(connection: sqlite3.Connection) -> tuple[RunRow, ...]:
-    """Return the run record of each program name, sorted by name: the record of the text last loaded.
+    """Return the run record of each program name, sorted by name.
 
-    Damaged rows are omitted.
+    Each record is that of the text that was last loaded under the name. Damaged rows are omitted.
     """
     records, names = read_run_records_by_text(connection), read_keys_by_name(connection)
     names |= {key: key for key in records if not key.startswith(RECORD_KEY_PREFIX) and key not in names}
@@ -199,19 +204,19 @@ def _run(program: str, run: row_checksums.RowValues | None, count: row_checksums
 
 
 def record_start(connection: sqlite3.Connection, program: str, started_at: str) -> None:
-    """Record that a run of the program started at ``at``."""
+    """Record that a run of the program started at ``started_at``."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET started = ?, outcome = '' WHERE program = ?", (started_at, key))
 
 
 def record_outcome(connection: sqlite3.Connection, program: str, outcome: str) -> None:
-    """Record the outcome of the program's last run."""
+    """Record the outcome of the last run of a program."""
     key = _row(connection, program)
     connection.execute("UPDATE runs SET outcome = ? WHERE program = ?", (outcome, key))
 
 
 def record_interrupted_runs(connection: sqlite3.Connection, outcome: str) -> tuple[str, ...]:
-    """Record ``outcome`` for all runs without an end; return the names of their programs."""
+    """Record ``outcome`` for all runs that have no end, and return the names of their programs."""
     rows = connection.execute(
         "UPDATE runs SET outcome = ? WHERE started IS NOT NULL AND coalesce(outcome, '') = ''"
         " RETURNING program",
@@ -224,10 +229,10 @@ def record_interrupted_runs(connection: sqlite3.Connection, outcome: str) -> tup
 def record_complete_cycles(
     connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float
 ) -> None:
-    """Record complete cycles: the time of the last cycle and the shortest time, in seconds.
+    """Record complete cycles, with the time of the last cycle and the shortest time, in seconds.
 
-    A stored shortest time of zero is replaced, because older versions stored zero for a part that a restart
-    had finished.
+    A stored shortest time of zero is replaced, because older versions stored zero for a part that was
+    finished after a restart.
     """
     key = _row(connection, program)
     connection.execute(
@@ -240,7 +245,7 @@ def record_complete_cycles(
 def record_proof(
     connection: sqlite3.Connection, program: str, result: str, cycle_time_s: float | None, proved_at: str
 ) -> None:
-    """Record the result of a proof at ``at``, and its calculated cycle time in seconds or None."""
+    """Record the result of a proof at ``proved_at``, with its calculated cycle time in seconds or None."""
     key = _row(connection, program)
     connection.execute(
         "UPDATE runs SET proved = ?, proof = ?, planned = ? WHERE program = ?",
@@ -249,10 +254,10 @@ def record_proof(
 
 
 def transfer_records(connection: sqlite3.Connection, old: str, new: str) -> None:
-    """Transfer versions, counts, run records, settings and measured features to a new program name.
+    """Transfer the versions, counts, run records, settings and measured features to a new program name.
 
-    If the new name already has versions or features, they remain, and those of the old name are not moved.
-    Raises StoreError if the new name is invalid.
+    If the new name already has versions or features, these remain, and those of the old name are not
+    transferred. Raises StoreError if the new name is invalid.
     """
     check_program_name(new)
     connection.execute(
@@ -276,7 +281,7 @@ def transfer_records(connection: sqlite3.Connection, old: str, new: str) -> None
 
 
 def _row(connection: sqlite3.Connection, program: str) -> str:
-    """Create the program's row of ``runs`` if it is missing, and return its record key."""
+    """Create the program's row in the table ``runs`` if it is missing, and return its record key."""
     key = find_loaded_key(connection, program)
     connection.execute("INSERT INTO runs (program) VALUES (?) ON CONFLICT DO NOTHING", (key,))
     return key
@@ -288,12 +293,15 @@ def make_text_key(text: str) -> str:
 
 
 def make_bytes_key(data: bytes) -> str:
-    """Return the record key of a stored version, given as bytes."""
+    """Return the record key of a stored version that is given as bytes."""
     return RECORD_KEY_PREFIX + sha256(data).hexdigest()
 
 
 def find_loaded_key(connection: sqlite3.Connection, program: str) -> str:
-    """Return the record key of the text last loaded under a name. A record key is returned unchanged."""
+    """Return the record key of the text that was last loaded under a name.
+
+    If ``program`` is a record key, it is returned unchanged.
+    """
     if program.startswith(RECORD_KEY_PREFIX):
         return program
     stored = settings.read_setting(connection, make_loaded_text_key(program))
@@ -301,7 +309,7 @@ def find_loaded_key(connection: sqlite3.Connection, program: str) -> str:
 
 
 def read_keys_by_name(connection: sqlite3.Connection) -> dict[str, str]:
-    """Return the record key of each program name that has one."""
+    """Return the record keys of all program names that have a record key."""
     rows = connection.execute(
         "SELECT key, value FROM settings WHERE key LIKE ? || '%'", (make_loaded_text_key(""),)
     )
@@ -318,7 +326,7 @@ def _loaded(value: object) -> str:
 
 
 def assign_rows_to_text(connection: sqlite3.Connection, program: str) -> None:
-    """Move rows that an older version stored by name to the text that was proved then, if it is known."""
+    """Assign rows that an older version stored by name to the text that was proved then, if it is known."""
     row = connection.execute(
         "SELECT sha256 FROM program_versions JOIN programs ON program = programs.id"
         " WHERE name = ?1 AND saved <= coalesce((SELECT proved FROM runs WHERE program = ?1), '')"

@@ -1,8 +1,9 @@
-"""Checksums of database rows, so that TurnDesk does not use rows that have been damaged on the disk.
+"""Checksums of database rows, which prevent TurnDesk from using rows that were damaged on disk.
 
 Offsets, settings, part counts, tool lives and jobs have checksums. Entries of the histories also have
-checksums, because an undo uses their values, and so do events and program versions. Triggers of each writing
-connection update the checksums, so no writing function can omit them. Readers compare them.
+checksums, because the undo function uses their values, and so do events and program versions. Triggers of
+each writing connection update the checksums, so no writing function can omit them. Readers compare the rows
+with the checksums.
 """
 
 from __future__ import annotations
@@ -71,11 +72,14 @@ _LEFT_OUT = {"program_versions": "text"}  # the text is long, and the row alread
 
 
 class TextBytes(bytes):
-    """A text as the bytes in the file, because a damaged text may not be valid UTF-8."""
+    """A text as the bytes in the file, which may not be valid UTF-8 if the text is damaged."""
 
 
 def calculate_checksum(table: str, values: RowValues) -> str:
-    """Return the SHA-256 of a row over all its columns in order; texts as bytes, floats with every bit."""
+    """Return the SHA-256 of a row over all its columns in order.
+
+    Texts are included as bytes, and floats with every bit.
+    """
     if table not in _WITH_BLOBS:  # a blob in another table is a text whose type is damaged
         shown = [("blob", value) if type(value) is bytes else value for value in values]
         return _digest_of((table, *shown))
@@ -90,7 +94,7 @@ _WITH_BLOBS = frozenset({"people"})
 
 
 def create_checksum_triggers(connection: sqlite3.Connection) -> None:
-    """Create triggers in this connection that update the checksum of every row it writes."""
+    """Create triggers in this connection that update the checksum of every row that the connection writes."""
     connection.create_function("row_sum", -1, _row_sum, deterministic=True)
     for table, key in CHECKSUMMED_TABLES.items():
         if not list_checksummed_columns(connection, table):
@@ -111,7 +115,10 @@ def _row_sum(table: str, *values: ColumnValue) -> str:
 
 
 def write_all_checksums(connection: sqlite3.Connection, damaged: frozenset[tuple[str, RowKey]]) -> None:
-    """Write the checksum of every row that is not in ``damaged``. The caller must be in a transaction."""
+    """Write the checksum of every row that is not in ``damaged``.
+
+    The caller must have begun a transaction.
+    """
     for table in CHECKSUMMED_TABLES:
         for key in _rows(connection, table).keys() | _sums(connection, table).keys():
             if (table, key) not in damaged:
@@ -120,7 +127,7 @@ def write_all_checksums(connection: sqlite3.Connection, damaged: frozenset[tuple
 
 
 def list_tables_with_checksums(version: int) -> frozenset[str]:
-    """Return the tables that had checksums in a store of this version."""
+    """Return the tables that have checksums in a store of this version."""
     return frozenset(
         table for table in CHECKSUMMED_TABLES if _SINCE.get(table, FIRST_CHECKSUM_VERSION) <= version
     )
@@ -129,14 +136,14 @@ def list_tables_with_checksums(version: int) -> frozenset[str]:
 def find_all_broken_rows(
     connection: sqlite3.Connection, tables: Iterable[str] = tuple(KEY_COLUMNS)
 ) -> frozenset[tuple[str, RowKey]]:
-    """Return table and key of every row that does not match its checksum."""
+    """Return the table and the key of every row that does not match its checksum."""
     return frozenset((table, key) for table in tables for key in find_broken_rows(connection, table))
 
 
 def find_broken_rows(
     connection: sqlite3.Connection, table: str, since: int | None = None
 ) -> frozenset[RowKey]:
-    """Return the keys of rows that do not match their checksums, including rows that have disappeared.
+    """Return the keys of rows that do not match their checksums, including rows that no longer exist.
 
     ``since`` limits the check of a history to the entries from this key on.
     """
@@ -156,7 +163,7 @@ def read_intact_rows(connection: sqlite3.Connection, table: str) -> dict[RowKey,
 
 
 def read_intact_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValues | None:
-    """Return a row that matches its checksum, with texts as bytes; None if it is missing or damaged."""
+    """Return a row that matches its checksum, with texts as bytes, or None if it is missing or damaged."""
     found = read_row(connection, table, key)
     if found is None or read_saved_checksum(connection, table, key) != calculate_checksum(table, found):
         return None
@@ -164,9 +171,10 @@ def read_intact_row(connection: sqlite3.Connection, table: str, key: RowKey) -> 
 
 
 def read_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValues | None:
-    """Return the columns of a row that its checksum covers, with texts as bytes; None if the row is missing.
+    """Return the columns of a row that its checksum covers, or None if the row is missing.
 
-    The row is read without an index, because a damaged index can have wrong keys.
+    Texts are returned as bytes. The row is read without an index, because a damaged index can have wrong
+    keys.
     """
     named = ", ".join(list_checksummed_columns(connection, table))
     found = query_raw_rows(
@@ -176,13 +184,13 @@ def read_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValu
 
 
 def read_saved_checksum(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
-    """Return the saved checksum of a row; empty if the row has none."""
+    """Return the saved checksum of a row, or an empty text if the row has no checksum."""
     found = query_raw_rows(connection, "SELECT sha256 FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
     return "".join(_digest(told) for (told,) in found)
 
 
 def list_checksummed_columns(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
-    """Return the columns of a table that its checksums cover, in order; () if the table does not exist."""
+    """Return the columns of a table that its checksums cover, in order, or () if the table does not exist."""
     names = (each[1] for each in connection.execute(f"PRAGMA table_info({table})"))
     return tuple(name for name in names if name != _LEFT_OUT.get(table))
 
@@ -190,7 +198,10 @@ def list_checksummed_columns(connection: sqlite3.Connection, table: str) -> tupl
 def query_raw_rows(
     connection: sqlite3.Connection, query: str, values: tuple[ColumnValue, ...] = ()
 ) -> list[RowValues]:
-    """Run a query and return its rows with texts as bytes, because a damaged text may not be valid UTF-8."""
+    """Run a query and return its rows with texts as bytes.
+
+    A damaged text may not be valid UTF-8.
+    """
     before, connection.text_factory = connection.text_factory, TextBytes
     try:
         return connection.execute(query, values).fetchall()
@@ -204,7 +215,10 @@ def decode_values(values: Iterable[ColumnValue]) -> list[int | float | str | Non
 
 
 def is_schema_intact(connection: sqlite3.Connection) -> bool:
-    """Return whether tables and indexes are as created, including column bounds and defaults."""
+    """Return whether tables and indexes are unchanged since their creation.
+
+    Column limits and defaults are included.
+    """
     return read_saved_checksum(connection, *_SCHEMA) == calculate_schema_checksum(connection)
 
 
@@ -247,7 +261,10 @@ def _rows(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _key(value: ColumnValue) -> RowKey:
-    """Return a key as an integer or text. A damaged key becomes a text that matches no other key."""
+    """Return a key as an integer or a text.
+
+    A damaged key becomes a text that matches no other key.
+    """
     if isinstance(value, TextBytes):
         return value.decode("utf-8", "backslashreplace")
     return value if isinstance(value, int) else repr(value)
@@ -259,5 +276,8 @@ def _sums(connection: sqlite3.Connection, table: str, since: int | None = None) 
 
 
 def _digest(value: ColumnValue) -> str:
-    """Return a saved checksum as text. A damaged checksum becomes a text that matches no row."""
+    """Return a saved checksum as a text.
+
+    A damaged checksum becomes a text that matches no row.
+    """
     return value.decode("ascii", "replace") if isinstance(value, bytes) else str(value)

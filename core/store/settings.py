@@ -1,4 +1,4 @@
-"""Settings of the store: values that JSON can represent, by key."""
+"""Settings of the store, which are values that JSON can represent, by key."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ if TYPE_CHECKING:
 
 
 def read_setting(connection: sqlite3.Connection, key: str) -> object:
-    """Return the value stored under ``key``; None if it is not set or does not match its checksum."""
+    """Return the value that is stored under ``key``.
+
+    The result is None if the value is not set or does not match its checksum.
+    """
     row = row_checksums.read_intact_row(connection, "settings", key)
     return json.loads(str(row_checksums.decode_values(row)[1])) if row else None
 
 
 def save_setting(connection: sqlite3.Connection, key: str, value: object) -> None:
-    """Store a value under ``key``; None deletes the key.
+    """Store a value under ``key``, or delete the key if the value is None.
 
     Raises StoreError if JSON cannot represent the value.
     """
@@ -37,7 +40,10 @@ def save_setting(connection: sqlite3.Connection, key: str, value: object) -> Non
 
 
 def encode_setting(key: str, value: object) -> str:
-    """Return a value as JSON. Raises StoreError that names ``key`` if JSON cannot represent the value."""
+    """Return a value as JSON.
+
+    Raises StoreError, with ``key`` in the message, if JSON cannot represent the value.
+    """
     try:
         return json.dumps(value, allow_nan=False)
     except (TypeError, ValueError) as error:
@@ -53,11 +59,11 @@ class Settings:
         self._store = store
 
     def read_setting(self, key: str) -> object:
-        """Return the value stored under ``key``; None if it is not set."""
+        """Return the value that is stored under ``key``, or None if it is not set."""
         return self._store.run_query(read_setting, key)
 
     def save_setting(self, key: str, value: object) -> Future[None]:
-        """Store a value under ``key``; None deletes the key.
+        """Store a value under ``key``, or delete the key if the value is None.
 
         Raises StoreError if JSON cannot represent the value.
         """

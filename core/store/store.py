@@ -1,4 +1,4 @@
-"""The data store: one SQLite file, read from any thread and written by its own thread."""
+"""The data store: one SQLite file, which any thread can read and a separate thread writes."""
 
 from __future__ import annotations
 
@@ -40,8 +40,8 @@ P = ParamSpec("P")
 class Store:
     """An open store with its repositories, one for each subject.
 
-    ``open`` creates a store. Methods can be called from any thread. ``repair_messages`` has a message for
-    each damaged row that was restored when the store was opened.
+    Use ``open`` to get a store. Methods can be called from any thread. ``repair_messages`` contains a
+    message for each damaged row that was restored when the store was opened.
     """
 
     def __init__(self, opened: OpenedStore) -> None:
@@ -63,18 +63,19 @@ class Store:
 
     @classmethod
     def open(cls, folder: Path, *, read_only: bool = False) -> Store:
-        """Open the store in ``folder``; create it if it does not exist.
+        """Open the store in ``folder``, and create it if it does not exist.
 
-        A read-only store can be opened while another process writes it. It is empty if the file does not
-        exist. Raises StoreError if another process has the store open for writing, or if the file is damaged,
-        from another program or of a newer version. Such a file is not changed.
+        A read-only store can be opened while another process writes to it. It is empty if the file does not
+        exist. Raises StoreError if another process has the store open for writing, or if the file is
+        damaged, from another program or of a newer version. Such a file is not changed.
         """
         return cls(open_read_only(folder) if read_only else open_for_writing(folder))
 
     def close(self) -> None:
-        """Write all queued changes, then release the store. Calling it again has no effect.
+        """Write all queued changes, and then release the store.
 
-        If the disk does not respond, the store remains open: its lock and connections end with the process.
+        Further calls have no effect. If the disk does not respond, the store remains open; its lock and
+        connections end with the process.
         """
         if self._writer and not self._writer.close():
             return
@@ -91,20 +92,20 @@ class Store:
 
     @property
     def trouble(self) -> str:
-        """Reason why the last write failed; empty if it succeeded."""
+        """Return the reason why the last write failed, or an empty text if it succeeded."""
         return self._writer.last_error if self._writer else ""
 
     @property
     def pending_entries(self) -> PendingEntries | None:
-        """Entries that wait in memory for the disk; None if there are none."""
+        """Return the entries that have not been written to disk yet, or None if all entries are on disk."""
         return self._writer.pending_entries if self._writer else None
 
     @contextmanager
     def read(self) -> Iterator[sqlite3.Connection]:
-        """Open a read transaction for one thread at a time and yield its connection.
+        """Open a read transaction for one thread at a time, and yield its connection.
 
-        A single transaction is necessary because a change saved between reading a row and reading its
-        checksum would make the row look damaged. Raises StoreError for SQLite errors.
+        A single transaction is necessary because a change that is saved between reading a row and reading
+        its checksum would make the row appear damaged. Raises StoreError for SQLite errors.
         """
         with self._reading:
             try:
@@ -122,7 +123,10 @@ class Store:
     def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
-        """Return the result of ``function``, called with the connection for reading and these arguments."""
+        """Call ``function`` with the connection for reading, and return its result.
+
+        The given arguments are also passed to the function.
+        """
         with self.read() as connection:
             return function(connection, *args, **named)
 
@@ -139,17 +143,17 @@ class Store:
     def write(self, operation: Operation[T]) -> Future[T]:
         """Run ``operation`` in its own transaction on the writer's thread.
 
-        The future returns the result of ``operation`` when the change is on the disk. It raises StoreError if
-        the change is rejected or fails; the store is then unchanged. Raises StoreError immediately for a
-        read-only store.
+        The future returns the result of ``operation`` when the change is on disk. The future raises
+        StoreError if the change is rejected or fails; the store is then unchanged. This method raises
+        StoreError immediately for a read-only store.
         """
         return self._open_writer().queue_operation(operation)
 
     def keep(self, add_entry: EntryWriter) -> Future[None]:
         """Store an entry that must not be lost.
 
-        If the disk is full, the entry waits in memory (``pending_entries``) and is written when the disk has
-        space. The future raises StoreError while the entry waits. Raises StoreError immediately for a
+        If the disk is full, the entry remains in memory (``pending_entries``) and is written when the disk
+        has space. Meanwhile, the future raises StoreError. This method raises StoreError immediately for a
         read-only store.
         """
         return self._open_writer().queue_entry(add_entry)
@@ -162,13 +166,13 @@ class Store:
         return self._writer
 
     def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""
+        """Store an operation as ``keep`` does, replacing a pending operation with the same ``key``."""
         return self.keep(lambda unwritten: unwritten.replace_operation(key, operation))
 
 
 @contextmanager
 def _read_transaction(connection: sqlite3.Connection) -> Iterator[sqlite3.Connection]:
-    """Open a read-only transaction, which neither waits for a writer nor blocks one."""
+    """Open a read-only transaction, which does not wait for a writer and does not block a writer."""
     connection.execute("BEGIN")
     try:
         yield connection
@@ -184,9 +188,9 @@ def _writer(connection: sqlite3.Connection, path: Path) -> StoreWriter:
 
 
 def _repair_damage(connection: sqlite3.Connection, repair_messages: tuple[str, ...]) -> tuple[str, ...]:
-    """Repair damaged rows, log the repairs and return their messages.
+    """Repair damaged rows, log the repairs, and return the repair messages.
 
-    If the disk cannot be written, the repair is left for the next start.
+    If the disk cannot be written, the repair is done at the next start.
     """
     try:
         connection.execute("BEGIN IMMEDIATE")

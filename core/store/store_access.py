@@ -1,4 +1,4 @@
-"""Interface through which the repositories access an open store."""
+"""The interface through which the repositories access an open store."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Operation = Callable[[sqlite3.Connection], T]
 
 @dataclass(frozen=True, slots=True)
 class PendingEntries:
-    """The numbers of entries that wait in memory for the disk, and the reason (``reason``)."""
+    """The numbers of entries that have not been written to disk yet, and the reason for the delay."""
 
     reason: str
     event_count: int = 0
@@ -33,7 +33,7 @@ class PendingEntries:
 
     @property
     def description(self) -> str:
-        """Description of the entries that would be lost if TurnDesk ended now."""
+        """Return a description of the entries that would be lost if TurnDesk ended now."""
         counts = ((self.part_count, "part"), (self.event_count, "event"), (self.other_count, "other entry"))
         found = [
             Message("{count} {name}", count=count, name=_many(name, count)) for count, name in counts if count
@@ -48,10 +48,13 @@ def _many(name: str, count: int) -> str:
 
 
 class WaitingEntries(Protocol):
-    """Entries that wait in memory for the disk. ``program`` is a record key or a program name."""
+    """Entries that are in memory until they can be written to disk.
+
+    ``program`` is a record key or a program name.
+    """
 
     def add_event(self, row: EventRow) -> None:
-        """Add an event."""
+        """Add an event to the entries."""
 
     def add_parts(self, program: str, count: int) -> None:
         """Add parts to a part count, or subtract them if ``count`` is negative."""
@@ -63,7 +66,7 @@ class WaitingEntries(Protocol):
         """Add a complete cycle and its time in seconds."""
 
     def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
-        """Add an operation that replaces a waiting operation with the same name."""
+        """Add an operation, replacing a pending operation with the same name."""
 
 
 EntryWriter = Callable[[WaitingEntries], None]
@@ -73,30 +76,40 @@ class StoreAccess(Protocol):
     """Access to one open store for reading and writing, from any thread.
 
     Reads return immediately. They raise StoreError for a closed or damaged store. Writes return a future,
-    whose result is available when the change is on the disk. The future raises StoreError if the store
-    rejects the change. Writes raise StoreError immediately for a store that is closed or open read-only.
+    whose result is available when the change is on disk. The future raises StoreError if the store rejects
+    the change. Writes raise StoreError immediately for a store that is closed or open read-only.
     """
 
     @property
     def pending_entries(self) -> PendingEntries | None:
-        """Entries that wait in memory for the disk; None if there are none."""
+        """Return the entries that have not been written to disk yet, or None if all entries are on disk."""
 
     def read(self) -> AbstractContextManager[sqlite3.Connection]:
-        """Open a read transaction for one thread at a time and return its connection as a context manager."""
+        """Open a read transaction for one thread at a time.
+
+        The connection is returned as a context manager.
+        """
 
     def run_query(
         self, function: Callable[Concatenate[sqlite3.Connection, P], T], *args: P.args, **named: P.kwargs
     ) -> T:
-        """Return the result of ``function``, called with the connection for reading and these arguments."""
+        """Call ``function`` with the connection for reading, and return its result.
+
+        The given arguments are also passed to the function.
+        """
 
     def write(self, operation: Operation[T]) -> Future[T]:
-        """Run ``operation`` in its own transaction. If it fails, the change is dropped."""
+        """Run ``operation`` in its own transaction.
+
+        If the operation fails, its change is rolled back.
+        """
 
     def keep(self, add_entry: EntryWriter) -> Future[None]:
-        """Store an entry that must not be lost. On a full disk it is written when space is available again.
+        """Store an entry that must not be lost.
 
-        The future raises StoreError while the entry waits in memory.
+        If the disk is full, the entry is written when space is available again. The future raises
+        StoreError while the entry is only in memory.
         """
 
     def store_latest_durably(self, key: tuple[str, str], operation: Operation[object]) -> Future[None]:
-        """Store an operation as ``keep`` does, replacing a waiting operation with the same ``key``."""
+        """Store an operation as ``keep`` does, replacing a pending operation with the same ``key``."""

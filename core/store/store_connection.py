@@ -1,4 +1,4 @@
-"""Connections to the store file, and the lock of the one process that writes it."""
+"""Connections to the store file, and the lock of the only process that may write it."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ _UNWRITABLE_CAUSES = frozenset({StoreErrorCause.FULL, StoreErrorCause.FORBIDDEN}
 
 
 def connect_store(path: Path, *, read_only: bool) -> sqlite3.Connection:
-    """Open a connection to the store, in which the caller begins transactions explicitly.
+    """Open a connection to the store; the caller begins transactions explicitly.
 
-    Reading needs a little disk space next to the file for SQLite's index. If the disk has no space and the
-    store has no log, the file is opened as immutable. Raises StoreError if the file cannot be opened.
+    Reading needs a little disk space in the folder of the file for SQLite's index. If the disk has no space
+    and the store has no log, the file is opened as immutable. Raises StoreError if the file cannot be
+    opened.
     """
     try:
         return _connection(path, "mode=ro" if read_only else "mode=rw")
@@ -58,7 +59,7 @@ def _connection(path: Path, how: str) -> sqlite3.Connection:
 
 
 def _damaged() -> sqlite3.DatabaseError:
-    """Return the error that SQLite raises for a file whose schema cannot be read."""
+    """Return the error that SQLite raises for a file with a schema that cannot be read."""
     error = sqlite3.DatabaseError("malformed database schema")
     error.sqlite_errorcode = sqlite3.SQLITE_CORRUPT
     return error
@@ -70,17 +71,14 @@ def has_write_ahead_log(path: Path) -> bool:
 
 
 def configure_connection(connection: sqlite3.Connection) -> sqlite3.Connection:
-    """Set a connection to sync every commit to the disk and to enforce foreign keys.
-
-    Returns the connection.
-    """
+    """Set a connection to sync every commit and to enforce foreign keys, and return the connection."""
     connection.execute("PRAGMA synchronous = FULL")
     connection.execute("PRAGMA foreign_keys = ON")
     return connection
 
 
 def read_store_version(connection: sqlite3.Connection) -> int:
-    """Return the number of the store's last migration; 0 for an empty database."""
+    """Return the number of the store's last migration, or 0 for an empty database."""
     return int(connection.execute("PRAGMA user_version").fetchone()[0])
 
 
@@ -96,8 +94,9 @@ def get_log_and_index_paths(path: Path) -> tuple[Path, Path]:
 class WriterLock:
     """The advisory lock file of the store, locked from construction until ``close``.
 
-    A lock that another process has for an instant, to read its owner, is tried again for 0.1 s. ``pause``
-    waits between two attempts, in seconds. Raises StoreError if the store is already locked.
+    If another process briefly has the lock in order to read the owner of the store, locking is retried for
+    0.1 s. ``pause`` waits between two attempts, for a time in seconds. Raises StoreError if the store is
+    already locked.
     """
 
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
@@ -130,7 +129,10 @@ class WriterLock:
             os.write(self._file, f"{os.getpid()}\n".encode("ascii"))
 
     def _lock_file(self, pause: Callable[[float], object]) -> None:
-        """Lock the file. Raises OSError if the lock remains unavailable."""
+        """Lock the file, with several attempts.
+
+        Raises OSError if the lock remains unavailable.
+        """
         for _ in range(_TRIES):
             with suppress(OSError):
                 lock_file(self._file)
@@ -139,11 +141,14 @@ class WriterLock:
         lock_file(self._file)
 
     def mark_file_open(self) -> None:
-        """Record that SQLite now has the store file open in this process."""
+        """Record that SQLite now has the store file open for writing in this process."""
         FOLDERS_OPEN_FOR_WRITING.add(self._folder)
 
     def close(self) -> None:
-        """Release the store. Calling it again has no effect."""
+        """Release the store.
+
+        Further calls have no effect.
+        """
         if self._file >= 0:
             FOLDERS_OPEN_FOR_WRITING.discard(self._folder)
             os.close(self._file)

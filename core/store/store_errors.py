@@ -1,4 +1,4 @@
-"""Errors of the data store, with the cause found from SQLite's and the system's error codes."""
+"""Errors of the data store, with the cause that is found from the error codes of SQLite and the system."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from core.message import CodedError, Message
 
 
 class StoreError(CodedError):
-    """The store cannot do a requested operation. The text has the reason, the file and a remedy.
+    """Error raised if the store cannot perform a requested operation.
 
-    ``is_temporary`` is true if the obstacle may disappear without intervention, such as a full disk or
-    another program's lock.
+    The text contains the reason, the file and a remedy. ``is_temporary`` is True if the obstacle may
+    disappear without intervention, such as a full disk or another program's lock.
     """
 
     is_temporary = False
@@ -27,7 +27,7 @@ _FORBIDDEN = frozenset({errno.EACCES, errno.EPERM, errno.EROFS})
 
 
 class StoreErrorCause(Enum):
-    """Cause of a store error; the value is the template of the message."""
+    """The cause of a store error; its value is the template of the message."""
 
     FULL = "the disk is full, so nothing more can be written to {path}; free up space on that disk"
     LOCKED = "{path} is locked by another program; close that program, then try again"
@@ -45,11 +45,11 @@ class StoreErrorCause(Enum):
 
     @property
     def error_code(self) -> str:
-        """Code of the error."""
+        """Return the code of the error, such as ``disk-full``."""
         return _CODES[self]
 
     def make_error(self, path: Path, error: object) -> StoreError:
-        """Return the StoreError with this cause for the file ``path``."""
+        """Return a StoreError with this cause for the file ``path``."""
         made = StoreError(Message(self.value, path=path, error=" ".join(str(error).split())), self.error_code)
         made.is_temporary = self in {StoreErrorCause.FULL, StoreErrorCause.LOCKED}
         return made
@@ -85,7 +85,7 @@ _DAMAGED_WORDS = ("Could not decode to UTF-8", "unsupported file format")
 
 
 def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
-    """Return the cause of an error from SQLite or the system.
+    """Return the cause of an error that SQLite or the system reported.
 
     If SQLite's code is ambiguous, a trial file is written to the folder to find the system's error.
     """
@@ -106,7 +106,7 @@ def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
 
 
 def why(path: Path, error: sqlite3.Error | OSError) -> StoreError:
-    """Return the StoreError for an error with the store in ``path``."""
+    """Return a StoreError for an error with the store in ``path``."""
     return find_cause(path, error).make_error(path, get_system_error_text(error))
 
 
@@ -116,7 +116,10 @@ def get_system_error_text(error: Exception) -> str:
 
 
 def _trial(folder: Path) -> OSError | None:
-    """Write a temporary file to ``folder`` and return the system's error, which SQLite does not report."""
+    """Write a temporary file to ``folder`` and return the system's error, or None if the write succeeds.
+
+    SQLite does not report the system's error.
+    """
     from tempfile import TemporaryFile  # noqa: PLC0415  rarely wanted, and slow to load
 
     try:

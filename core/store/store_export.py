@@ -1,4 +1,4 @@
-"""Export of the store to plain text files in inches, for reading, moving or another control."""
+"""Export of the store to plain text files in inches, for reading or for transfer to another control."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _LARGEST = 64 * BYTES_PER_MB  # limit for one table or program
 
 
 def export_store(store: Store, folder: Path) -> int:
-    """Write the newest version of every program and the other data; return the number of programs.
+    """Write the newest version of every program and the other data, and return the number of programs.
 
     The folder appears only when it is complete. Raises StoreError if the folder exists and is not empty, or
     cannot be written.
@@ -94,7 +94,10 @@ def _write_all(store: Store, folder: Path) -> int:
 
 
 def _file_name(name: object) -> str:
-    """Return a program's file name. Raises StoreError if the name is invalid or leads out of the folder."""
+    """Return the file name of a program.
+
+    Raises StoreError if the name is invalid or leads outside the folder.
+    """
     if isinstance(name, str) and name and Path(name).name == name and "\0" not in name:
         return name
     raise StoreError(
@@ -123,7 +126,7 @@ def _offset_lines(store: Store) -> Iterator[str]:
 
 
 def _key(number: int) -> str:
-    """Return the TOML key of a tool, such as 3, or of a further cutting edge, such as 3.d2."""
+    """Return the TOML key of a tool, such as 3, or of an additional cutting edge, such as 3.d2."""
     return (
         f"{number}"
         if number == get_tool_number(number)
@@ -137,7 +140,7 @@ def _entry_lines(kind: OffsetKind, row: OffsetRow) -> Iterator[str]:
 
 
 def _toml(field: RowField, value: FieldValue) -> str:
-    """Return an offset's value in TOML syntax, lengths in inches."""
+    """Return an offset value in TOML syntax, with lengths in inches."""
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False)
     if isinstance(value, bool):
@@ -146,13 +149,13 @@ def _toml(field: RowField, value: FieldValue) -> str:
 
 
 def _run_columns() -> Iterator[str]:
-    """Yield the columns of the run table, with ``_s`` appended to times in seconds."""
+    """Yield the column names of the run table, with the suffix ``_s`` for times in seconds."""
     for name in RunRow._fields:
         yield f"{name}_s" if name in {"best", "latest", "planned"} else name
 
 
 def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
-    """Write a CSV file for spreadsheets; unknown values are empty cells."""
+    """Write a CSV file for spreadsheets, with empty cells for unknown values."""
     with path.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
         table.writerow(head)
@@ -160,9 +163,9 @@ def _write_table(path: Path, head: Iterable[str], rows: Iterable[Iterable[object
 
 
 def read_exported_mill_rows(folder: Path) -> dict[OffsetKind, dict[int, dict[str, FieldValue]]]:
-    """Return tools and presets of a mill from an exported folder, by number; missing fields are omitted.
+    """Return the tools and presets of a mill from an exported folder, by number.
 
-    Raises StoreError if a table cannot be read.
+    Missing fields are omitted. Raises StoreError if a table cannot be read.
     """
     return {kind: _rows(folder / MILL_FILE_NAMES[kind], kind) for kind in MILL_FILE_NAMES}
 
@@ -184,7 +187,7 @@ def _rows(path: Path, kind: OffsetKind) -> dict[int, dict[str, FieldValue]]:
 def _numbered(
     path: Path, line: int, row: dict[str, str], kind: OffsetKind
 ) -> tuple[int, dict[str, FieldValue]]:
-    """Return the number and values of one row.
+    """Return the number and the values of one row.
 
     Raises StoreError with the line number if the row is invalid.
     """
@@ -234,7 +237,7 @@ def import_programs_and_offsets(
     offsets: Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]],
     reason: ChangeReason,
 ) -> None:
-    """Save programs by name and rows of offsets by number, within the caller's transaction.
+    """Save programs by name and offset rows by number, within the caller's transaction.
 
     Raises StoreError if a name is invalid, or if a number or value is out of range.
     """

@@ -1,4 +1,4 @@
-"""File name of the store, and the keys of the settings stored for each program."""
+"""The file name of the store, and the keys of the settings that are stored for each program."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ STORE_FILE_NAME = "turndesk.db"
 
 
 def has_store(folder: Path) -> bool:
-    """Return whether a file of the store's name exists, even if it cannot be read.
+    """Return whether a file with the name of the store exists, even if it cannot be read.
 
-    The result is also True for a pipe, for a link whose disk is not mounted, and for a folder that is such a
-    link or is closed to this user. The error is reported when the store is read.
+    The result is also True for a pipe, for a link to a disk that is not mounted, and if the folder is such
+    a link or this user has no permission for it. The error is reported when the store is read.
     """
     try:
         os.lstat(folder / STORE_FILE_NAME)
@@ -24,25 +24,25 @@ def has_store(folder: Path) -> bool:
 
 
 def resolve_link(path: Path) -> Path:
-    """Return the target of a link; ``path`` itself if it is not a link."""
+    """Return the target of a link, or ``path`` itself if it is not a link."""
     return path.resolve() if path.is_symlink() else path
 
 
 def make_stock_setting_key(program: str) -> str:
-    """Return the key of the setting with the stock of a program."""
+    """Return the key of the setting that contains the stock of a program."""
     return f"stock:{program}"
 
 
 def make_notes_setting_key(program: str) -> str:
-    """Return the key of the setting with the setup notes of a program."""
+    """Return the key of the setting that contains the setup notes of a program."""
     return f"notes:{program}"
 
 
 def make_loaded_text_key(program: str) -> str:
-    """Return the key of the setting that specifies which text was last loaded under this name."""
+    """Return the key of the setting that specifies which text was last loaded under a program name."""
     return f"text:{program}"
 
 
 def make_part_setting_key(program: str) -> str:
-    """Return the key of the setting with a program's stick-out and silenced checks."""
+    """Return the key of the setting that contains the stick-out and the silenced checks of a program."""
     return f"part:{program}"

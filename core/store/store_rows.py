@@ -1,4 +1,4 @@
-"""Row types of the store and the fields of an offset.
+"""The row types of the store, and the fields of an offset.
 
 Lengths are in mm with X as a radius. Times are UTC in ISO 8601 format.
 """
@@ -44,7 +44,7 @@ FieldValue = float | int | str | bool
 
 
 class FieldType(StrEnum):
-    """Type and unit of a field's value."""
+    """The type and the unit of a field's value."""
 
     LENGTH = "length"  # stored in mm, entered and shown in inches
     METRIC_LENGTH = "millimetres"
@@ -60,10 +60,11 @@ _UNITS = {FieldType.METRIC_LENGTH: "mm", FieldType.ANGLE: "degrees", FieldType.M
 
 @dataclass(frozen=True, slots=True)
 class RowField:
-    """Name, limits and type of one field of a row.
+    """The name, the limits and the type of one field of a row.
 
-    ``minimum`` and ``maximum`` are in mm for a length and numbers of characters for a text. A field is
-    declared as the annotation of a row's attribute, whose name commands and files use.
+    ``minimum`` and ``maximum`` are in mm for a length, and numbers of characters for a text. A field is
+    declared as the annotation of an attribute of the row. Commands and files use the name of this
+    attribute.
     """
 
     label: str  # the name used in messages
@@ -76,7 +77,7 @@ class RowField:
 
     @property
     def range_text(self) -> str:
-        """Accepted range as text, in the unit in which the value is entered."""
+        """Return the accepted range as a text, in the unit in which the value is entered."""
         if self.choices:
             return ", ".join(self.choices)
         if self.field_type is FieldType.LENGTH:
@@ -97,7 +98,10 @@ class RowField:
         return f"{self.minimum:g}…{self.maximum:g}"
 
     def accepts(self, value: object) -> bool:
-        """Return whether the store accepts this value. NaN is never accepted."""
+        """Return whether the store accepts a value.
+
+        NaN is never accepted.
+        """
         if self.choices:
             return value in self.choices
         if isinstance(value, str):
@@ -117,16 +121,19 @@ class RowField:
 
 
 def read_row_fields(row: type) -> Mapping[str, RowField]:
-    """Return the fields of a row type by name, in order, read from its annotations."""
+    """Return the fields of a row type by name, in order.
+
+    The fields are read from the annotations of the row type.
+    """
     fields = {name: get_args(hint)[1] for name, hint in get_type_hints(row, include_extras=True).items()}
     return {name: replace(field, name=name, column=field.column or name) for name, field in fields.items()}
 
 
 class OffsetKind(StrEnum):
-    """Kinds of offset tables.
+    """The kinds of offset tables.
 
-    A lathe has T, D, zero offsets G54 to G59 and tool shapes. A mill has tools and presets of the workpiece
-    zero.
+    A lathe has tool offsets T, secondary offsets D, zero offsets G54 to G59 and tool shapes. A mill has
+    tools and presets of the workpiece zero.
     """
 
     TOOL = "tool"
@@ -146,10 +153,10 @@ def _size(word: str) -> RowField:
 
 
 class ToolRow(NamedTuple):
-    """A tool offset: the machine position with the tip at part zero when touched off, and the wear since.
+    """A tool offset: the machine position of the tip at part zero at touch-off, and the wear since then.
 
-    Lengths are in mm, X as a radius. ``quadrant`` is the direction of the tip from the nose center, 0 to 9.
-    At most one tool is the master tool.
+    Lengths are in mm, with X as a radius. ``quadrant`` is the direction of the tip from the nose center, 0
+    to 9. At most one tool is the master tool.
     """
 
     x: Annotated[float, _reach("X", TOOL_OFFSET_LIMIT_MM)] = 0.0
@@ -163,12 +170,12 @@ class ToolRow(NamedTuple):
 
     @property
     def offset(self) -> tuple[float, float]:
-        """Geometry plus wear in X and Z, in mm, X as a radius."""
+        """Return the geometry plus the wear in X and Z, in mm, with X as a radius."""
         return self.x + self.wear_x, self.z + self.wear_z
 
 
 class SecondaryRow(NamedTuple):
-    """A secondary offset (D) in mm, X as a radius; ``r`` is the nose radius."""
+    """A secondary offset (D) in mm, with X as a radius; ``r`` is the nose radius."""
 
     x: Annotated[float, _reach("X", SECONDARY_OFFSET_LIMIT_MM)] = 0.0
     z: Annotated[float, _reach("Z", SECONDARY_OFFSET_LIMIT_MM)] = 0.0
@@ -176,7 +183,7 @@ class SecondaryRow(NamedTuple):
 
 
 class ZeroRow(NamedTuple):
-    """A zero offset: the machine position of program zero, in mm and degrees, X as a radius."""
+    """A zero offset: the machine position of program zero, in mm and degrees, with X as a radius."""
 
     x: Annotated[float, _reach("X", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
     z: Annotated[float, _reach("Z", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
@@ -184,12 +191,12 @@ class ZeroRow(NamedTuple):
 
 
 class ShapeRow(NamedTuple):
-    """Shape of a tool, in mm and degrees; 0 or empty means not specified.
+    """The shape of a tool, in mm and degrees, in which 0 or an empty text means not specified.
 
     The nose radius and the tip quadrant are in the tool offset. ``length`` is the cutting length,
-    ``stick_out`` the distance from the holder to the tip, and ``entry`` the entering angle of the main
-    cutting edge. ``rear`` means that the tool works at negative X. ``profile`` is an outline, ``z,x z,x z,x``
-    in mm.
+    ``stick_out`` is the distance from the holder to the tip, and ``entry`` is the entering angle of the
+    main cutting edge. ``rear`` means that the tool works at negative X. ``profile`` is an outline ``z,x z,x
+    z,x`` in mm.
     """
 
     kind: Annotated[str, RowField("kind", field_type=FieldType.TEXT, choices=TOOL_KINDS)] = ""
@@ -211,7 +218,7 @@ class ShapeRow(NamedTuple):
 
 
 class MillRow(NamedTuple):
-    """A tool of a mill: length L, radius R and corner radius R2, with their oversizes, in mm.
+    """A tool of a mill: length L, radius R and corner radius R2 with their oversizes, in mm.
 
     ``life`` is the tool life in minutes. ``stops`` prevents the start of another part when the tool life is
     used up.
@@ -231,9 +238,9 @@ class MillRow(NamedTuple):
 
 
 class PresetRow(NamedTuple):
-    """Machine position of the workpiece zero in mm, and the basic rotation in degrees.
+    """The machine position of the workpiece zero in mm, and the basic rotation in degrees.
 
-    ``a``, ``b`` and ``c`` are the positions at which the rotary axes show 0, in degrees.
+    ``a``, ``b`` and ``c`` are the positions in degrees at which the rotary axes display 0.
     """
 
     x: Annotated[float, _reach("X", ZERO_OFFSET_LIMIT_MM, FieldType.METRIC_LENGTH)] = 0.0
@@ -260,13 +267,19 @@ RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known onl
 
 
 def replace_fields(row: R, values: Mapping[str, FieldValue]) -> R:
-    """Return the row with these fields replaced. Raises ValueError for an unknown field name."""
+    """Return the row with the given fields replaced.
+
+    Raises ValueError for an unknown field name.
+    """
     named: dict[str, Any] = dict(values)  # the fields have different types
     return row._replace(**named)
 
 
 class OffsetChange(NamedTuple):
-    """A change of one offset: the row before and after, None if it was not set. Ids increase with time."""
+    """A change of one offset, with the row before and after the change.
+
+    A row is None if the offset was not set. IDs increase with time.
+    """
 
     id: int
     step: int
@@ -281,7 +294,7 @@ class OffsetChange(NamedTuple):
 
 
 class ProgramRow(NamedTuple):
-    """The name of a program, with its newest version."""
+    """The name of a program and its newest version."""
 
     name: str
     created: str
@@ -301,7 +314,7 @@ class VersionRow(NamedTuple):
 
 
 class EventOrigin(NamedTuple):
-    """Identity of the control process that reported an event, and the number of the event there."""
+    """The identity of the control process that reported an event, and the event's number in that process."""
 
     control: str
     number: int
@@ -323,10 +336,10 @@ class EventRow(NamedTuple):
 
 
 class RunRow(NamedTuple):
-    """The run record of a program: part count, last run and its outcome, and cycles, with times in seconds.
+    """The run record of a program: part count, last run with its outcome, and cycles.
 
-    ``proof`` is the result of the last proof and ``planned`` its calculated cycle time. None means that no
-    value exists yet.
+    Times are in seconds. ``proof`` is the result of the last proof, and ``planned`` is its calculated cycle
+    time. None means that no value exists yet.
     """
 
     program: str
@@ -342,15 +355,19 @@ class RunRow(NamedTuple):
 
 
 def convert_to_inches(mm: float) -> float:
-    """Return mm as inches, rounded to ten decimals so that a value entered in inches is shown unchanged."""
+    """Return a length in mm converted to inches.
+
+    The result is rounded to ten decimals, so that a value that was entered in inches is displayed
+    unchanged.
+    """
     return round(mm / MM_PER_INCH, 10)
 
 
 def get_utc_now_text() -> str:
-    """Return the present time as UTC text, to the millisecond."""
+    """Return the present time as a UTC text with milliseconds."""
     return format_utc(datetime.now(UTC))
 
 
 def format_utc(moment: datetime) -> str:
-    """Return a time as UTC text in the stored format, which sorts in chronological order."""
+    """Return a time as a UTC text in the stored format, whose alphabetical order is chronological."""
     return moment.astimezone(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")

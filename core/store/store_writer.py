@@ -29,7 +29,7 @@ MAX_PENDING_EVENTS = 20_000
 
 
 class _Parts(NamedTuple):
-    """Pending change of a program's part count: an optional reset, then the parts to add."""
+    """A pending change of a program's part count: an optional reset, followed by the parts to add."""
 
     reset: bool = False
     more: int = 0
@@ -37,7 +37,7 @@ class _Parts(NamedTuple):
 
 
 class _Cycles(NamedTuple):
-    """Pending complete cycles of a program, with their times in seconds."""
+    """The pending complete cycles of a program, with their times in seconds."""
 
     cycle_count: int
     best: float
@@ -45,10 +45,10 @@ class _Cycles(NamedTuple):
 
 
 class UnwrittenEntries:
-    """Entries that are not on the disk yet; used only by the writer's thread.
+    """Entries that have not been written to disk yet; only the writer's thread uses them.
 
-    All entries are written in one transaction. Part counts are added up and only the last value of a setting
-    is stored, so the memory used does not grow with time.
+    All entries are written in one transaction. Part counts are added up and only the last value of a
+    setting is stored, so the memory use does not grow with time.
     """
 
     def __init__(self) -> None:
@@ -62,7 +62,7 @@ class UnwrittenEntries:
         return bool(self._events or self._parts or self._cycles or self._latest or self._dropped)
 
     def add_event(self, row: EventRow) -> None:
-        """Add an event; drop the oldest event if there are too many."""
+        """Add an event, and drop the oldest event if there are too many."""
         if len(self._events) >= MAX_PENDING_EVENTS:
             self._events.popleft()
             self._dropped += 1
@@ -83,12 +83,12 @@ class UnwrittenEntries:
         self._cycles[program] = _Cycles(before.cycle_count + 1, min(before.best, seconds), seconds)
 
     def replace_operation(self, name: tuple[str, str], operation: Operation[object]) -> None:
-        """Add an operation that replaces a waiting operation with the same name."""
+        """Add an operation, replacing a pending operation with the same name."""
         self._latest.pop(name, None)  # moves the operation to the end, so that it is written last
         self._latest[name] = operation
 
     def count_entries(self, reason: str) -> PendingEntries:
-        """Return the numbers of the waiting entries, with the reason ``why`` they wait."""
+        """Return the numbers of the pending entries, with the reason ``reason`` for the delay."""
         parts = sum(abs(each.more) for each in self._parts.values())
         others = len(self._latest) + len(self._cycles) + sum(each.reset for each in self._parts.values())
         counts = {program: (each.reset, each.more) for program, each in self._parts.items()}
@@ -108,7 +108,7 @@ class UnwrittenEntries:
         event_log.add_events(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
 
     def clear(self) -> None:
-        """Remove all entries, because they are on the disk."""
+        """Remove all entries after they have been written to disk."""
         self._events.clear()
         self._dropped = 0
         self._parts.clear()
@@ -124,7 +124,7 @@ class UnwrittenEntries:
 
 
 def _done(operation: Operation[object], connection: sqlite3.Connection) -> str:
-    """Run an operation and return the reason if the store can never accept it, otherwise an empty text.
+    """Run an operation, and return the reason if the store can never accept it, otherwise an empty text.
 
     A temporary disk error is raised, so that all entries are tried again later.
     """
@@ -162,10 +162,10 @@ RETRY_INTERVAL_S = 2.0  # s until a failed write is tried again
 class StoreWriter:
     """A thread that runs operations one after the other, each in its own transaction.
 
-    The future of ``queue_operation`` is done when its transaction is on the disk. It raises StoreError if
-    the operation fails; the store is then unchanged. An entry given to ``queue_entry`` that the disk does
-    not accept remains in memory and is written later. A disk that hangs reports no error, so the age of the
-    oldest unfinished change is checked. ``clock`` returns seconds.
+    The future of ``queue_operation`` is done when its transaction is on disk. The future raises StoreError
+    if the operation fails; the store is then unchanged. If the disk does not accept an entry of
+    ``queue_entry``, the entry remains in memory and is written later. A disk that hangs reports no error,
+    so the age of the oldest unfinished change is checked. ``clock`` returns a time in seconds.
     """
 
     def __init__(
@@ -186,12 +186,12 @@ class StoreWriter:
 
     @property
     def last_error(self) -> str:
-        """Reason why changes are not stored; empty if all changes are stored."""
+        """Return the reason why changes are not stored, or an empty text if all changes are stored."""
         return self._trouble or self._hanging
 
     @property
     def pending_entries(self) -> PendingEntries | None:
-        """Entries that wait in memory for the disk; None if there are none."""
+        """Return the entries that have not been written to disk yet, or None if all entries are on disk."""
         why, waiting = self._hanging, len(self._posted)
         if self._backlog is None:
             return PendingEntries(why, other_count=waiting) if why else None
@@ -201,7 +201,10 @@ class StoreWriter:
 
     @property
     def _hanging(self) -> str:
-        """Message that the disk does not respond; empty while the oldest change is younger than ``HANGS``."""
+        """Return the message that the disk does not respond.
+
+        The text is empty while the oldest change is younger than ``SLOW_WRITE_S``.
+        """
         try:
             waited = self._clock() - self._posted[0]
         except IndexError:
@@ -209,15 +212,19 @@ class StoreWriter:
         return str(StoreErrorCause.HANGS.make_error(self._path, "")) if waited > SLOW_WRITE_S else ""
 
     def queue_operation(self, operation: Operation[T]) -> Future[T]:
-        """Queue ``operation`` to run inside a transaction. Raises StoreError if the store is closed."""
+        """Queue ``operation`` to run in its own transaction.
+
+        Raises StoreError if the store is closed.
+        """
         future: Future[T] = Future()
         self._put(lambda _unwritten: self._answer(operation, future))
         return future
 
     def queue_entry(self, add_entry: EntryWriter) -> Future[None]:
-        """Queue an entry that must be written sooner or later. Raises StoreError if the store is closed.
+        """Queue an entry that must not be lost.
 
-        The future is done when the entry is on the disk. It raises StoreError if the entry has to wait.
+        The future is done when the entry is on disk. The future raises StoreError if the entry cannot be
+        written immediately. This method raises StoreError if the store is closed.
         """
         future: Future[None] = Future()
 
@@ -238,10 +245,10 @@ class StoreWriter:
             self._queue.put(task)
 
     def close(self, timeout_s: float = CLOSE_TIMEOUT_S) -> bool:
-        """Write the queued changes, then end the thread; return whether the thread has ended.
+        """Write the queued changes, end the thread, and return whether the thread has ended.
 
         The result is False if the disk takes longer than ``timeout_s`` seconds; the thread then still uses
-        the connection. ``backlog`` has the entries that could not be written.
+        the connection. ``pending_entries`` contains the entries that could not be written.
         """
         with self._closing:
             if not self._closed:
@@ -264,7 +271,7 @@ class StoreWriter:
         self._write_waiting()
 
     def _write_waiting(self) -> None:
-        """Write all waiting entries in one transaction; retain them if the write fails."""
+        """Write all pending entries in one transaction, and retain them if the write fails."""
         if not self._unwritten:
             return
         try:
@@ -303,7 +310,10 @@ class StoreWriter:
         future.set_result(answer)
 
     def _failed(self, error: Exception) -> Exception:
-        """Roll back the transaction and return the error, converted to StoreError if SQLite raised it."""
+        """Roll back the transaction and return the error.
+
+        An SQLite error is converted to StoreError.
+        """
         with suppress(sqlite3.Error):
             self._connection.rollback()
         if not isinstance(error, sqlite3.Error):

@@ -1,4 +1,4 @@
-"""Columns of the public tables of the store and its export, for the reference page and its tests."""
+"""The columns of the public tables of the store and of its export, for the reference page and its tests."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from core.store.store_rows import EventRow, MillRow, PresetRow, SecondaryRow, Sh
 
 
 class TableColumns(NamedTuple):
-    """A table of the store: its name, columns, and the export file with the same columns."""
+    """A table of the store with its name, its columns, and the export file that has the same columns."""
 
     name: str
     export_file: str
@@ -172,7 +172,10 @@ remark | | Remark.
 def _columns(
     row: type[tuple[object, ...]], text: str, renamed: dict[str, str] | None = None
 ) -> tuple[JsonKey, ...]:
-    """Return the fields of a row type as columns, with integers for booleans as in SQLite."""
+    """Return the fields of a row type as columns.
+
+    Booleans are declared as integers, as in SQLite.
+    """
     columns = declare_row_keys("", row, text)
     names = renamed or {}
     return tuple(

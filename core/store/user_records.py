@@ -1,4 +1,4 @@
-"""The users of the machine: their names, access levels and hashed PINs."""
+"""The users of the machine, with their names, access levels and hashed PINs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ MAX_NAME_LENGTH = 20
 
 
 class UserRow(NamedTuple):
-    """One user. ``level`` is a value of ``core.access.access_table.AccessLevel``."""
+    """One user with a name, an access level and a hashed PIN.
+
+    ``level`` is a value of ``core.access.access_table.AccessLevel``.
+    """
 
     name: str
     level: int
@@ -27,14 +30,18 @@ class UserRow(NamedTuple):
 
     @property
     def has_pin(self) -> bool:
-        """Whether the user has a PIN. A restored backup has none."""
+        """Return whether the user has a PIN.
+
+        Users from a restored backup have no PIN.
+        """
         return bool(self.hash)
 
 
 class UserList(NamedTuple):
     """The list of users.
 
-    ``has_damaged_row`` is true if a row does not match its checksum. Such a user cannot log in.
+    ``has_damaged_row`` is True if a row does not match its checksum. The user of a damaged row cannot log
+    in.
     """
 
     rows: tuple[UserRow, ...] = ()
@@ -42,16 +49,22 @@ class UserList(NamedTuple):
 
     @property
     def is_access_restricted(self) -> bool:
-        """Whether access levels are in force, because the list has a user or a damaged row."""
+        """Return whether access levels are in force.
+
+        They are in force if the list has a user or a damaged row.
+        """
         return bool(self.rows) or self.has_damaged_row
 
     def find_user(self, name: str) -> UserRow | None:
-        """Return the user of this name, or None. Case is ignored."""
+        """Return the user with this name, or None.
+
+        Case is ignored.
+        """
         return next((row for row in self.rows if row.name.casefold() == name.strip().casefold()), None)
 
 
 def read_user_list(connection: sqlite3.Connection) -> UserList:
-    """Return the list of users, the highest level first."""
+    """Return the list of users, in descending order of their levels."""
     rows = [
         UserRow(str(name), level, salt, hashed)
         for name, (_, level, salt, hashed) in row_checksums.read_intact_rows(connection, "people").items()
@@ -86,7 +99,7 @@ def save_user(connection: sqlite3.Connection, row: UserRow) -> None:
 def remove_user(connection: sqlite3.Connection, name: str) -> None:
     """Remove a user.
 
-    Raises StoreError if the name is unknown, or if other users but none with SERVICE level would remain.
+    Raises StoreError if the name is unknown, or if users would remain but none of them with SERVICE level.
     """
     if not connection.execute("DELETE FROM people WHERE name = ?", (name,)).rowcount:
         raise StoreError(Message("{name} is not in the list of users", name=name), "unknown-person")
@@ -94,12 +107,12 @@ def remove_user(connection: sqlite3.Connection, name: str) -> None:
 
 
 def remove_all_users(connection: sqlite3.Connection) -> int:
-    """Remove all users, and with them the access levels; return the number of users removed."""
+    """Remove all users, which also disables the access levels, and return the number of removed users."""
     return connection.execute("DELETE FROM people").rowcount
 
 
 def replace_all_users(connection: sqlite3.Connection, rows: Iterable[UserRow]) -> None:
-    """Replace all users by ``rows``."""
+    """Replace all users with the users in ``rows``."""
     connection.execute("DELETE FROM people")
     connection.executemany("INSERT INTO people VALUES (?, ?, ?, ?)", rows)
 
@@ -118,7 +131,10 @@ def erase_pins(connection: sqlite3.Connection) -> None:
 
 
 def _demand_service(connection: sqlite3.Connection) -> None:
-    """Raise StoreError if the list has users but none with SERVICE level, who could add others."""
+    """Raise StoreError if the list has users but none with SERVICE level.
+
+    Only a user with SERVICE level can add other users.
+    """
     levels = {level for (level,) in connection.execute("SELECT level FROM people")}
     if levels and max(levels) < 3:
         raise StoreError(
@@ -135,7 +151,10 @@ class UserRecords:
         self._store = store
 
     def read_users(self) -> UserList:
-        """Return all users. Without users there are no access levels."""
+        """Return all users.
+
+        Without users, access is not restricted.
+        """
         return self._store.run_query(read_user_list)
 
     def save_user(self, row: UserRow) -> Future[None]:
@@ -148,11 +167,14 @@ class UserRecords:
     def remove_user(self, name: str) -> Future[None]:
         """Remove a user.
 
-        The future raises StoreError for an unknown name, and if other users but none with SERVICE level
-        would remain.
+        The future raises StoreError for an unknown name, and if users would remain but none of them with
+        SERVICE level.
         """
         return self._store.write(lambda c: remove_user(c, name))
 
     def remove_all_users(self) -> Future[int]:
-        """Remove all users, and with them the access levels. The result is the number of users removed."""
+        """Remove all users, which also disables the access levels.
+
+        The result is the number of removed users.
+        """
         return self._store.write(remove_all_users)

@@ -1,4 +1,4 @@
-"""Axes on a CANopen bus, with one setpoint queue and one drive per axis."""
+"""Axes on a CANopen bus, with one common setpoint queue and one drive for each axis."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from drivers.setpoint_queue import JunctionTolerance, SetpointQueue, check_limit
 def create_follower(
     config: CanopenConfig, drives: DriveSet, queue: SetpointQueue, schedule: SyncSchedule
 ) -> SetpointFollower:
-    """Create the follower for ``config.bus.mode``."""
+    """Create the setpoint follower for the motion mode ``config.bus.mode``."""
     if config.bus.mode == "pp":
         return ProfiledFollower(drives.axes, drives.axis_indices, queue)
     if MOTION_MODES[config.bus.mode].is_cyclic:
@@ -43,7 +43,10 @@ _BRAKING_RESERVE_S = (
 
 
 class CanopenAxes:
-    """``core.ports.AxisSink`` of the CANopen drives, used only by the thread that owns the bus."""
+    """``core.ports.AxisSink`` of the CANopen drives.
+
+    Only the thread that owns the bus may use this object.
+    """
 
     def __init__(self, config: CanopenConfig, bus: CanBus) -> None:
         self._bus = bus
@@ -69,12 +72,15 @@ class CanopenAxes:
         self._given_up: CanopenHoming | None = None  # A canceled homing that still brakes.
 
     def connect(self) -> None:
-        """Configure every drive. Raises DriverError."""
+        """Configure every drive.
+
+        Raises DriverError if a drive does not match the machine file.
+        """
         self.drives.configure_drives()
         self.queue.reset_to(self._actual_positions())
 
     def run_cycle(self, now: float) -> None:
-        """Supervise the drives, home and feed setpoints, without raising errors.
+        """Supervise the drives, continue a homing, and feed setpoints, without raising an exception.
 
         A fault stops all axes. In cyclic modes, ``advance`` feeds the setpoints at each SYNC instead.
         """
@@ -86,7 +92,10 @@ class CanopenAxes:
         self.queue.discard_before(now - _HISTORY_S)
 
     def advance(self, now: float) -> None:
-        """Execute the next step of a homing, or feed the next setpoints."""
+        """Execute the next step of a homing, or feed the next setpoints.
+
+        An error sets a fault and stops all axes.
+        """
         try:
             if self._on and not self.fault:
                 self._go_on(now)
@@ -100,17 +109,17 @@ class CanopenAxes:
         return self._bus.clock.now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue, or the present time if it is empty."""
+        """Return the end time of the setpoint queue, or the present time if the queue is empty."""
         return self.queue.queue_end(self.now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the queued positions and velocities at time ``t``."""
+        """Return the queued positions and velocities at time ``time_s``."""
         return self.queue.commanded_state_at(time_s)
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if they are invalid or the drives cannot follow.
+        Raises DriverError if the setpoints are invalid or the drives cannot follow them.
         """
         self._need_power()
         homing = self.active_homing or self._given_up
@@ -120,7 +129,7 @@ class CanopenAxes:
         self.queue.splice(segments, self.now())
 
     def sample(self) -> AxisSample:
-        """Return the state of the axes from the last replies, at the time of their SYNC."""
+        """Return the state of the axes from the last replies; its time is that of their SYNC."""
         actual, powered, seen = self._actual_positions(), self._powered(), self.drives.last_reply_s
         demand, velocity = self.queue.commanded_state_at(self.follower.get_path_time(seen))
         busy = self.active_homing is not None or self._given_up is not None
@@ -142,7 +151,10 @@ class CanopenAxes:
         return self.drives.is_moving or (self.is_cyclic and self.follower.is_playing)
 
     def enable(self, on: bool) -> None:
-        """Switch the power on or off and wait for it. Raises DriverError that names the drives that fail."""
+        """Switch the power of the drives on or off, and wait until all drives have switched.
+
+        Raises DriverError that names the drives that do not switch on.
+        """
         if not on:
             self._off(DriveState.SWITCH_ON_DISABLED)
             self.drives.power_off()
@@ -156,7 +168,7 @@ class CanopenAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Stop all axes by the drives at one SYNC, or on the path with RAMP_HOLD."""
+        """Stop all axes: on the path with RAMP_HOLD, otherwise by a command to all drives at one SYNC."""
         if mode is StopMode.RAMP_HOLD and self._powered():
             self._brake_on_path()
             return
@@ -165,7 +177,10 @@ class CanopenAxes:
             self.drives.exchange_sync()
 
     def home(self, axis: str) -> None:
-        """Start the homing of the drive. Raises DriverError without power or while the axis moves."""
+        """Start the homing of an axis by its drive.
+
+        Raises DriverError if the power is off or an axis moves.
+        """
         require_axis(axis, self.axes)
         driven = next((a for a in self.drives.axes if a.config.name == axis), None)
         if driven is None or driven.config.absolute:
@@ -178,7 +193,8 @@ class CanopenAxes:
     def clear_fault(self) -> None:
         """Clear the fault and reset the drives, which remain without power.
 
-        After a bus failure, the bus is opened again and every node is configured. Raises DriverError.
+        After a bus failure, the bus is also reopened and every node is configured again. Raises
+        DriverError.
         """
         if self._bus.failure:
             self.reconnect_bus()
@@ -189,7 +205,7 @@ class CanopenAxes:
         self.drives.reset_faults()
 
     def is_follower_idle(self, now: float) -> bool:
-        """Return whether no setpoints are left in the queue or in the drives."""
+        """Return whether neither the queue nor the drives contain setpoints that are still to be executed."""
         return is_queue_finished(self.queue.queue_end(now), now) and not self.follower.is_playing
 
     def reset_queue(self) -> None:
@@ -210,7 +226,7 @@ class CanopenAxes:
             self.drives.clear_home()
 
     def _trip(self, fault: str) -> None:
-        """Set the fault and stop all axes."""
+        """Set a fault, unless a fault is already active, and stop all axes."""
         self.fault = self.fault or fault
         self._off(DriveState.QUICK_STOP_ACTIVE)
 
@@ -227,16 +243,16 @@ class CanopenAxes:
         self.queue.reset_to(self._actual_positions())
 
     def _check_braking_time(self, now: float) -> None:
-        """Switch the drives off when a quick stop takes too long.
+        """Switch the drives off if a quick stop takes too long.
 
-        A drive with a failed encoder or a runaway would otherwise push without end.
+        Otherwise a drive with a failed encoder, or an axis that runs away, would continue to apply force.
         """
         if self._braking and now > self._powerless_at:
             self._braking = False
             self.drives.set_goal_state(DriveState.SWITCH_ON_DISABLED)
 
     def _brake_on_path(self) -> None:
-        """Brake on the path; during homing, the drive brakes on its own ramp."""
+        """Brake all axes on the path; during homing, the drive brakes with its own ramp."""
         if self.active_homing is not None:
             self.active_homing.cancel()
             self.active_homing, self._given_up = None, self.active_homing
@@ -272,7 +288,9 @@ class CanopenAxes:
         return self._on and self.drives.is_powered
 
     def _actual_positions(self) -> tuple[float, ...]:
-        """Return the positions measured by the drives, or the queued position of an axis without a drive."""
+        """Return the positions that the drives measure; for an axis without a drive, return the queued
+        position.
+        """
         p = list(self.queue.commanded_state_at(self.now())[0])
         for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):
             p[index] = axis.drive.position * axis.config.count

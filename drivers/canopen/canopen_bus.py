@@ -1,4 +1,4 @@
-"""CAN bus with one socket, which the loop that owns the bus reads without a separate thread."""
+"""CAN bus with one socket; the loop that owns the bus reads this socket without a separate thread."""
 
 from __future__ import annotations
 
@@ -33,7 +33,10 @@ _ECHOING_INTERFACES = ("udp_multicast",)  # Receives its own frames, so another 
 
 
 class CanBus(canopen.Network):
-    """CAN bus; in tests, ``idle`` advances the time during a wait."""
+    """CAN bus whose frames are all sent and received by the loop that owns the bus.
+
+    In tests, ``idle`` is called to advance the time while the bus waits.
+    """
 
     def __init__(self, config: CanopenTable, clock: Clock, idle: Callable[[], None] | None = None) -> None:
         super().__init__(open_interface(config))
@@ -50,13 +53,16 @@ class CanBus(canopen.Network):
                 self.subscribe(cob, self._another_master)
 
     def close(self) -> None:
-        """Close the interface."""
+        """Close the CAN interface."""
         if self.bus is not None:
             self.bus.shutdown()
             self.bus = None
 
     def reopen(self) -> None:
-        """Open the interface again after a failure. Raises DriverError."""
+        """Open the CAN interface again after a failure.
+
+        Raises DriverError if the interface cannot be opened.
+        """
         self.close()
         try:
             self.bus = open_interface(self.config)
@@ -66,10 +72,10 @@ class CanBus(canopen.Network):
         self.next_heartbeat_s = self.clock.now()
 
     def process_frames(self, timeout_s: float = 0.0) -> None:
-        """Send the heartbeat when it is due and process received frames.
+        """Send the heartbeat when it is due, and process received frames.
 
-        ``wait`` limits the seconds to the first frame. The heartbeat is sent from this loop on purpose: a
-        kernel job would continue to send it if the process hangs.
+        The method waits at most ``timeout_s`` seconds for the first frame. This loop deliberately sends the
+        heartbeat itself: a kernel task would continue to send heartbeats after the process has hung.
         """
         self.send_heartbeat()
         while self.bus is not None and not self.failure:
@@ -84,7 +90,10 @@ class CanBus(canopen.Network):
             self._take(message)
 
     def send_heartbeat(self, *, force: bool = False) -> None:
-        """Send the heartbeat when it is due; a node starts to monitor it at the first one."""
+        """Send the heartbeat when it is due, or at once with ``force``.
+
+        A node starts to monitor the heartbeat when it receives the first one.
+        """
         now = self.clock.now()
         if (force or now >= self.next_heartbeat_s - _HEARTBEAT_EARLY_S) and not self.failure:
             self.next_heartbeat_s = now + self.config.heartbeat
@@ -92,7 +101,10 @@ class CanBus(canopen.Network):
                 self.send_message(_BEAT + self.config.host_id, bytes([_OPERATIONAL]))
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        """Send one frame. Raises DriverError if the interface rejects it."""
+        """Send one frame.
+
+        Raises DriverError if the interface rejects the frame.
+        """
         if self.bus is None or self.failure:
             raise DriverError(
                 "CAN {channel}: {problem}",
@@ -112,13 +124,13 @@ class CanBus(canopen.Network):
             ) from error
 
     def send_sync(self) -> None:
-        """Send one SYNC, at which the drives apply the frames sent before and reply."""
+        """Send one SYNC, at which the drives apply the frames that were sent before and reply."""
         self.send_message(_SYNC, b"")
 
     def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
-        """Process frames until ``ready`` returns True; return False after ``timeout_s`` seconds of real time.
+        """Process frames until ``is_ready`` returns true, and return whether it did.
 
-        Returns False at once if the bus has failed.
+        Return False after ``timeout_s`` seconds of real time, or at once if the bus has failed.
         """
         if self._idle is not None:
             return self._wait_in_steps(is_ready)
@@ -133,11 +145,11 @@ class CanBus(canopen.Network):
 
     @property
     def is_stepped(self) -> bool:
-        """Whether time advances only by ``idle``, as in tests."""
+        """Return whether time advances only when the bus calls ``idle``, as in tests."""
         return self._idle is not None
 
     def mark_failed(self, reason: str) -> None:
-        """Mark the bus as failed; the first reason is retained."""
+        """Mark the bus as failed; if the bus has already failed, the first reason is retained."""
         self.failure = self.failure or Fault(reason, "bus")
 
     def _wait_in_steps(self, ready: Callable[[], bool]) -> bool:
@@ -160,7 +172,7 @@ class CanBus(canopen.Network):
             self._deliver(message)
 
     def _deliver(self, message: can.Message) -> None:
-        """Pass a frame to its subscribers; repeated invalid frames mark the bus as failed."""
+        """Pass a frame to its subscribers; after several invalid frames, mark the bus as failed."""
         try:
             self.notify(message.arbitration_id, bytearray(message.data), self.clock.now())
         except (struct.error, IndexError, ValueError) as error:
@@ -183,7 +195,7 @@ class CanBus(canopen.Network):
 
 
 class PollingSdoClient(SdoClient):
-    """SDO client that reads the bus itself while it waits."""
+    """SDO client that reads the bus itself while it waits for a response."""
 
     RESPONSE_TIMEOUT = 1.0  # Seconds; some drives store values slowly.
 
@@ -191,7 +203,7 @@ class PollingSdoClient(SdoClient):
         SdoClient.__init__(self, rx_cobid, tx_cobid, dictionary)
 
     def on_response(self, can_id: int, data: bytearray, timestamp: float) -> None:
-        """Handle a response. Raises ValueError unless it has eight bytes."""
+        """Handle a response; raise ValueError unless it has eight bytes."""
         if len(data) != 8:
             raise ValueError(f"an SDO answer of {len(data)} bytes")
         SdoClient.on_response(self, can_id, data, timestamp)
@@ -199,7 +211,8 @@ class PollingSdoClient(SdoClient):
     def read_response(self) -> bytes:
         """Wait for the response and return it.
 
-        Raises SdoCommunicationError without a response and SdoAbortedError if the node rejects the request.
+        Raises SdoCommunicationError if no response arrives, and SdoAbortedError if the node rejects the
+        request.
         """
         bus = self.network
         assert isinstance(bus, CanBus)
@@ -212,7 +225,7 @@ class PollingSdoClient(SdoClient):
 
 
 class PollingNode(canopen.RemoteNode):
-    """Remote node whose SDO client needs no reading thread."""
+    """Remote node whose SDO client does not need a thread that reads the bus."""
 
     def add_sdo(self, rx_cobid: int, tx_cobid: int) -> PollingSdoClient:
         """Add an SDO channel and return its client."""
@@ -236,10 +249,11 @@ _OPEN_ERRORS = (
 
 
 def open_interface(config: CanopenTable) -> can.BusABC:
-    """Open the CAN interface. Raises DriverError if it cannot be opened.
+    """Open the CAN interface.
 
-    On udp_multicast, a channel may end in ``:port``. Two groups on one port receive each other's frames
-    within one computer.
+    With the interface ``udp_multicast``, the channel may end in ``:port``. Two multicast groups with the
+    same port on one computer receive each other's frames. Raises DriverError if the interface cannot be
+    opened.
     """
     on_udp = config.interface in _ECHOING_INTERFACES
     channel, _, port = config.channel.partition(":") if on_udp else (config.channel, "", "")

@@ -1,4 +1,4 @@
-"""Configuration of the devices on the bus, which the app fills from the machine file."""
+"""Configuration of the devices on the CAN bus, which the application reads from the machine file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from drivers.setpoint_queue import AxisProperties
 
 @dataclass(frozen=True, slots=True)
 class AxisConfig(AxisProperties):
-    """One axis; without a ``node`` it has no drive and only counts."""
+    """Configuration of one axis.
+
+    An axis without a ``node`` has no drive; only its commanded position is counted.
+    """
 
     node: CanNode | None = None
     profile: DriveProfile = CIA402_PROFILE
@@ -23,14 +26,14 @@ class AxisConfig(AxisProperties):
     home_offset: float = 0.0
 
     def velocity(self, speed: float) -> float:
-        """Convert a speed in mm/s or degrees/s into the drive's unit, counts/s or rpm."""
+        """Convert a speed in mm/s or degrees/s into the unit of the drive, counts/s or rpm."""
         counts = speed / self.count
         return counts * 60.0 / self.counts_per_rev if self.counts_per_rev else counts
 
     def acceleration(self, accel: float) -> int:
-        """Convert an acceleration into the drive's unit, counts/s² or rpm/s, at least 1.
+        """Convert an acceleration in mm/s² or degrees/s² into the unit of the drive, counts/s² or rpm/s.
 
-        The argument is in mm/s² or degrees/s².
+        The result is at least 1.
         """
         counts = accel / self.count
         return max(round(counts * 60.0 / self.counts_per_rev if self.profile.uses_rpm else counts), 1)
@@ -38,9 +41,10 @@ class AxisConfig(AxisProperties):
 
 @dataclass(frozen=True, slots=True)
 class SpindleConfig:
-    """Spindle drive in profile velocity mode, in rpm and rpm/s; ``is_c_axis``: the drive also positions C.
+    """Spindle drive in profile velocity mode, with speeds in rpm and accelerations in rpm/s.
 
-    Without counts per revolution, its node does not provide an angle.
+    If ``is_c_axis`` is true, the drive also positions the C axis. A node without counts per revolution does
+    not provide an angle.
     """
 
     node: CanNode
@@ -52,7 +56,10 @@ class SpindleConfig:
 
 @dataclass(frozen=True, slots=True)
 class EncoderConfig:
-    """Encoder on the spindle; without a ``node``, it is the second encoder input of the drive ``name``."""
+    """Encoder on the spindle.
+
+    If ``node`` is None, the encoder is connected to the second encoder input of the drive ``name``.
+    """
 
     name: str
     node: CanNode | None
@@ -64,7 +71,9 @@ class EncoderConfig:
 
 @dataclass(frozen=True, slots=True)
 class OutputConfig:
-    """Output with its safe state; None leaves the output unchanged."""
+    """Output and its safe state; with None, the output is not changed when the machine enters the safe
+    state.
+    """
 
     terminal: CanTerminal
     safe_state: bool | None = False
@@ -72,8 +81,9 @@ class OutputConfig:
 
 @dataclass(frozen=True, slots=True)
 class PotConfig:
-    """Analog input, whose zero and full scale mean ``low_value`` and ``high_value``; ``switch_input`` names
-    its input.
+    """Pot at an analog input: ``low_value`` applies at zero and ``high_value`` at full scale.
+
+    ``switch_input`` is the name of the input that enables the pot.
     """
 
     terminal: CanTerminal

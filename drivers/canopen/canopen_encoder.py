@@ -1,4 +1,4 @@
-"""Spindle encoder on the bus: a CiA 406 node, or the second encoder input of a drive."""
+"""Spindle encoder on the bus, which is a CiA 406 node or the second encoder input of a drive."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ _COUNTER_RANGE = 2**32
 
 
 class CanEncoder:
-    """Spindle encoder that measures speed and angle by its counts at each SYNC.
+    """Spindle encoder that measures speed and angle from its counts at each SYNC.
 
-    A fault remains until ``clear_fault``.
+    A fault remains active until ``clear_fault`` is called.
     """
 
     def __init__(self, config: EncoderConfig, bus: CanBus, drive: Cia402Drive | None) -> None:
@@ -44,7 +44,10 @@ class CanEncoder:
         self._reads: deque[tuple[float, float]] = deque()  # Time of the SYNC, and revolutions.
 
     def connect(self) -> None:
-        """Check and map the encoder. Raises DriverError if it does not match the machine file."""
+        """Check the encoder and map its PDO.
+
+        Raises DriverError if the encoder does not match the machine file.
+        """
         setup, config = self._setup, self._config
         if config.node is not None:
             setup.enter_pre_operational()
@@ -63,12 +66,18 @@ class CanEncoder:
         self._reads.clear()
 
     def start_node(self) -> None:
-        """Start the node by NMT; a drive is started by its owner."""
+        """Start the node by NMT.
+
+        If the encoder is connected to a drive, the owner of the drive starts the node.
+        """
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
     def record_sync(self, now: float, *, reply_expected: bool = True) -> None:
-        """Record that a SYNC is sent; with ``reply_expected``, a reply is expected."""
+        """Record that a SYNC was sent at time ``now``.
+
+        With ``reply_expected``, the encoder must reply to this SYNC.
+        """
         self.missing_reply_count, self._asked = self.missing_reply_count + reply_expected, now
 
     def supervise(self) -> None:
@@ -82,7 +91,10 @@ class CanEncoder:
             self._wrong("the encoder does not respond to SYNC; check cable and power")
 
     def clear_fault(self) -> None:
-        """Configure the encoder again after a fault; a failure affects only the spindle, not the axes."""
+        """Configure the encoder again after a fault.
+
+        If this fails, only the spindle is affected, not the axes.
+        """
         if not self.failure:
             return
         try:
@@ -92,24 +104,26 @@ class CanEncoder:
             self.failure = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
     def measured_rpm(self) -> float:
-        """Return the speed of the last 0.1 s in rpm, signed."""
+        """Return the mean speed of the last 0.1 s in rpm, signed."""
         if len(self._reads) < 2:
             return 0.0
         (t0, turns0), (t1, turns1) = self._reads[0], self._reads[-1]
         return 60.0 * (turns1 - turns0) / (t1 - t0)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair at the last SYNC with a reply, or None before the first reply."""
+        """Return the time in seconds and the revolutions of the last reply, or None before the
+        first reply.
+        """
         return self._reads[-1] if self._reads else None
 
     def read_fault(self) -> str:
-        """Return the reason why the measurement is invalid, or an empty text."""
+        """Return the reason why the measurement is invalid, or an empty text if it is valid."""
         return self._bus.failure or self.failure
 
     def _check_counts(self) -> None:
-        """Check the counts per revolution and the counting range against the machine file.
+        """Compare the counts per revolution and the counting range of the encoder with the machine file.
 
-        Raises DriverError if the counts differ or may wrap around between two replies.
+        Raises DriverError if the counts differ, or if the counter may wrap around between two replies.
         """
         setup, config = self._setup, self._config
         scaled = setup.read(od.ENCODER_MODE) & _SCALING_ENABLED
@@ -198,32 +212,36 @@ def _setup_of(config: EncoderConfig, bus: CanBus) -> NodeSetup:
 
 
 class MeasuredSpindle:
-    """``core.ports.Spindle`` of a bus without a spindle drive, with the speed of the encoder if there is one.
+    """``core.ports.Spindle`` of a bus that has no spindle drive.
 
-    An inverter replaces it as the drive.
+    The encoder measures the speed if the machine has one. If an inverter drives the spindle, its driver
+    replaces this object.
     """
 
     def __init__(self, encoder: CanEncoder | None) -> None:
         self._encoder = encoder
 
     def run_at(self, rpm: float) -> None:
-        """Raise DriverError unless ``rpm`` is 0, because the bus does not have a spindle drive."""
+        """Raise DriverError unless ``rpm`` is 0, because the bus has no spindle drive."""
         if rpm:
             raise DriverError(
                 "this bus has no spindle drive; check spindle.driver", "spindle-off", reason="no-drive"
             )
 
     def coast(self) -> None:
-        """Do nothing, because the bus does not have a spindle drive."""
+        """Do nothing, because the bus has no spindle drive."""
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed, or 0 without an encoder."""
         return self._encoder.measured_rpm() if self._encoder is not None else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair, or None without an encoder or before its first reply."""
+        """Return the time in seconds and the revolutions of the last reply of the encoder.
+
+        Return None without an encoder or before its first reply.
+        """
         return self._encoder.read_angle() if self._encoder is not None else None
 
     def read_fault(self) -> str:
-        """Return the reason why the encoder is invalid, or an empty text."""
+        """Return the reason why the encoder measurement is invalid, or an empty text if it is valid."""
         return self._encoder.read_fault() if self._encoder is not None else ""

@@ -1,4 +1,7 @@
-"""Homing by the drives: an axis on its switch, the spindle on its index or at its present position."""
+"""Homing by the drives.
+
+An axis homes on its switch, and the spindle on its index or at its present position.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,9 @@ class _Step(Enum):
 
 
 class CanopenHoming:
-    """Homing of one axis; ``step`` must be called once per tick until ``is_done`` is true or a fault is
-    set.
+    """Homing of one axis by its drive.
+
+    ``advance`` must be called once per tick until ``is_done`` is true or ``failure`` is set.
     """
 
     def __init__(self, axis: DrivenAxis, previous_mode: int, now: float) -> None:
@@ -45,11 +49,11 @@ class CanopenHoming:
 
     @property
     def is_done(self) -> bool:
-        """Whether the homing has ended and the drive is back in its previous mode."""
+        """Return whether the homing has ended and the drive has returned to its previous mode."""
         return self._step is _Step.DONE
 
     def advance(self, now: float) -> None:
-        """Evaluate the status word and continue."""
+        """Evaluate the status word of the drive and execute the next step of the homing."""
         drive, waited = self._drive, now - self._since
         if self._step is _Step.MODE and drive.reported_mode == HM:
             drive.mode_bits |= NEW
@@ -68,7 +72,8 @@ class CanopenHoming:
     def cancel(self) -> None:
         """Cancel the homing, so that the drive brakes.
 
-        The mode changes back at standstill, because some drives reject a mode change in motion.
+        The drive returns to its previous mode at standstill, because some drives reject a mode change
+        during motion.
         """
         self._drive.mode_bits = self._drive.mode_bits & ~NEW | HALT
         self._step = _Step.HALT
@@ -108,7 +113,7 @@ class CanopenHoming:
         self.failure = Fault("{name}: homing failed: {why}", "homing", name=self.config.name, why=why)
 
     def _write_parameters(self) -> None:
-        """Write method, speeds, acceleration and home offset, as far as the drive has these objects.
+        """Write the method, speeds, acceleration and home offset, if the drive has these objects.
 
         Raises DriverError.
         """
@@ -147,7 +152,7 @@ INDEX_SEARCH_RPM = 60
 
 
 class SpindleHoming:
-    """Homing of the spindle drive, which the caller starts and then polls."""
+    """Homing of the spindle drive, which the caller starts and then polls with ``is_done``."""
 
     def __init__(self, drive: Cia402Drive) -> None:
         self._drive = drive
@@ -157,13 +162,19 @@ class SpindleHoming:
         self._told = False  # The drive has received the start command.
 
     def start_index_search(self, now: float) -> None:
-        """Start the search for the index. Raises DriverError."""
+        """Start the search for the encoder index.
+
+        Raises DriverError.
+        """
         self._limit, self._why = _INDEX_SEARCH_S, "no encoder index was found within one revolution"
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX_METHOD)
         self._begin(0, now)
 
     def set_position(self, counts: int, now: float) -> None:
-        """Start to set the present position to ``place`` counts. Raises DriverError."""
+        """Start a homing that sets the present position to ``counts``.
+
+        Raises DriverError.
+        """
         self._limit, self._why = _POWERED_MODE_CHANGE_S, "the drive does not accept its new position"
         try:
             self._drive.setup.write(od.HOME_METHOD, 0, _PRESENT_POSITION_METHODS[0])
@@ -172,7 +183,10 @@ class SpindleHoming:
         self._begin(counts, now)
 
     def is_done(self, now: float) -> bool:
-        """Return whether the homing is complete. Raises DriverError if it has failed."""
+        """Return whether the homing is complete.
+
+        Raises DriverError if the homing has failed.
+        """
         drive, waited = self._drive, now - self._since
         if not self._told:
             if drive.enabled and drive.reported_mode == HM:
@@ -209,7 +223,10 @@ class SpindleHoming:
 
 
 class IndexPhase:
-    """Counts from the index within one revolution; ``counts`` is None before the index is found."""
+    """Position of the spindle within one revolution, in counts from the index.
+
+    ``counts`` is None until the index is found.
+    """
 
     def __init__(self, counts_per_rev: int) -> None:
         self._per_turn = counts_per_rev
@@ -217,13 +234,14 @@ class IndexPhase:
         self.counts: int | None = None
 
     def set_index(self, position: int) -> None:
-        """Set the phase at a drive position that counts from the index."""
+        """Set the phase from a drive position that is counted from the index."""
         self.counts, self._last = position % self._per_turn, position
 
     def update(self, position: int, *, ignore_jumps: bool) -> None:
-        """Track the drive position, once per cycle.
+        """Track the drive position; call this method once per cycle.
 
-        ``ignore_jumps``: the counter is being set while the spindle does not turn, so the change is ignored.
+        With ``ignore_jumps``, the change of the position is ignored, because homing sets the counter while
+        the spindle does not turn.
         """
         moved = (position - self._last + 2**31) % 2**32 - 2**31
         self._last = position

@@ -1,4 +1,4 @@
-"""Complete machine on one CANopen bus, driven by the one loop that owns the bus."""
+"""Complete machine on one CANopen bus, controlled by the loop that owns the bus."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _FIRST_REPLY_S = 0.5  # Seconds in which all nodes must reply to the first SYNC.
 
 
 class CanopenSamples:
-    """``core.ports.SampleSource`` with the replies of the drives to each SYNC."""
+    """``core.ports.SampleSource`` that stores the replies of the drives to each SYNC."""
 
     def __init__(
         self, axes: CanopenAxes, spindle: Spindle, sync: float, spindle_drive: Cia402Drive | None
@@ -53,7 +53,7 @@ class CanopenSamples:
         self._log = SampleLog(len(axes.axes))
 
     def record_replies(self, now: float) -> None:
-        """Store the replies to a SYNC that is newer than the last stored one."""
+        """Store the replies to the last SYNC, unless they are already stored."""
         if self._axes.drives.last_reply_s <= self._log.newest_time_s:
             return
         sample, angle = self._axes.sample(), self._spindle.read_angle()
@@ -68,14 +68,14 @@ class CanopenSamples:
         )
 
     def take(self, max_rows: int = LOG_ROWS) -> FloatArray:
-        """Return at most ``max_rows`` samples since the last call, oldest first."""
+        """Return at most ``max_rows`` samples that were stored since the last call, oldest first."""
         return self._log.pop_rows(max_rows)
 
 
 class CanopenMachine:
-    """Machine on the bus, connected by its constructor.
+    """Machine on the CAN bus, which the constructor connects.
 
-    The constructor raises DriverError that names the first node which does not match the machine file.
+    The constructor raises DriverError that names the first node that does not match the machine file.
     """
 
     def __init__(self, config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None) -> None:
@@ -139,7 +139,7 @@ class CanopenMachine:
 
     @property
     def ports(self) -> MachinePorts:
-        """The ports for the executor; the terminals are also the operator station."""
+        """Return the ports for the executor; the terminals also serve as the operator station."""
         return MachinePorts(
             clock=self.clock,
             axes=self.axes,
@@ -155,7 +155,10 @@ class CanopenMachine:
         )
 
     def find_unknown_items(self) -> frozenset[UnknownPart]:
-        """Return the states that are unknown because their devices are silent or the bus has failed."""
+        """Return the parts of the machine whose state is unknown.
+
+        A state is unknown if its device does not respond or the bus has failed.
+        """
         if self.bus.failure:
             return ALL_UNKNOWN_PARTS
         found: set[UnknownPart] = set()
@@ -168,9 +171,10 @@ class CanopenMachine:
         return frozenset(found)
 
     def run_cycle(self) -> None:
-        """Run one cycle: receive, supervise, feed, command and SYNC.
+        """Run one cycle: receive frames, supervise the devices, feed setpoints, and send commands and SYNC.
 
-        It must be called every few milliseconds, or at the time that ``get_next_cycle_time`` returns.
+        This method must be called every few milliseconds, or at the time that ``get_next_cycle_time``
+        returns.
         """
         if not self.axes.is_cyclic:
             self._supervise(exchange=True)
@@ -185,9 +189,9 @@ class CanopenMachine:
             self._cycle()
 
     def get_next_cycle_time(self) -> float | None:
-        """Return the time of the next cycle: shortly before a SYNC to read replies, or at the SYNC.
+        """Return the time of the next cycle, or None if a cycle must run every 5 ms.
 
-        None means every 5 ms.
+        The time is shortly before a SYNC if replies must be read, otherwise the time of the SYNC.
         """
         if not self.axes.is_cyclic:
             return None
@@ -196,7 +200,7 @@ class CanopenMachine:
         return schedule.due_time_s if self._looked else schedule.due_time_s - before
 
     def collect_warnings(self) -> Sequence[str]:
-        """Return a warning about late setpoints, at most once per second."""
+        """Return a warning about late setpoints if there were any, at most once per second."""
         follower, now = self.axes.follower, self.clock.now()
         if (
             not isinstance(follower, CyclicFollower)
@@ -220,7 +224,7 @@ class CanopenMachine:
         )
 
     def _cycle(self) -> None:
-        """Send SYNC at its time, then the commands for the next one."""
+        """Send SYNC when it is due, and then the commands for the next SYNC."""
         now = self.clock.now()
         waited = self.axes.sync_schedule.record_sync(now)
         try:
@@ -242,20 +246,28 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def _wait_callback(self) -> float:
-        """Keep sending SYNC and setpoints while waiting for a node; return the seconds to the next SYNC."""
+        """Send SYNC and setpoints while the caller waits for a node, and return the seconds to the next
+        SYNC.
+        """
         left = self.axes.sync_schedule.due_time_s - self.clock.now()
         if left <= 0.0 and not self.bus.failure:
             self._cycle()
         return max(self.axes.sync_schedule.due_time_s - self.clock.now(), 0.0)
 
     def _yield_cpu(self) -> None:
-        """Send SYNC at its time while a long path is queued, after reading the replies to the last one."""
+        """Send SYNC when it is due while a long path is being queued.
+
+        The replies to the previous SYNC are read first.
+        """
         if self.clock.now() >= self.axes.sync_schedule.due_time_s - _EPSILON and not self.bus.failure:
             self.bus.process_frames()
             self._cycle()
 
     def _supervise(self, *, exchange: bool) -> None:
-        """Receive and supervise; with ``exchange``, also feed, command and send SYNC when it is due."""
+        """Receive frames and supervise the devices.
+
+        With ``exchange``, also feed setpoints, and send commands and SYNC when they are due.
+        """
         before, self.has_sent_sync = self.has_sent_sync, False
         self.bus.process_frames()
         self._waits = self._waits and not self._answered()
@@ -290,10 +302,10 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def get_idle_time(self, is_asleep: bool) -> float:
-        """Return the seconds until the next SYNC, heartbeat or reply is due while the control sleeps.
+        """Return the seconds for which the loop may wait until the next SYNC, heartbeat or reply is due.
 
-        The result is 0 if the control is not ``is_asleep``, while a drive moves, or after a bus failure.
-        While the control sleeps, replies are needed only ten times per second.
+        The result is 0 if ``is_asleep`` is false, while a drive moves, or after a bus failure. While the
+        control is asleep, the drives must reply only ten times per second.
         """
         bus = self.config.bus
         apart = max(bus.sync, _IDLE_REPLY_PERIOD_S / bus.slow_reply_divisor if is_asleep else 0.0)
@@ -304,7 +316,7 @@ class CanopenMachine:
         return max(min(next_, _REPLY_TIME_S) if self._waits else next_, 0.0)
 
     def close(self) -> None:
-        """Switch the power off if the bus works, then close the bus."""
+        """Switch the power off, unless the bus has failed, and then close the bus."""
         if not self.bus.failure:
             self.axes.stop(StopMode.RAMP_OFF)
             self.io.switch_to_safe_state()
@@ -318,7 +330,7 @@ class CanopenMachine:
         self.bus.close()
 
     def _connect(self) -> None:
-        """Configure all nodes, then start them by NMT."""
+        """Configure all nodes and then start them by NMT."""
         self.axes.connect()
         if self.spindle is not None:
             self.spindle.connect()
@@ -339,7 +351,10 @@ class CanopenMachine:
         self.bus.wait_until(self._answered, _FIRST_REPLY_S)
 
     def _reconnect(self) -> None:
-        """Reopen the bus and configure all nodes; axes with incremental encoders lose their home."""
+        """Reopen the bus and configure all nodes.
+
+        Axes with incremental encoders must then be homed again.
+        """
         self.bus.reopen()
         try:
             self._connect()
@@ -369,9 +384,10 @@ class CanopenMachine:
             self.spindle.drive.send_command()
 
     def _record_sync(self, now: float, *, reply_expected: bool) -> None:
-        """Record a SYNC at all devices.
+        """Record a SYNC for all devices.
 
-        With ``reply_expected``, slow devices must have replied once since the last counted SYNC.
+        With ``reply_expected``, slow devices must have replied once since the last SYNC with
+        ``reply_expected``.
         """
         self.axes.drives.record_sync(now)
         if self.spindle is not None and self.spindle.drive not in self.axes.drives.drives:

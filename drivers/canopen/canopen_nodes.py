@@ -1,4 +1,4 @@
-"""Nodes of the machine file: device profiles, drive families, objects and terminal addresses."""
+"""CANopen nodes of the machine file: device profiles, drive families, objects and terminal addresses."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ ObjectValues = tuple[tuple[int, int, int], ...]
 
 @make_key_table
 class CanNode:
-    """One node of the bus; ``name`` is an axis, ``spindle`` or the name of an I/O module."""
+    """Node of the CAN bus.
+
+    ``name`` is the name of an axis, "spindle", or the name of an I/O module.
+    """
 
     name: str
     id: int = declare_key(KeyRange(1, 127), meaning="Node number set at the device.")
@@ -84,7 +87,10 @@ NODE_REFERENCE = TableReference(
 
 @dataclass(frozen=True, slots=True)
 class CanTerminal:
-    """One bit, or with ``bit`` -1 a whole number, of an object of a module or an axis drive."""
+    """Terminal on the bus: one bit of an object of an I/O module or axis drive.
+
+    If ``bit`` is -1, the terminal is the whole number in the object.
+    """
 
     node: str
     index: int
@@ -94,7 +100,7 @@ class CanTerminal:
 
 
 def get_slow_reply_divisor(sync_period_s: float) -> int:
-    """Return the number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
+    """Return the number of SYNCs from one reply with slow values to the next, which take about 10 ms."""
     return max(1, round(_SLOW_VALUE_PERIOD_S / sync_period_s))
 
 
@@ -102,7 +108,10 @@ def get_slow_reply_divisor(sync_period_s: float) -> int:
 
 
 def parse_terminal(text: str) -> CanTerminal | None:
-    """Parse ``401.6200.1.0`` into node, object, sub-index and bit; return None if it is not an address."""
+    """Parse a terminal address such as ``401.6200.1.0`` into node, object, sub-index and bit.
+
+    Return None if the text is not a terminal address.
+    """
     found = _TERMINAL_PATTERN.fullmatch(text)
     if found is None:
         return None
@@ -111,7 +120,10 @@ def parse_terminal(text: str) -> CanTerminal | None:
 
 
 def parse_sdo_address(text: str) -> tuple[int, int] | None:
-    """Parse ``6007:0`` into index and sub-index; return None if it is not an address."""
+    """Parse an object address such as ``6007:0`` into index and sub-index.
+
+    Return None if the text is not an object address.
+    """
     found = _OBJECT_PATTERN.fullmatch(text)
     if found is None or int(found[2]) > 255:
         return None
@@ -119,7 +131,10 @@ def parse_sdo_address(text: str) -> tuple[int, int] | None:
 
 
 def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
-    """Parse a terminal address and replace 401 by the name of the first module."""
+    """Parse a terminal address and replace the node 401 by the name of the first I/O module.
+
+    Return None if the text is not a terminal address.
+    """
     found = parse_terminal(text)
     if found is None or found.node != FIRST_MODULE:
         return found
@@ -127,7 +142,7 @@ def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
 
 
 def iterate_input_addresses() -> Iterator[str]:
-    """Yield the input addresses of the first module, bit by bit."""
+    """Yield the input addresses of the first I/O module, bit by bit and without end."""
     return (f"{FIRST_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 
@@ -135,7 +150,7 @@ def iterate_input_addresses() -> Iterator[str]:
 
 
 def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Read [canopen.nodes] and yield the findings there and in [canopen.sdo]."""
+    """Read [canopen.nodes], and yield the findings in this table and in [canopen.sdo]."""
     nodes, objects = file.raw(NODES), file.raw(SDO)
     yield from read_named_tables({} if nodes is None else nodes, CanNode, NODES, file.values)
     if objects is None:
@@ -155,7 +170,7 @@ def read_nodes(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _describe_bad_object(key: str, value: object) -> str:
-    """Return the expected form of a wrong entry, or an empty text for a valid entry."""
+    """Return the reason why an entry of [canopen.sdo] is invalid, or an empty text for a valid entry."""
     address = parse_sdo_address(key)
     if address is None:
         return 'the key must be an object address with the index in hexadecimal, such as "6007:0"'
@@ -171,7 +186,7 @@ def _whole(value: object) -> TypeGuard[int]:
 
 
 def read_sdo_objects(file: MachineFileReading, node: str) -> ObjectValues:
-    """Return the valid entries of [canopen.sdo] for one node or for ``all``."""
+    """Return the valid entries of [canopen.sdo] for one node, or for all nodes if ``node`` is "all"."""
     entries = file.raw(f"{SDO}.{node}")
     found = entries.items() if isinstance(entries, dict) else ()
     return tuple(
@@ -182,12 +197,12 @@ def read_sdo_objects(file: MachineFileReading, node: str) -> ObjectValues:
 
 
 def format_object_path(node: str, index: int, subindex: int) -> str:
-    """Return the path of a node's object as in the machine file."""
+    """Return the path of an object of a node, as written in the machine file."""
     return f'{SDO}.{node}."{index:04X}:{subindex}"'
 
 
 def build_node(file: MachineFileReading, name: str) -> CanNode:
-    """Build a node with all objects that are written to it, from a valid file."""
+    """Build a node from a valid machine file, including all objects that TurnDesk writes to the node."""
     shared = read_sdo_objects(file, "all") if read_node_profile(file, name) == DRIVE else ()
     return file.values.make_model(
         CanNode,
@@ -199,7 +214,11 @@ def build_node(file: MachineFileReading, name: str) -> CanNode:
 
 
 def read_drive_family(file: MachineFileReading, name: str) -> str:
-    """Return the drive family of a node, or the default for all drives; empty if it is not a drive."""
+    """Return the drive family of a node.
+
+    If the node does not specify a family, return the default family of all drives. If the node is not a
+    drive, return an empty text.
+    """
     if read_node_profile(file, name) != DRIVE:
         return ""
     paths = (f"{NODES}.{name}.drive", "canopen.drive")
@@ -207,16 +226,16 @@ def read_drive_family(file: MachineFileReading, name: str) -> str:
 
 
 def read_text(file: MachineFileReading, path: str) -> str:
-    """Return the text of a key, or an empty text if it is missing or invalid."""
+    """Return the text of a key, or an empty text if the key is missing or its value is invalid."""
     return file.values.text(path) if file.values.has_values(path) else ""
 
 
 def read_node_profile(file: MachineFileReading, node: str) -> int:
-    """Return the CiA profile of a node, or 0 if the file does not specify one."""
+    """Return the CiA profile of a node, or 0 if the machine file does not specify a profile."""
     path = f"{NODES}.{node}.profile"
     return file.values.read_integer(path) if file.values.has_values(path) else 0
 
 
 def list_module_names(file: MachineFileReading) -> list[str]:
-    """Return the names of the I/O modules in the order of the file."""
+    """Return the names of the I/O modules in the order of the machine file."""
     return [name for name in file.list_table_keys(NODES) if read_node_profile(file, name) == MODULE]

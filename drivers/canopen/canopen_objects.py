@@ -1,4 +1,4 @@
-"""Objects of CiA 301, 401, 402 and 406, object dictionaries, and the states of CiA 402."""
+"""Objects of CiA 301, 401, 402 and 406, object dictionaries, and the drive states of CiA 402."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ _EPOS4_MISSING = (SYNC_PERIOD, HOME_OFFSET, IP_SUBMODE, IP_RECORD, BUFFER, MOTOR
 
 
 def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDictionary:
-    """Build the dictionary of a drive without an EDS file from the standard objects of its family."""
+    """Build the dictionary of a drive that has no EDS file, from the standard objects of its family."""
     found = _dictionary((*_VARIABLES_301, *_VARIABLES_402), (*_ARRAYS_301, *_ARRAYS_402))
     found.add_object(_record(IP_TIME, _TIME_PERIOD))
     found.add_object(_record(BUFFER, _BUFFER))
@@ -100,17 +100,20 @@ def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDict
 
 
 def build_module_dictionary() -> ObjectDictionary:
-    """Build the dictionary of an I/O module without an EDS file."""
+    """Build the dictionary of an I/O module that has no EDS file."""
     return _dictionary((*_VARIABLES_301, (ANALOG_EVENTS, U8)), (*_ARRAYS_301, *_ARRAYS_401))
 
 
 def build_encoder_dictionary() -> ObjectDictionary:
-    """Build the dictionary of an encoder without an EDS file."""
+    """Build the dictionary of an encoder that has no EDS file."""
     return _dictionary((*_VARIABLES_301, *_VARIABLES_406), _ARRAYS_301)
 
 
 def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
-    """Return the object dictionary and the family profile of a drive. Raises DriverError."""
+    """Return the object dictionary of a drive and the profile of its drive family.
+
+    Raises DriverError.
+    """
     if not node.eds:
         profile = find_profile(node.drive, None, None)
         return build_drive_dictionary(profile), profile
@@ -120,7 +123,7 @@ def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile
 
 
 def load_dictionary(name: str, eds: str, build_standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:
-    """Load the dictionary of the EDS file, or build the standard one without a file.
+    """Load the dictionary from the EDS file, or build the standard dictionary if ``eds`` is empty.
 
     Raises DriverError that names the node and the file.
     """
@@ -217,7 +220,7 @@ def _mapping(index: int) -> ODArray:
 
 
 class DriveState(StrEnum):
-    """States of a drive as CiA 402 names them."""
+    """State of a drive, with the name that CiA 402 uses."""
 
     NOT_READY_TO_SWITCH_ON = "not ready to switch on"
     SWITCH_ON_DISABLED = "switch on disabled"
@@ -257,7 +260,10 @@ _NEXT_CONTROL_WORDS = {
 
 
 def decode_state(status_word: int) -> DriveState:
-    """Return the state in a status word; a word that matches no mask is "not ready to switch on"."""
+    """Return the drive state that a status word encodes.
+
+    A status word that matches no mask means "not ready to switch on".
+    """
     for mask, bits, state in _STATE_MASKS:
         if status_word & mask == bits:
             return state
@@ -265,12 +271,17 @@ def decode_state(status_word: int) -> DriveState:
 
 
 def get_enabling_word(state: DriveState) -> int:
-    """Return the control word for the next step toward operation enabled; it never leaves a fault."""
+    """Return the control word for the next step from ``state`` toward "operation enabled".
+
+    The control word never clears a fault.
+    """
     return _NEXT_CONTROL_WORDS.get(state, DISABLE)
 
 
 def get_fault_reset_word(state: DriveState, last_word: int) -> int:
-    """Return the control word that clears a fault by an edge of bit 7, without switching on power."""
+    """Return the control word that clears a fault by a rising edge of bit 7, without switching the power
+    on.
+    """
     if state is DriveState.FAULT and last_word != RESET:
         return RESET
     return DISABLE

@@ -1,4 +1,4 @@
-"""Rules of [canopen]: bus load, times, node numbers, drives with their families, and terminals.
+"""Rules for the tables [canopen]: bus load, times, node numbers, drive families and terminals.
 
 A frame with an 11-bit identifier and n bytes has at most 47 + 8 n + (34 + 8 n - 1) / 4 bits. This includes
 bit stuffing and the three bits between frames.
@@ -38,7 +38,10 @@ _MAX_BUS_LOAD = 0.75  # Fraction of the time; the rest is for SDO, heartbeats, E
 
 
 class BusLoad(NamedTuple):
-    """Bus load in bits per SYNC period, split into frames at each SYNC and the mean of rarer frames."""
+    """Bus load in bits per SYNC period.
+
+    The load is split into the frames at each SYNC and the mean of the frames that are sent less often.
+    """
 
     bits_per_sync: float
     slow_bits_per_sync: float
@@ -46,27 +49,28 @@ class BusLoad(NamedTuple):
 
     @property
     def used_fraction(self) -> float:
-        """The fraction of the bus capacity that is used."""
+        """Return the used fraction of the bus capacity."""
         return (self.bits_per_sync + self.slow_bits_per_sync) / self.capacity_bits
 
     @property
     def has_reserve(self) -> bool:
-        """Whether the load leaves the required reserve."""
+        """Return whether the load leaves the required reserve of bus capacity."""
         return self.used_fraction <= _MAX_BUS_LOAD
 
 
 def get_max_frame_bits(data_bytes: int) -> int:
-    """Return the maximum length in bits of a frame with ``data_bytes`` bytes."""
+    """Return the maximum length in bits of a frame with ``data_bytes`` data bytes."""
     return 47 + 8 * data_bytes + (34 + 8 * data_bytes - 1) // 4
 
 
 def calculate_cyclic_load(
     axis_count: int, other_count: int, bitrate: int, sync_period_s: float, slow_divisor: int
 ) -> BusLoad:
-    """Return the bus load of cyclic modes.
+    """Return the bus load in cyclic modes.
 
-    Each of the ``slides`` axis drives receives a command and replies at every SYNC. The ``others`` and second
-    replies are sent every ``seldom`` SYNCs.
+    Each of the ``axis_count`` axis drives receives a command and sends a reply at every SYNC. At every
+    ``slow_divisor``-th SYNC, each axis drive sends a second reply, and each of the ``other_count`` other
+    devices exchanges two frames.
     """
     told = get_max_frame_bits(_COMMAND) + get_max_frame_bits(_ANSWER)
     each = get_max_frame_bits(0) + axis_count * told
@@ -84,7 +88,7 @@ _MIN_RECORDS = 3  # A drive treats a queue with fewer than two records as empty.
 
 
 def check_bus(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about [canopen] and about the axes and terminals on the bus."""
+    """Yield the findings about [canopen], and about the axes and terminals on the bus."""
     yield from _check_travel(file)
     if "canopen" not in file.tables:
         return
@@ -132,7 +136,7 @@ def _queue(record: float, commit: float, values: FileValues) -> Iterator[FileFin
 
 
 def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about queues and counts per revolution that the drive families need."""
+    """Yield findings about position queues and counts per revolution that the drive families require."""
     values, moved = file.values, file.axes
     queued = " or ".join(format_toml_value(name) for name in QUEUE_PROFILE_NAMES)
     for name in file.list_table_keys(NODES):
@@ -162,7 +166,9 @@ def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about cyclic setpoints: whole milliseconds, commit time and bus load."""
+    """Yield findings about cyclic setpoints: the SYNC period in whole milliseconds, commit time and bus
+    load.
+    """
     values = file.values
     if read_text(file, "canopen.mode") not in CYCLIC_MODES or not values.has_values(
         "canopen.sync_ms", "canopen.bitrate"
@@ -205,7 +211,7 @@ def _fits(slides: int, others: int, bitrate: int, ms: int) -> bool:
 
 
 def _check_node_numbers(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about numbers, names and profiles of the nodes."""
+    """Yield findings about the numbers, names and profiles of the nodes."""
     values, moved = file.values, (*file.axes, SPINDLE)
     taken: dict[int, str] = {}
     if values.has_values("canopen.host_id"):
@@ -234,7 +240,7 @@ def _check_node_numbers(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_heartbeat(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings if 0x1016 does not monitor this computer, or has too short a timeout."""
+    """Yield findings if object 1016h does not monitor this computer, or if its timeout is too short."""
     values = file.values
     if not values.has_values("canopen.host_id", "canopen.heartbeat_ms"):
         return
@@ -263,7 +269,7 @@ _C_REMEDY_TEXT = (
 
 
 def _check_drives(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about axes without a drive or without a homing method."""
+    """Yield findings about axes that have no drive or no homing method."""
     values, nodes = file.values, file.list_table_keys(NODES)
     for axis in file.axes:
         if axis == "C" and not (values.has_values("axis.C.enabled") and values.read_flag("axis.C.enabled")):
@@ -290,7 +296,10 @@ def _check_drives(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _is_c_on_spindle(file: MachineFileReading) -> bool:
-    """Return whether C of a lathe can be the spindle drive, which needs counts and a position queue."""
+    """Return whether the spindle drive of a lathe can also serve as the C axis.
+
+    For this, the drive needs counts per revolution and a position queue.
+    """
     values, counts = file.values, f"{NODES}.{SPINDLE}.counts_per_rev"
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     drives = values.has_text("spindle.driver", "cia402") and values.has_text("canopen.mode", "pvt")
@@ -298,7 +307,9 @@ def _is_c_on_spindle(file: MachineFileReading) -> bool:
 
 
 def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about axes whose travel exceeds the range or the software limits of their drives."""
+    """Yield findings about axes whose travel exceeds the counting range or software limits of
+    their drives.
+    """
     values = file.values
     for axis in file.axes:
         path, counted = f"axis.{axis}.travel", f"axis.{axis}.count"
@@ -338,7 +349,7 @@ def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_terminals(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for every signal and pot whose terminal is not an address on the bus."""
+    """Yield a finding for every signal or pot whose terminal is not an address on the bus."""
     if any(path.endswith(".profile") for path in file.values.invalid_paths):
         return  # The nodes that are modules are not known.
     for path, terminal in file.terminals.items():

@@ -1,4 +1,4 @@
-"""Setup of a node before it runs: checks, configuration with read-back, and PDO mapping."""
+"""Setup of a node before it starts: checks, configuration with read-back, and PDO mapping."""
 
 from __future__ import annotations
 
@@ -42,7 +42,10 @@ _MODE_NAMES = {
 
 
 class NodeSetup:
-    """Setup of one node by SDO; each error names the node, the object and the response."""
+    """Setup of one node by SDO.
+
+    Every error names the node, the object and the response.
+    """
 
     def __init__(self, bus: CanBus, name: str, node_id: int, dictionary: canopen.ObjectDictionary) -> None:
         self._bus = bus
@@ -53,7 +56,9 @@ class NodeSetup:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """One sentence about all objects that the node lacks, or an empty tuple."""
+        """Return one sentence that lists all objects the node lacks, or an empty tuple if it has all
+        objects.
+        """
         if not self.missing_objects:
             return ()
         told = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.missing_objects.items()))
@@ -67,18 +72,18 @@ class NodeSetup:
         )
 
     def enter_pre_operational(self) -> None:
-        """Set the node to PRE-OPERATIONAL, the only state in which PDO mapping may change."""
+        """Set the node to PRE-OPERATIONAL, because the PDO mapping may change only in this state."""
         self.node.nmt.state = "PRE-OPERATIONAL"
 
     def read(self, index: int, subindex: int = 0) -> int:
-        """Return one object as a number, signed if the dictionary says so."""
+        """Return the value of one object, signed if the dictionary defines a signed type."""
         data = self._run_sdo(index, subindex, lambda: self.node.sdo.upload(index, subindex))
         return self._number(index, subindex, data)
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Write one object if its value differs, and read it back.
+        """Write one object if its value differs, and read the value back.
 
-        Raises DriverError if the node rejects the value or stores another one.
+        Raises DriverError if the node rejects the value or stores a different value.
         """
         variable = self.node.object_dictionary.get_variable(index, subindex)
         blind = variable is not None and not variable.readable  # For example, the command to clear a queue.
@@ -100,7 +105,10 @@ class NodeSetup:
             )
 
     def write_bytes(self, index: int, subindex: int, data: bytes) -> None:
-        """Write an object that cannot be read back. Raises DriverError."""
+        """Write the bytes of an object without reading them back.
+
+        Raises DriverError.
+        """
         self._run_sdo(index, subindex, lambda: self.node.sdo.download(index, subindex, data))
 
     def configure_objects(
@@ -109,10 +117,11 @@ class NodeSetup:
         file_objects: ObjectValues = (),
         required_objects: Iterable[int] = (),
     ) -> None:
-        """Write TurnDesk's values, then those of the machine file, to the objects that the node has.
+        """Write the values of TurnDesk and then those of the machine file to the objects that the node has.
 
-        ``missing_objects`` lists the missing objects. Raises DriverError that names all missing objects of
-        ``required_objects``, or those of the machine file that are not optional.
+        The objects that the node lacks are stored in ``missing_objects``. Raises DriverError that names all
+        missing objects if they are in ``required_objects``, or if they are in the machine file and not
+        optional.
         """
         self.missing_objects = {}
         named = {(index, sub) for index, sub, _ in file_objects}
@@ -146,7 +155,10 @@ class NodeSetup:
             )
 
     def try_write(self, index: int, subindex: int, value: int) -> bool:
-        """Write an object if the node has it, and return whether it has. Raises DriverError."""
+        """Write an object if the node has it, and return whether the node has it.
+
+        Raises DriverError.
+        """
         if self.has_object(index, subindex):
             self.write(index, subindex, value)
             return True
@@ -154,7 +166,7 @@ class NodeSetup:
         return False
 
     def monitor_setpoints(self, period_s: float) -> None:
-        """Make the node detect a missing SYNC or setpoint, by the means that it supports."""
+        """Make the node detect a missing SYNC or setpoint, with the objects that the node supports."""
         longest = max(round(1000 * _SYNCS_AWAY * period_s), _LEAST_AWAY)
         watched = False
         for index, sub, value in ((od.SYNC_PERIOD, 0, round(1e6 * period_s)), (od.COMMANDED, 5, longest)):
@@ -165,7 +177,7 @@ class NodeSetup:
             self.missing_objects[od.COMMANDED] = MISSING_OBJECT_EFFECTS[od.COMMANDED]
 
     def require_profile(self, profile: int) -> None:
-        """Raise DriverError if the device profile differs from the machine file."""
+        """Raise DriverError if the node has a device profile other than ``profile``."""
         found = self.read(od.DEVICE_TYPE) & _PROFILE_MASK
         if found != profile:
             raise self._setup_error(
@@ -176,7 +188,7 @@ class NodeSetup:
             )
 
     def require_modes(self, modes: int, family_modes: int = 0) -> None:
-        """Raise DriverError if a needed mode is neither in 0x6502 nor in ``family_modes``."""
+        """Raise DriverError if a required mode is neither in object 6502h nor in ``family_modes``."""
         offered = family_modes | (self.read(od.SUPPORTED) if self.has_object(od.SUPPORTED, 0) else modes)
         lacking = [_MODE_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
         if lacking:
@@ -186,7 +198,7 @@ class NodeSetup:
             )
 
     def require_objects(self, *entries: PdoEntry) -> None:
-        """Raise DriverError that names all missing objects of ``entries``."""
+        """Raise DriverError that names all objects of ``entries`` that the node lacks."""
         missing = [
             f"{entry.object_index:04X}:{entry.subindex}"
             for entry in entries
@@ -200,7 +212,7 @@ class NodeSetup:
             )
 
     def require_homing_method(self, method: int) -> None:
-        """Raise DriverError if the homing method is not in the drive's list (0x60E3)."""
+        """Raise DriverError if the homing method is not in the drive's list of methods (object 60E3h)."""
         listed = [self.read(od.HOME_METHODS, sub + 1) for sub in range(self.count_entries(od.HOME_METHODS))]
         offered = sorted({each for each in listed if each})
         if offered and method not in offered:
@@ -214,7 +226,9 @@ class NodeSetup:
             )
 
     def require_counts_per_rev(self, counts: int) -> None:
-        """Raise DriverError if gear and feed of the drive give other counts per motor revolution."""
+        """Raise DriverError if the gear and feed objects of the drive result in other counts per motor
+        revolution.
+        """
         places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
         if not all(self.has_object(*place) for place in places):
             return
@@ -236,9 +250,9 @@ class NodeSetup:
         return self.read(index, 0) if self.has_object(index, 0) else 0
 
     def has_object(self, index: int, subindex: int) -> bool:
-        """Return whether the node has an object, by its dictionary and by a test read.
+        """Return whether the node has an object, according to its dictionary and a test read.
 
-        The test is necessary because an EDS file may be newer than the device.
+        The test read is necessary because an EDS file may be newer than the device.
         """
         variable = self.node.object_dictionary.get_variable(index, subindex)
         if variable is None:
@@ -256,10 +270,10 @@ class NodeSetup:
         return None
 
     def _write_if_changed(self, index: int, sub: int, data: bytes, present_data: bytes | None) -> bool:
-        """Write ``data`` unless the object already has this value; return whether it was written.
+        """Write ``data`` unless the object already has this value, and return whether it was written.
 
-        Raises DriverError. All configuration uses this method, because many drives have objects that are
-        read-only or locked but already have the required value.
+        All configuration uses this method, because many drives have objects that are read-only or locked
+        but already have the required value. Raises DriverError.
         """
         if present_data == data:
             return False
@@ -298,7 +312,10 @@ class NodeSetup:
     def map_received_objects(
         self, pdo_number: int, *entries: tuple[int, int], event_driven: bool = False
     ) -> None:
-        """Map the objects that the node receives in PDO ``number`` as (object + sub · 65536, bits)."""
+        """Map the objects that the node receives in the PDO ``pdo_number``.
+
+        Each entry is a pair of (index + sub-index · 65536, bits).
+        """
         self._configure_pdo(
             self._pdo(self.node.rpdo, pdo_number), entries, _EVENT_DRIVEN if event_driven else 1
         )
@@ -306,13 +323,19 @@ class NodeSetup:
     def map_sent_objects(
         self, pdo_number: int, on_reply: Callable[[PdoMap], None], *entries: tuple[int, int], every: int = 1
     ) -> None:
-        """Map the objects that the node sends in PDO ``number`` at every ``every``-th SYNC."""
+        """Map the objects that the node sends in the PDO ``pdo_number``, once per ``every`` SYNCs.
+
+        Each entry is a pair of (index + sub-index · 65536, bits). ``on_reply`` is called with each received
+        PDO.
+        """
         pdo = self._pdo(self.node.tpdo, pdo_number)
         self._configure_pdo(pdo, entries, every)
         pdo.callbacks[:] = [on_reply]
 
     def _setup_error(self, text: str, *, reason: str = "", **values: object) -> DriverError:
-        """Return the error for a node that does not match; the text may contain name and number."""
+        """Return the error for a node that does not match; ``text`` may contain the fields {name} and
+        {node}.
+        """
         return DriverError(text, "drive-setup", reason=reason, name=self._name, node=self.node.id, **values)
 
     def _pdo(self, pdos: PdoBase, number: int) -> PdoMap:
@@ -326,9 +349,11 @@ class NodeSetup:
         return found
 
     def _configure_pdo(self, pdo: PdoMap, entries: tuple[tuple[int, int], ...], kind: int) -> None:
-        """Map a PDO unless it already has the required mapping, because many modules have a fixed mapping.
+        """Map a PDO, unless it already has the required mapping.
 
-        The library's ``save`` writes no entries if the dictionary has them as an array.
+        The check is necessary because many modules have a fixed mapping. The method does not use
+        ``PdoMap.save`` of the library, because ``save`` writes no entries if the dictionary defines them as
+        an array.
         """
         base = pdo.com_record.od.index
         pdo.clear()
@@ -394,7 +419,7 @@ class NodeSetup:
 
 
 def _abort_code(error: DriverError) -> int:
-    """Return the SDO abort code that caused an error, or 0."""
+    """Return the SDO abort code that caused an error, or 0 if the node did not abort the request."""
     cause = error.__cause__
     return cause.code if isinstance(cause, SdoAbortedError) else 0
 
@@ -403,7 +428,7 @@ def _abort_code(error: DriverError) -> int:
 
 
 def build_axis_objects(config: AxisConfig, bus: CanopenTable) -> ObjectValues:
-    """Return the objects written to an axis drive, in its own units."""
+    """Return the objects to be written to an axis drive, in the units of the drive."""
     return (
         *config.profile.unit_objects,
         *build_stop_objects(bus),
@@ -415,7 +440,10 @@ def build_axis_objects(config: AxisConfig, bus: CanopenTable) -> ObjectValues:
 
 
 def build_stop_objects(bus: CanopenTable) -> ObjectValues:
-    """Return the objects for any drive: a quick stop without a heartbeat of TurnDesk, then power off."""
+    """Return the objects that stop any drive when the heartbeat of TurnDesk is missing.
+
+    The drive makes a quick stop and then switches its power off.
+    """
     return (
         (od.ABORT_OPTION, 0, 3),
         (od.QUICK_OPTION, 0, 2),
@@ -425,7 +453,10 @@ def build_stop_objects(bus: CanopenTable) -> ObjectValues:
 
 
 def build_monitoring_objects(bus: CanopenTable) -> ObjectValues:
-    """Return the objects for any node: its heartbeat, and a timeout of three heartbeats of TurnDesk."""
+    """Return the objects that make any node send its heartbeat and monitor the heartbeat of TurnDesk.
+
+    The timeout for the heartbeat of TurnDesk is three heartbeat intervals.
+    """
     return (
         (od.HEARTBEAT, 0, round(1000 * bus.heartbeat)),
         (od.WATCHED, 1, bus.host_id << 16 | round(3000 * bus.heartbeat)),
@@ -433,7 +464,7 @@ def build_monitoring_objects(bus: CanopenTable) -> ObjectValues:
 
 
 def build_limit_objects(config: AxisConfig) -> ObjectValues:
-    """Return the software limits of the drive, which are valid only after homing."""
+    """Return the software limits for the drive, which are valid only after homing."""
     if config.travel is None:
         return ()
     low, high = config.travel

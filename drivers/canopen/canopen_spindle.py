@@ -1,8 +1,9 @@
-"""Spindle drive on the bus in profile velocity mode, which may also be the C axis.
+"""Spindle drive on the bus in profile velocity mode, which may also serve as the C axis.
 
-The drive changes between both modes at standstill. As the spindle, it makes its own ramps. As C, it is one
-more axis that is powered, fed and stopped with the others. C then starts at the position that the control
-last counted. With orientation, the spindle first turns until this position is also correct from the index.
+The drive changes between both modes at standstill. As the spindle, the drive generates its own ramps. As C,
+it is one more axis that is powered, fed and stopped together with the others. C starts at the last position
+that the control counted. With orientation, the spindle first turns until this position is also correct
+relative to the index.
 """
 
 from __future__ import annotations
@@ -31,7 +32,9 @@ _POWER_ON_S = 1.0  # Seconds in which the drive must switch on.
 
 
 class CanopenSpindle:
-    """``core.ports.Spindle`` of a CiA 402 drive, which has power only while it turns or must turn."""
+    """``core.ports.Spindle`` of a CiA 402 drive, which has power only while the spindle turns or
+    must turn.
+    """
 
     def __init__(self, config: SpindleConfig, bus: CanBus) -> None:
         self._config = config
@@ -45,7 +48,10 @@ class CanopenSpindle:
         self.drive = Cia402Drive(bus, config.node, SPEED_TARGET, (SPEED,))
 
     def connect(self) -> None:
-        """Configure the drive. Raises DriverError."""
+        """Configure the drive.
+
+        Raises DriverError.
+        """
         config = self._config
         queue = self.drive.profile.queue if config.is_c_axis else None
         standing = (
@@ -70,7 +76,10 @@ class CanopenSpindle:
         self.drive.commanded_mode, self.drive.target_value = PV, 0
 
     def update(self) -> None:
-        """Supervise the drive; switch it off at standstill, and never switch it on automatically."""
+        """Supervise the drive and switch it off at standstill.
+
+        This method never switches the drive on.
+        """
         drive = self.drive
         drive.supervise(3.0 * self._bus.config.heartbeat)
         lost = self._came_on and not drive.enabled
@@ -83,9 +92,9 @@ class CanopenSpindle:
             self._check_drive(lost)
 
     def _check_drive(self, is_power_lost: bool) -> None:
-        """Switch off after a loss of power, or set a fault if the drive does not switch on.
+        """Switch the drive off after a loss of power, or set a fault if the drive does not switch on.
 
-        Waiting is not permitted, because a return of the power would start the spindle.
+        The method must not wait for the power, because the spindle would then start when the power returns.
         """
         drive, now = self.drive, self._bus.clock.now()
         if is_power_lost:
@@ -100,9 +109,9 @@ class CanopenSpindle:
             drive.goal_state = DriveState.SWITCH_ON_DISABLED
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops it.
+        """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
 
-        Raises DriverError with a fault, or while the drive is engaged as C, if the speed is not 0.
+        Raises DriverError if ``rpm`` is not 0 while a fault is active or the drive is engaged as C.
         """
         if rpm:
             require_spindle_ready(self._bus.failure or self.drive.failure)
@@ -128,21 +137,24 @@ class CanopenSpindle:
 
     @property
     def counts_per_rev(self) -> int:
-        """The encoder counts per revolution, or 0 if not specified."""
+        """Return the encoder counts per revolution, or 0 if they are not specified."""
         return self._config.node.counts_per_rev
 
     @property
     def has_speed_command(self) -> bool:
-        """Whether a speed other than 0 is commanded."""
+        """Return whether a speed other than 0 is commanded."""
         return self.drive.target_value != 0
 
     def restore_speed(self) -> None:
-        """Execute the speed command that was given while the drive was C."""
+        """Execute the speed command that was received while the drive was in C axis mode."""
         if self.drive.target_value:
             self.drive.goal_state, self._ordered = DriveState.OPERATION_ENABLED, self._bus.clock.now()
 
     def clear_fault(self) -> None:
-        """Clear the fault without power, and configure a restarted drive again. Raises DriverError."""
+        """Clear the fault without switching the power on.
+
+        A drive that has restarted is configured again. Raises DriverError.
+        """
         if self.drive.has_restarted or self.drive.missing_reply_count:
             self.connect()
             self.drive.start_node()
@@ -150,11 +162,14 @@ class CanopenSpindle:
         self.drive.reset_fault()
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, signed, or 0 while the drive is C."""
+        """Return the measured speed in rpm, signed, or 0 while the drive is in C axis mode."""
         return 0.0 if self.is_used_as_c else float(self.drive.speed)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair of the last reply, or None without counts per revolution."""
+        """Return the time in seconds and the revolutions of the last reply.
+
+        Return None if the counts per revolution are not specified.
+        """
         if not self.counts_per_rev:
             return None
         now = self.drive.position
@@ -166,12 +181,12 @@ class CanopenSpindle:
         return self.drive.last_reply_s, self._counts / self.counts_per_rev
 
     def accept_counter_jump(self) -> None:
-        """Accept a counter that was set by homing, without counting the jump as rotation."""
+        """Accept a counter value that homing has set, without counting the jump as rotation."""
         if self.ignores_counter:
             self._last, self.ignores_counter = self.drive.position, False
 
     def read_fault(self) -> str:
-        """Return the fault of the drive or bus, or an empty text."""
+        """Return the fault of the drive or the bus, or an empty text."""
         return self._bus.failure or (self.drive.failure and Fault(self.drive.failure, "spindle"))
 
 
@@ -183,7 +198,7 @@ _DEGREES_PER_REV = 360.0
 
 
 class CanopenCStep(Enum):
-    """Steps of the change between spindle and C."""
+    """Step of the change between spindle mode and C axis mode."""
 
     SPINDLE_MODE = "the drive is running as the spindle drive"
     WAIT_FOR_REST = "waiting until the axis drives have executed their queued motion"
@@ -197,9 +212,9 @@ class CanopenCStep(Enum):
 
 
 class CanopenSpindleC:
-    """``core.ports.SpindleCAxis`` of the spindle drive; a fault stops all axes.
+    """``core.ports.SpindleCAxis`` of the spindle drive.
 
-    ``update`` is called once per cycle of the bus.
+    A fault stops all axes. ``update`` must be called once per bus cycle.
     """
 
     def __init__(self, axes: CanopenAxes, spindle: CanopenSpindle, name: str) -> None:
@@ -224,10 +239,10 @@ class CanopenSpindleC:
     # --- the port ----------------------------------------------------------------------------------------
 
     def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
-        """Engage the drive as C, or release it as the spindle.
+        """Engage the drive as the C axis, or release the drive as the spindle.
 
-        With ``orient``, the spindle first turns to its position from the index. Raises DriverError if the
-        drive cannot be engaged now.
+        With ``orient``, the spindle first turns to its position relative to the index. Raises DriverError
+        if the drive cannot be engaged now.
         """
         if enabled and self.failure:
             raise DriverError(self.failure)
@@ -246,7 +261,7 @@ class CanopenSpindleC:
     # --- each cycle --------------------------------------------------------------------------------------
 
     def update(self, now: float) -> None:
-        """Continue the change that is in progress."""
+        """Continue the change between spindle mode and C axis mode, if a change is in progress."""
         self._phase.update(
             self._drive.position,
             ignore_jumps=self.step in {CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION},
@@ -323,7 +338,10 @@ class CanopenSpindleC:
             self._enter(CanopenCStep.POWER_ON, now)
 
     def _is_homing_done(self, now: float) -> bool:
-        """Return whether the homing is complete; a canceled request ends it. Raises DriverError."""
+        """Return whether the homing is complete.
+
+        If C axis mode is no longer requested, the homing is canceled. Raises DriverError.
+        """
         if self._wanted:
             return self._homing.is_done(now)
         self._drive.mode_bits = 0
@@ -353,7 +371,7 @@ class CanopenSpindleC:
             self._enter(CanopenCStep.DISENGAGE, now)
 
     def _disengage(self, now: float) -> None:
-        """Release the drive when the axes are at rest and the queues of the drives have ended."""
+        """Release the drive when the axes are at rest and the queues of the drives are empty."""
         if self._axes.is_follower_idle(now):
             self._part()
             self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
@@ -378,7 +396,7 @@ class CanopenSpindleC:
         return self._demand() if self._goal is None else self._goal
 
     def _angle_to_position(self) -> float:
-        """Return the angle in degrees from the spindle to its position, by the shortest path."""
+        """Return the angle from the spindle to its C position by the shortest path, in degrees."""
         if not self._orient or self._phase.counts is None:
             return 0.0
         off = self._place() - self._phase.counts * self._axis.config.count

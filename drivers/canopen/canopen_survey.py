@@ -1,4 +1,4 @@
-"""Survey of the bus that identifies each node of the machine file without changing anything."""
+"""Survey of the bus that identifies each node of the machine file without changing its settings."""
 
 from __future__ import annotations
 
@@ -23,7 +23,10 @@ _SHORT_MODE_NAMES = {1: "PP", 3: "PV", 6: "homing", 7: "IP", 8: "CSP"}
 
 
 class SurveyResult(NamedTuple):
-    """Survey result of one node; its error text is empty if the node matches the machine file."""
+    """Survey result of one node.
+
+    ``error_text`` is empty if the node matches the machine file.
+    """
 
     name: str
     node: int
@@ -32,18 +35,22 @@ class SurveyResult(NamedTuple):
 
 
 class _SilentBus(CanBus):
-    """Bus without a heartbeat, which nodes would start to monitor and later miss."""
+    """CAN bus that sends no heartbeat.
+
+    Nodes would start to monitor the heartbeat and then report a fault when it stops.
+    """
 
     def send_heartbeat(self, *, force: bool = False) -> None:
-        """Send nothing."""
+        """Do nothing, because the survey must not send heartbeats."""
 
 
 def identify_nodes(
     config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None
 ) -> list[SurveyResult]:
-    """Identify every node of the machine file in its order; ``idle`` is as for the bus.
+    """Identify every node of the machine file, in the order of the file.
 
-    Raises DriverError if the bus cannot be opened.
+    ``idle`` is passed to the bus and advances the time in tests. Raises DriverError if the bus cannot be
+    opened.
     """
     bus = _SilentBus(config.bus, clock, idle)
     axes = {axis.name: axis for axis in config.axes}
@@ -88,7 +95,7 @@ def _asked(bus: CanBus, config: CanNode, axis: AxisConfig | None, mode: str) -> 
 def _list_mismatches(
     setup: NodeSetup, family: DriveProfile, axis: AxisConfig | None, mode: str, bus: CanBus
 ) -> Iterator[str]:
-    """Yield the mode that the drive would run in, and its missing objects.
+    """Yield the mode in which the drive would run, and the objects that it lacks.
 
     Raises DriverError if the drive does not support the mode.
     """
@@ -120,7 +127,7 @@ def _modes(setup: NodeSetup, family: DriveProfile) -> Iterator[str]:
 
 
 def _read_object(setup: NodeSetup, index: int, sub: int) -> int:
-    """Return an object, or 0 if the node does not have it."""
+    """Return the value of an object, or 0 if the node does not have the object."""
     try:
         return setup.read(index, sub)
     except DriverError:

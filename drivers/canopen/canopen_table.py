@@ -43,7 +43,7 @@ MOTION_MODE_NAMES = ("pvt", "csp", "ip", "pp")
 
 @make_key_table
 class CanopenTable:
-    """Settings of the CAN bus and its nodes; times in seconds."""
+    """Settings of the CAN bus and its nodes, with times in seconds."""
 
     _: KW_ONLY
     interface: str = declare_key(
@@ -89,26 +89,29 @@ class CanopenTable:
 
     @property
     def slow_reply_divisor(self) -> int:
-        """The number of SYNCs between two replies of slow values, which corresponds to about 10 ms."""
+        """Return the number of SYNCs from one reply with slow values to the next, which take about 10 ms."""
         return get_slow_reply_divisor(self.sync)
 
     @property
     def max_missing_replies(self) -> int:
-        """The number of missing replies after which an axis drive counts as silent: 3, or those of 20 ms."""
+        """Return the number of missing replies after which an axis drive is treated as silent.
+
+        The number is 3, or the number of replies in 20 ms if that is larger.
+        """
         return max(_ANSWERS, round(_ANSWER_TIME / self.sync))
 
     @property
     def supports_separate_process(self) -> bool:
-        """Whether another process can own the bus.
+        """Return whether a separate process can own the bus.
 
-        The virtual bus of python-can exists in one process only.
+        The virtual bus of python-can exists only within one process.
         """
         return self.interface != "virtual"
 
 
 @make_key_table
 class EncoderTable:
-    """Settings of a spindle encoder on the bus: a separate node, or the second input of a drive."""
+    """Settings of a spindle encoder on the bus, which is a separate node or the second input of a drive."""
 
     _: KW_ONLY
     node: str = declare_key(
@@ -127,7 +130,7 @@ class EncoderTable:
 
     @property
     def object_address(self) -> tuple[int, int]:
-        """The index and sub-index of the position object."""
+        """Return the index and sub-index of the position object."""
         return parse_sdo_address(self.object or POSITION) or (0, 0)
 
 

@@ -1,4 +1,4 @@
-"""Inputs, outputs, pots and the operator station on CiA 401 modules, with the names from the machine file."""
+"""Inputs, outputs, pots and the operator station on CiA 401 modules, named as in the machine file."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ _TERMINAL_KINDS = ((od.DIGITAL_IN, "input bytes"), (od.DIGITAL_OUT, "output byte
 
 
 class Cia401Module:
-    """CiA 401 module with the number of terminals that it reports, limited to those of its first PDOs."""
+    """CiA 401 module with the number of terminals that it reports.
+
+    Only the terminals in the first PDOs of the module can be used.
+    """
 
     def __init__(self, config: CanNode, bus: CanBus) -> None:
         self.config = config
@@ -48,7 +51,10 @@ class Cia401Module:
         self._sent = (-1e9, b"")
 
     def read_terminal_counts(self, required_terminals: Iterable[CanTerminal]) -> None:
-        """Read the number of terminals. Raises DriverError if a needed terminal does not exist."""
+        """Read the number of terminals from the module.
+
+        Raises DriverError if a required terminal does not exist.
+        """
         self.setup.enter_pre_operational()
         self.setup.require_profile(401)
         most = {od.DIGITAL_IN: PDO_BYTES, od.DIGITAL_OUT: PDO_BYTES, od.ANALOG_IN: _PDO_WORDS}
@@ -66,8 +72,9 @@ class Cia401Module:
                 )
 
     def connect(self, safe_values: bytes, retained_bits: bytes) -> None:
-        """Configure the outputs' states after a loss of this computer, and the PDO mapping.
+        """Configure the PDO mapping, and the output states that apply if this computer fails.
 
+        ``safe_values`` holds the states as bits, and ``retained_bits`` the outputs that must not change.
         Raises DriverError.
         """
         inputs, outputs, words = self.terminal_counts.values()
@@ -97,12 +104,15 @@ class Cia401Module:
         self.last_heartbeat_s, self.missing_reply_count, self.failure = self._bus.clock.now(), 0, ""
 
     def record_sync(self) -> None:
-        """Record that a SYNC is sent; a module without inputs is monitored by its heartbeat only."""
+        """Record that a SYNC was sent, to which a module with inputs must reply.
+
+        A module without inputs is monitored only by its heartbeat.
+        """
         if self.terminal_counts[od.DIGITAL_IN] or self.terminal_counts[od.ANALOG_IN]:
             self.missing_reply_count += 1
 
     def send_outputs(self, now: float) -> None:
-        """Send the outputs after a change, and periodically."""
+        """Send the outputs if they have changed, and again every 0.1 s."""
         when, what = self._sent
         outputs = bytes(self.outputs[: self.terminal_counts[od.DIGITAL_OUT]])
         if outputs and (outputs != what or now - when >= _RESEND_PERIOD_S):
@@ -111,7 +121,7 @@ class Cia401Module:
 
     @property
     def is_silent(self) -> bool:
-        """Whether replies or heartbeats are missing for too long, so that the inputs are old."""
+        """Return whether too many replies or heartbeats are missing, so that the inputs may be outdated."""
         return self.missing_reply_count > _SYNCS or self._without_beat > _BEATS * self._bus.config.heartbeat
 
     @property
@@ -119,7 +129,10 @@ class Cia401Module:
         return self._bus.clock.now() - self.last_heartbeat_s
 
     def supervise(self) -> None:
-        """Set a fault if heartbeats or replies are missing; it remains until ``connect``."""
+        """Set a fault if heartbeats or replies are missing.
+
+        The fault remains active until ``connect`` is called.
+        """
         name, silent = self.config.name, self._without_beat
         if silent > _BEATS * self._bus.config.heartbeat:
             self._wrong(
@@ -166,7 +179,7 @@ _ANALOG_FULL_SCALE = 32767.0  # Full scale of an analog word.
 
 
 class CanopenIO:
-    """``core.ports.DigitalIO`` and ``Station`` on the modules, with the names from the machine file."""
+    """``core.ports.DigitalIO`` and ``core.ports.Station`` of the modules, named as in the machine file."""
 
     def __init__(self, config: CanopenConfig, bus: CanBus, drives: Mapping[str, Cia402Drive]) -> None:
         self._config = config
@@ -182,7 +195,10 @@ class CanopenIO:
         self._wheel: tuple[int, int] | None = None  # Counter at the last reading, and accumulated counts.
 
     def connect(self) -> None:
-        """Configure every module with the safe states of its outputs. Raises DriverError."""
+        """Configure every module, including the safe states of its outputs.
+
+        Raises DriverError.
+        """
         for where in self._required_terminals():
             drive = self._drives.get(where.node)
             if drive is not None and not drive.reports_inputs:
@@ -216,7 +232,9 @@ class CanopenIO:
             module.node.nmt.state = "OPERATIONAL"
 
     def run_cycle(self, now: float) -> str:
-        """Supervise the modules and send the outputs; return the first fault, or an empty text."""
+        """Supervise the modules, send the outputs, and return the first fault, or an empty text without a
+        fault.
+        """
         trouble: str = ""
         for module in self.modules.values():
             module.supervise()
@@ -225,13 +243,16 @@ class CanopenIO:
         return trouble
 
     def clear_fault(self) -> None:
-        """Configure modules again after a restart or silence. Raises DriverError."""
+        """Configure all modules again if a module has restarted or did not respond.
+
+        Raises DriverError.
+        """
         if any(module.failure for module in self.modules.values()):
             self.connect()
             self.start_nodes()
 
     def inputs(self) -> Mapping[str, bool]:
-        """Return all inputs by name; True is active."""
+        """Return the states of all inputs by name; True means active."""
         heard = (
             *(bytes(module.inputs) for module in self.modules.values()),
             *(drive.digital_inputs for drive in self._drives.values()),
@@ -242,11 +263,14 @@ class CanopenIO:
         return self._inputs
 
     def outputs(self) -> Mapping[str, bool]:
-        """Return all outputs by name, as last written."""
+        """Return the states of all outputs by name, as last commanded."""
         return dict(self._written)
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output, which is sent at the next tick. Raises DriverError."""
+        """Switch one output; the module receives the change at the next tick.
+
+        Raises DriverError.
+        """
         output = find_output(name, self._config.outputs)
         module = self._module(output.terminal)
         require_output_allowed(name, on, self._bus.failure or module.failure)
@@ -260,7 +284,7 @@ class CanopenIO:
         self._written[name] = on
 
     def switch_to_safe_state(self) -> None:
-        """Set every output to its safe state, immediately if the bus works."""
+        """Set every output to its safe state, and send the outputs at once unless the bus has failed."""
         for name, output in self._config.outputs.items():
             if output.safe_state is not None:
                 self._switch(name, output.terminal, output.safe_state)
@@ -269,7 +293,7 @@ class CanopenIO:
                 module.send_outputs(self._bus.clock.now())
 
     def read_state(self) -> StationState:
-        """Return the state of the operator station; its age is that of the oldest module."""
+        """Return the state of the operator station; its age is the age of the oldest module reply."""
         now = self._bus.clock.now()
         age = max((now - module.last_reply_s for module in self.modules.values()), default=0.0)
         return build_station_state(
@@ -281,9 +305,9 @@ class CanopenIO:
         )
 
     def _update_wheel_counts(self) -> int:
-        """Return the handwheel counts.
+        """Return the handwheel counts since power-up.
 
-        The 16-bit counter wraps around. Less than half of its range can pass between two calls.
+        The 16-bit counter wraps around, so it must change by less than half of its range between two calls.
         """
         if "handwheel" not in self._config.pots:
             return 0
@@ -322,9 +346,9 @@ _INPUT_DELAY_SYNCS = 2  # SYNCs: a module replies with its inputs of the previou
 
 
 class CanopenProbe(FirstTouchInput):
-    """Touch input by the replies to each SYNC.
+    """Touch input that is evaluated from the module replies to each SYNC.
 
-    The position latch of the drives (60B8) is not used, because its input is rarely free.
+    The position latch of the drives (object 60B8h) is not used, because its input is rarely free.
     """
 
     def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
@@ -332,7 +356,7 @@ class CanopenProbe(FirstTouchInput):
         self._axes, self._io, self._sync = axes, io, sync
 
     def record_touch(self) -> None:
-        """Latch the positions at the first touch; called once per cycle of the bus."""
+        """Latch the axis positions at the first touch; call this method once per bus cycle."""
         if self._is_first_touch(self._io.inputs()[PROBE_INPUT]):
             sample = self._axes.sample()
             self._kept = TouchLatch(sample.t, sample.actual, _INPUT_DELAY_SYNCS * self._sync)

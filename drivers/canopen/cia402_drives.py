@@ -1,4 +1,4 @@
-"""CiA 402 drive, configured by SDO and controlled by PDO."""
+"""CiA 402 drive that is configured by SDO and controlled by PDO."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ _REQUIRED_OBJECTS = (
 class Cia402Drive:
     """CiA 402 drive with its commanded and reported values.
 
-    ``goal_state``, ``commanded_mode``, ``mode_bits`` and ``target`` are the commanded values, which
-    ``send_command`` sends. ``target`` is a position, or a speed for a spindle. The dictionary of reported
-    values holds optional objects by index.
+    ``goal_state``, ``commanded_mode``, ``mode_bits`` and ``target_value`` are the commanded values, which
+    ``send_command`` sends. ``target_value`` is a position, or a speed for a spindle. ``reported_values``
+    contains the values of optional objects by their index.
     """
 
     def __init__(
@@ -83,44 +83,49 @@ class Cia402Drive:
 
     @property
     def state(self) -> DriveState:
-        """The state in the last status word."""
+        """Return the drive state that the last status word reports."""
         return decode_state(self.status_word)
 
     @property
     def enabled(self) -> bool:
-        """Whether the drive has power and follows commands."""
+        """Return whether the drive has power and follows commands."""
         return self.state is DriveState.OPERATION_ENABLED
 
     @property
     def is_silent(self) -> bool:
-        """Whether too many replies to SYNC are missing, so that the reported values are old."""
+        """Return whether too many replies to SYNC are missing, so that the reported values may
+        be outdated.
+        """
         return self.missing_reply_count > self._patience
 
     @property
     def reports_inputs(self) -> bool:
-        """Whether the drive reports digital inputs."""
+        """Return whether the drive reports digital inputs."""
         return self.profile.inputs in self._told_as
 
     @property
     def digital_inputs(self) -> int:
-        """The digital inputs as bits, or 0 if the drive does not report them."""
+        """Return the digital inputs as bits, or 0 if the drive does not report its inputs."""
         return self.reported_values.get(self.profile.inputs.object_index, 0)
 
     @property
     def speed(self) -> int:
-        """The measured speed in the drive's unit, or 0 if it is not mapped."""
+        """Return the measured speed in the unit of the drive, or 0 if the speed is not mapped to a PDO."""
         return self.reported_values.get(od.VELOCITY, 0)
 
     @property
     def torque_percent(self) -> float:
-        """The torque in percent of the rated torque, signed.
+        """Return the torque in percent of the rated torque, signed.
 
-        The value is nan if the drive does not report its torque, or while the drive is silent.
+        The value is nan if the drive does not report its torque or is silent.
         """
         return _NAN if self.is_silent else self._load
 
     def connect(self, setup_data: DriveSetupData) -> None:
-        """Check, configure and map the drive in PRE-OPERATIONAL. Raises DriverError if it does not match."""
+        """Check and configure the drive and map its PDOs, all in the state PRE-OPERATIONAL.
+
+        Raises DriverError if the drive does not match the machine file.
+        """
         setup, records = self.setup, setup_data.record_object
         setup.enter_pre_operational()
         setup.require_profile(402)
@@ -159,7 +164,7 @@ class Cia402Drive:
         )
 
     def _map_torque(self) -> None:
-        """Map the torque for the scope if possible; a failure does not prevent operation."""
+        """Map the torque for the scope if the drive has this object; an error does not prevent operation."""
         self._load = _NAN
         if self.setup.has_object(od.ACTUAL_TORQUE, 0):
             every = min(_RARER * self.bus.config.slow_reply_divisor, _MOST_RARE)
@@ -179,7 +184,10 @@ class Cia402Drive:
         self.bus.send_message(0x200 + self.node_id, data)
 
     def record_sync(self, now: float, *, reply_expected: bool = True) -> None:
-        """Record that a SYNC is sent; with ``reply_expected``, a reply is expected."""
+        """Record that a SYNC was sent at time ``now``.
+
+        With ``reply_expected``, the drive must reply to this SYNC.
+        """
         self.missing_reply_count, self.last_request_s = self.missing_reply_count + reply_expected, now
 
     def send_record(self, record: bytes) -> None:
@@ -187,14 +195,13 @@ class Cia402Drive:
         self.bus.send_message(0x300 + self.node_id, record)
 
     def reset_fault(self) -> None:
-        """Start to reset a fault; the drive is without power afterwards."""
+        """Start to reset a fault and switch the power of the drive off."""
         self.goal_state, self.mode_bits, self._resetting = DriveState.SWITCH_ON_DISABLED, 0, True
 
     def supervise(self, heartbeat_timeout_s: float) -> None:
-        """Set a fault for missing heartbeats or replies, or a drive fault; it remains until
-        ``clear_failure``.
+        """Set a fault if heartbeats or replies are missing, or if the drive reports a fault.
 
-        ``patience`` is the heartbeat timeout in seconds.
+        The fault remains active until ``clear_failure`` is called. ``heartbeat_timeout_s`` is in seconds.
         """
         now = self.bus.clock.now()
         if self._beats and now - self.last_heartbeat_s > heartbeat_timeout_s:
@@ -273,15 +280,15 @@ class Cia402Drive:
 
 
 def _to_object_address(entry: PdoEntry) -> tuple[int, int]:
-    """Return a PDO entry as (object + sub · 65536, bits)."""
+    """Return a PDO entry as a pair of (index + sub-index · 65536, bits)."""
     return entry.object_index | entry.subindex << 16, entry.bit_count
 
 
 @dataclass(frozen=True, slots=True)
 class DriveSetupData:
-    """Configuration of a drive: modes as bits of 0x6502, written objects, and the object of its queue.
+    """Configuration of a drive: modes as bits of object 6502h, objects to be written, and the queue object.
 
-    ``required_objects`` lists objects without which the drive cannot be used. ``setpoint_period_s`` is the
+    Without the objects in ``required_objects``, the drive cannot be used. ``setpoint_period_s`` is the
     setpoint period in seconds that the drive must monitor.
     """
 

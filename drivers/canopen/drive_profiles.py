@@ -1,7 +1,8 @@
-"""Drive families with the facts that their EDS files do not contain.
+"""Drive families and the properties that their EDS files do not contain.
 
-Objects and data types are from the vendors' EDS files and manuals: maxon EPOS2 and EPOS4, Copley Accelnet and
-Xenus. All other drives, such as those of Schunk and Pilz, are plain CiA 402 drives.
+Objects and data types are from the EDS files and manuals of the vendors: maxon for EPOS2 and EPOS4, Copley
+for Accelnet and Xenus. All other drives, such as those of Schunk and Pilz, are treated as plain CiA 402
+drives.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import NamedTuple
 
 
 class PdoEntry(NamedTuple):
-    """Object that a PDO contains."""
+    """Object that is mapped to a PDO."""
 
     object_index: int
     subindex: int
@@ -21,7 +22,7 @@ class PdoEntry(NamedTuple):
 
 
 class RecordFormat(Enum):
-    """Record formats of queues with position, velocity and time."""
+    """Format of the records of position, velocity and time in the queue of a drive."""
 
     EPOS2 = "20C1"
     COPLEY = "2010"
@@ -31,7 +32,10 @@ INPUT_ENTRY = PdoEntry(0x60FD, 0, 32)
 
 
 class DriveQueue(NamedTuple):
-    """Queue in a drive: record format, object, sub-mode for 0x60C0, and the number of records to use."""
+    """Record queue in a drive.
+
+    ``submode`` is the value for object 60C0h, and ``max_records`` the number of records that may be queued.
+    """
 
     record_format: RecordFormat
     object_index: int
@@ -41,7 +45,11 @@ class DriveQueue(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class DriveProfile:
-    """Drive family; with ``uses_rpm``, its units are rpm and rpm/s, which requires counts per revolution."""
+    """Profile of a drive family.
+
+    With ``uses_rpm``, the units of the family are rpm and rpm/s, so that the counts per revolution are
+    required.
+    """
 
     name: str
     title: str
@@ -94,7 +102,10 @@ RPM_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.
 
 
 def find_profile(name: str, vendor: int | None, product: str | None) -> DriveProfile:
-    """Return the family by its name, or without a name by vendor and product of the EDS file."""
+    """Return the profile of the drive family with this name.
+
+    If ``name`` is empty, find the family by the vendor and product in the EDS file.
+    """
     if name:
         return PROFILES[name]
     for profile in PROFILES.values():

@@ -1,6 +1,7 @@
-"""Set of axis drives that are powered and stopped together at one SYNC, with the PVT queue of each drive.
+"""Set of axis drives that are powered and stopped together at one SYNC, and the PVT queue of each drive.
 
-Records of position, velocity and time (PVT) are those of EPOS2 (20C1h) and of Copley (2010h).
+The records of position, velocity and time (PVT) have the formats of EPOS2 (object 20C1h) and Copley (object
+2010h).
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ _FAULT_STATES = frozenset((DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE))
 def pack_epos2_record(duration_ms: int, velocity: float, position: float) -> bytes:
     """Pack one EPOS2 record: position in the low 32 bits, velocity in 24 bits, time in 8 bits.
 
-    Raises ValueError for values out of range.
+    Raises ValueError if a value is out of range.
     """
     speed, place = round(velocity), round(position)
     if abs(speed) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
@@ -52,14 +53,14 @@ def pack_epos2_record(duration_ms: int, velocity: float, position: float) -> byt
 
 
 def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
-    """Return milliseconds, velocity and position of an EPOS2 record."""
+    """Return the milliseconds, velocity and position of an EPOS2 record."""
     return data[7], _signed(data[4:7]), _RECORD_FORMAT.unpack(data[:4])[0]
 
 
 def pack_copley_segment(number: int, duration_ms: int, velocity: float, position: float) -> bytes:
-    """Pack one Copley segment of format 0: count, time, position, and velocity in 0.1 counts/s.
+    """Pack one Copley segment of format 0: number, time, position, and velocity in 0.1 counts/s.
 
-    Raises ValueError for values that exceed 24 bits.
+    Raises ValueError if the position or velocity exceeds 24 bits, or the time exceeds 255 ms.
     """
     speed, place = round(_COPLEY_VELOCITY_SCALE * velocity), round(position)
     if abs(speed) > _MAX_SIGNED_24_BIT or abs(place) > _MAX_SIGNED_24_BIT or not 0 <= duration_ms <= 255:
@@ -70,23 +71,26 @@ def pack_copley_segment(number: int, duration_ms: int, velocity: float, position
 
 
 def unpack_copley_segment(data: bytes) -> tuple[int, int, float, int]:
-    """Return count, milliseconds, velocity in counts/s and position of a Copley segment."""
+    """Return the number, milliseconds, velocity in counts/s, and position of a Copley segment."""
     return data[0] & 0x07, data[1], _signed(data[5:8]) / _COPLEY_VELOCITY_SCALE, _signed(data[2:5])
 
 
 class RecordQueue:
-    """PVT queue of one drive."""
+    """Queue of records with position, velocity and time (PVT) in one drive."""
 
     def __init__(
         self, config: AxisConfig, queue: DriveQueue, setup: NodeSetup, send_bytes: Callable[[bytes], None]
     ) -> None:
-        """Create the queue; ``send_bytes`` transmits a record to the drive immediately."""
+        """Create the queue; ``send_bytes`` sends a record to the drive immediately."""
         self._config, self._setup, self._send = config, setup, send_bytes
         self.queue = queue
         self._pushed = 0
 
     def clear(self) -> None:
-        """Clear the queue in the drive. Raises DriverError."""
+        """Clear the queue in the drive.
+
+        Raises DriverError.
+        """
         self._pushed = 0
         if self.queue.record_format is RecordFormat.COPLEY:
             for order in (_CLEAR, _COUNT_ANEW):
@@ -96,9 +100,10 @@ class RecordQueue:
                 self._setup.write(od.BUFFER, 6, clear)
 
     def send_record(self, duration_ms: int, velocity: float, position: float) -> None:
-        """Send one record with position in mm or degrees and velocity per second.
+        """Send one record.
 
-        Raises ValueError for values that do not fit into a record.
+        ``position`` is in mm or degrees, and ``velocity`` in mm/s or degrees/s. Raises ValueError if a
+        value does not fit into a record.
         """
         config = self._config
         place = position / config.count
@@ -119,7 +124,10 @@ def _signed(data: bytes) -> int:
 
 @dataclass(frozen=True, slots=True)
 class MotionMode:
-    """Motion mode: CiA 402 mode, object of the setpoints, and whether one setpoint is sent per SYNC."""
+    """Motion mode: the CiA 402 mode and the object for setpoints.
+
+    If ``is_cyclic`` is true, one setpoint is sent per SYNC.
+    """
 
     mode: int
     target_entry: PdoEntry = POSITION_TARGET
@@ -136,7 +144,10 @@ MOTION_MODES = {  # By the mode in the machine file.
 
 @dataclass(slots=True)
 class DrivenAxis:
-    """One axis with its drive; ``is_homed`` means that its counts are machine positions."""
+    """Axis with its drive.
+
+    If ``is_homed`` is true, the counts of the drive are machine positions.
+    """
 
     config: AxisConfig
     drive: Cia402Drive
@@ -146,7 +157,7 @@ class DrivenAxis:
     records: RecordQueue | None = None  # Queue of the drive if its family has one.
 
     def __post_init__(self) -> None:
-        """Create the queue of the drive if its family has one."""
+        """Create the record queue if the drive family has one."""
         queue = self.config.profile.queue
         self.records = None
         if queue is not None:
@@ -154,12 +165,12 @@ class DrivenAxis:
 
     @property
     def is_ready(self) -> bool:
-        """Whether the drive has power and reports the commanded mode."""
+        """Return whether the drive has power and reports the commanded mode."""
         return self.drive.enabled and self.drive.reported_mode == self.drive.commanded_mode
 
 
 class DriveSet:
-    """Set of all axis drives with their common motion mode."""
+    """Set of all axis drives, which use the same motion mode."""
 
     def __init__(self, axes: tuple[AxisConfig, ...], bus: CanBus, motion_mode: MotionMode) -> None:
         self._bus = bus
@@ -178,21 +189,24 @@ class DriveSet:
 
     @property
     def drives(self) -> list[Cia402Drive]:
-        """The drives of the axes."""
+        """Return the drives of all axes."""
         return [axis.drive for axis in self.axes]
 
     @property
     def is_powered(self) -> bool:
-        """Whether all drives have power."""
+        """Return whether all drives have power."""
         return all(axis.drive.enabled for axis in self.axes)
 
     @property
     def is_moving(self) -> bool:
-        """Whether any axis moves, according to its counts."""
+        """Return whether the counts of any axis are changing."""
         return any(axis.is_moving for axis in self.axes)
 
     def configure_drives(self) -> None:
-        """Configure every drive before the NMT start. Raises DriverError."""
+        """Configure every drive before the nodes are started by NMT.
+
+        Raises DriverError.
+        """
         for axis in self.axes:
             self._connect(axis)
 
@@ -202,26 +216,28 @@ class DriveSet:
             axis.drive.start_node()
 
     def send_commands(self) -> None:
-        """Send the commands of all drives, which take effect together at the next SYNC."""
+        """Send the commands to all drives, which execute them together at the next SYNC."""
         for axis in self.axes:
             axis.drive.send_command()
 
     def record_sync(self, now: float) -> None:
-        """Record that a SYNC is sent, to which every drive must reply."""
+        """Record that a SYNC was sent, to which every drive must reply."""
         for axis in self.axes:
             axis.drive.record_sync(now)
 
     def exchange_sync(self) -> None:
-        """Send the commands and a SYNC immediately."""
+        """Send the commands to all drives and then a SYNC, immediately."""
         self._sent = self._bus.clock.now()
         self.send_commands()
         self.record_sync(self._sent)
         self._bus.send_sync()
 
     def poll_axes(self) -> list[DrivenAxis]:
-        """Exchange once if the last exchange has been answered or has timed out, and return the axes.
+        """Process received frames and return the axes.
 
-        Used as the polling step of a wait. In cyclic modes, the SYNC continues independently.
+        If all drives have replied to the last SYNC, or the reply is overdue, send the next commands and
+        SYNC. A caller that waits for the drives repeats this method. In cyclic modes, the SYNC continues
+        independently.
         """
         if self._how.is_cyclic and not self._bus.is_stepped:
             return self.axes  # The wait of the bus continues the SYNC.
@@ -232,14 +248,15 @@ class DriveSet:
         return self.axes
 
     def set_goal_state(self, goal: DriveState) -> None:
-        """Set the goal state of all drives and clear their motion bits."""
+        """Set the goal state of all drives and clear their mode bits."""
         for axis in self.axes:
             axis.drive.goal_state, axis.drive.mode_bits = goal, 0
 
     def power_on(self) -> None:
-        """Switch all drives on and wait.
+        """Switch all drives on, and wait until all of them have power.
 
-        Raises DriverError that names the drives that fail; then all are switched off.
+        If a drive does not switch on, all drives are switched off, and DriverError names the drives that
+        failed.
         """
         for axis in self.axes:
             axis.drive.commanded_mode, axis.drive.goal_state = self._how.mode, DriveState.OPERATION_ENABLED
@@ -258,14 +275,14 @@ class DriveSet:
             raise DriverError(why, "no-power")
 
     def power_off(self) -> None:
-        """Switch all drives off and wait up to 0.3 s."""
+        """Switch all drives off, and wait up to 0.3 s until they have no power."""
         self.set_goal_state(DriveState.SWITCH_ON_DISABLED)
         self._bus.wait_until(lambda: not any(axis.drive.enabled for axis in self.poll_axes()), 0.3)
 
     def reset_faults(self) -> None:
-        """Reset faults and configure drives that have restarted; afterwards no drive has power.
+        """Reset all faults, and configure the drives that have restarted.
 
-        Raises DriverError if a fault remains.
+        Afterward, all drives are without power. Raises DriverError if a fault remains active.
         """
         for axis in self.axes:
             if axis.drive.has_restarted or axis.drive.missing_reply_count:
@@ -284,12 +301,12 @@ class DriveSet:
             raise DriverError(why, "drive-keeps-fault")
 
     def clear_home(self) -> None:
-        """Clear the home of all axes without an absolute encoder, as required after an E-stop."""
+        """Mark all axes without an absolute encoder as not homed, as required after an E-stop."""
         for axis in self.axes:
             axis.is_homed = axis.config.absolute
 
     def supervise(self) -> str:
-        """Supervise the drives and return the first fault, or an empty text."""
+        """Supervise the drives, and return the first fault, or an empty text without a fault."""
         trouble: str = ""
         for axis in self.axes:
             axis.drive.supervise(3.0 * self._bus.config.heartbeat)
@@ -299,9 +316,9 @@ class DriveSet:
         return trouble
 
     def update_motion(self, now: float) -> None:
-        """Update which axes move, by comparing the positions of two replies.
+        """Determine which axes move by comparing their positions in two replies.
 
-        A silent drive counts as stopped when the time for its own stop reaction has passed.
+        A silent drive is treated as stopped after the time that its own stop reaction takes.
         """
         speaking = [axis for axis in self.axes if not axis.drive.is_silent]
         for axis in self.axes:
@@ -330,7 +347,7 @@ class DriveSet:
 
 
 def build_drive_setup(config: AxisConfig, bus: CanopenTable, motion_mode: MotionMode) -> DriveSetupData:
-    """Return the configuration of an axis drive."""
+    """Return the configuration for an axis drive."""
     queue = config.profile.queue if motion_mode.mode == IP and not motion_mode.is_cyclic else None
     submode: ObjectValues = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
     return DriveSetupData(
@@ -347,7 +364,10 @@ def build_drive_setup(config: AxisConfig, bus: CanopenTable, motion_mode: Motion
 
 
 def _create_axis(config: AxisConfig, drive: Cia402Drive) -> DrivenAxis:
-    """Create an axis with the profile of its drive. Raises DriverError if required counts are missing."""
+    """Create an axis with the profile of its drive.
+
+    Raises DriverError if the drive needs counts per revolution, but the machine file does not specify them.
+    """
     profile = drive.profile
     if profile.uses_rpm and not config.counts_per_rev:
         where = f"canopen.nodes.{config.name}.counts_per_rev"
@@ -363,5 +383,5 @@ def _create_axis(config: AxisConfig, drive: Cia402Drive) -> DrivenAxis:
 
 
 def build_period_objects(period_s: float) -> ObjectValues:
-    """Return the objects that set the setpoint period (0x60C2)."""
+    """Return the objects that set the setpoint period (object 60C2h)."""
     return ((od.IP_TIME, 1, round(1000 * period_s)), (od.IP_TIME, 2, -3))

@@ -1,8 +1,11 @@
-"""Transfer of setpoints in profile position mode (PP), or one setpoint per SYNC (CSP, IP by 60C1h).
+"""Transfer of setpoints in profile position mode (PP), or of one setpoint per SYNC (CSP or IP).
 
-With one setpoint per SYNC, the drives move linearly between setpoints in the time of 0x60C2 and stop at the
-last one. After a late SYNC, the path continues without a jump and catches up by running 2 % faster. A delay
-of more than 10 ms is a fault, because the drives have stopped within a cut.
+Mode IP uses object 60C1h for the setpoints.
+
+With one setpoint per SYNC, a drive moves linearly from setpoint to setpoint in the time of object 60C2h and
+stops at the last setpoint. After a late SYNC, the path continues without a jump and then runs 2 % faster
+until the delay is recovered. A delay of more than 10 ms is a fault, because the drives have stopped within
+a cut.
 """
 
 from __future__ import annotations
@@ -22,12 +25,15 @@ from drivers.setpoint_queue import SetpointQueue
 
 
 class SetpointFollower(ABC):
-    """Base class that makes the drives follow the setpoint queue from their present positions."""
+    """Base class of objects that make the drives follow the setpoint queue.
+
+    The drives start from their present positions.
+    """
 
     mode: int  # Mode of CiA 402.
 
     def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
-        """Create the follower; ``indices`` are the positions of the axes in the queue."""
+        """Create the follower; ``indices`` are the indices of the axes in the queue."""
         self._axes = axes
         self._indices = indices
         self._queue = queue
@@ -37,24 +43,29 @@ class SetpointFollower(ABC):
 
     @property
     def is_playing(self) -> bool:
-        """Whether the drives have not yet completed the transferred setpoints."""
+        """Return whether the drives are still executing transferred setpoints."""
         return False
 
     def get_path_time(self, t: float) -> float:
-        """Return the time in the queue that the drives had reached at time ``t``."""
+        """Return the time in the setpoint queue that the drives had reached at time ``t``."""
         return t
 
     def check_segments(self, segments: Segments) -> None:
-        """Raise DriverError if the drives cannot follow ``segments``; the default accepts any path."""
+        """Raise DriverError if the drives cannot follow ``segments``.
+
+        This default implementation accepts any path.
+        """
 
     def handle_braking(self, brake_time: float) -> None:
-        """Handle a queue that brakes from ``brake_time`` on; the default relies on the next
-        ``feed_setpoints``.
+        """React to a queue that was replaced by braking from time ``brake_time`` on.
+
+        This default implementation does nothing, because the next call of ``feed_setpoints`` transfers the
+        braking.
         """
 
     @abstractmethod
     def feed_setpoints(self, now: float) -> None:
-        """Transfer setpoints; called once per tick before the commands are sent."""
+        """Transfer setpoints; call this method once per tick before the commands are sent."""
 
     def prepare_targets(self) -> None:
         """Set the targets to the present positions before the drives are switched on."""
@@ -62,7 +73,7 @@ class SetpointFollower(ABC):
             axis.drive.target_value = axis.drive.position
 
     def abort_transfer(self) -> None:
-        """Stop transferring setpoints, because the drives stop on their own."""
+        """Stop transferring setpoints, because the drives stop without setpoints."""
         self.failure = ""
 
 
@@ -73,9 +84,10 @@ _ACKNOWLEDGE_TIMEOUT_S = 0.2  # Seconds in which a drive must acknowledge a targ
 
 
 class ProfiledFollower(SetpointFollower):
-    """Follower that sends each drive the end of the queue as its target, with the speeds of the path.
+    """Follower that sends each drive the end of the queue as its target, together with the speed of the
+    path.
 
-    It supports straight moves only, because each drive plans its own motion.
+    Only straight moves are possible, because each drive plans its own motion.
     """
 
     mode = PP
@@ -87,11 +99,14 @@ class ProfiledFollower(SetpointFollower):
 
     @property
     def is_playing(self) -> bool:
-        """Whether a target is pending or not yet acknowledged."""
+        """Return whether a target has not been sent or not been acknowledged yet."""
         return self._pending is not None or self._told >= 0.0
 
     def check_segments(self, segments: Segments) -> None:
-        """Store a straight move. Raises DriverError if the path is not straight."""
+        """Store a straight move as the next target.
+
+        Raises DriverError if the path is not straight.
+        """
         dt = segments.dt[-1]
         end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
         way = end - segments.p[0]
@@ -110,7 +125,7 @@ class ProfiledFollower(SetpointFollower):
         self._pending = (float(segments.t[0]), segments)
 
     def handle_braking(self, brake_time: float) -> None:
-        """Send the new end of the queue as the target, with maximum deceleration."""
+        """Schedule the new end of the queue as the target, with the maximum deceleration."""
         self._pending = (brake_time, None)
 
     def prepare_targets(self) -> None:
@@ -119,13 +134,13 @@ class ProfiledFollower(SetpointFollower):
         super().prepare_targets()
 
     def abort_transfer(self) -> None:
-        """Discard the pending target."""
+        """Discard the pending target and its acknowledgment."""
         self._pending, self._told, self.failure = None, -1.0, ""
         for axis in self._axes:
             axis.drive.mode_bits &= ~(NEW | AT_ONCE)
 
     def feed_setpoints(self, now: float) -> None:
-        """Send a target at its time, then wait for the acknowledgment."""
+        """Send the pending target when it is due, and then wait for the acknowledgment."""
         if self._told >= 0.0:
             self._await_acknowledgment(now)
         elif self._pending is not None and now >= self._pending[0]:
@@ -149,7 +164,10 @@ class ProfiledFollower(SetpointFollower):
             drive.mode_bits |= NEW | AT_ONCE
 
     def _await_acknowledgment(self, now: float) -> None:
-        """Clear bit 4 after the drives have acknowledged by bit 12."""
+        """Clear bit 4 of the control word after all drives have acknowledged the target.
+
+        A drive acknowledges the target by bit 12 of its status word.
+        """
         late = [a.config.name for a in self._axes if not a.drive.status_word & BIT_12]
         if not late:
             self._told = -1.0
@@ -170,7 +188,7 @@ _START_TIMEOUT_S = 0.3  # Seconds in which a drive must start to interpolate.
 
 
 class SyncSchedule:
-    """Schedule of the SYNCs, which remain in phase even if one is late."""
+    """Schedule of the SYNCs, whose times stay in phase even if one SYNC is late."""
 
     def __init__(self, period_s: float, now: float) -> None:
         self.period_s = period_s
@@ -179,9 +197,9 @@ class SyncSchedule:
         self._late = 0.0  # Delay of the last SYNC.
 
     def record_sync(self, now: float) -> float:
-        """Record a SYNC at ``now`` and return the extra seconds that the drives have waited.
+        """Record a SYNC at time ``now`` and return the additional seconds that the drives have waited.
 
-        The result is 0 for a delay that a drive tolerates, and for the return to the schedule.
+        The result is 0 if a drive tolerates the delay, and when the SYNCs return to the schedule.
         """
         late = max(now - self.due_time_s, 0.0)
         self.max_delay_s = max(self.max_delay_s, late)
@@ -193,9 +211,9 @@ class SyncSchedule:
 
 
 class CyclicFollower(SetpointFollower):
-    """Follower with one setpoint per SYNC, in mode CSP or IP.
+    """Follower that sends one setpoint per SYNC in mode CSP or IP.
 
-    Mode IP must be started by bit 4 and is confirmed by bit 12.
+    Mode IP must be started by bit 4 of the control word and is confirmed by bit 12 of the status word.
     """
 
     def __init__(
@@ -217,13 +235,13 @@ class CyclicFollower(SetpointFollower):
 
     @property
     def is_playing(self) -> bool:
-        """Whether the path is delayed and has not ended yet."""
+        """Return whether the path is delayed and has not ended yet."""
         return self.lag_s > 0.0 and not is_queue_finished(
             self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s)
         )
 
     def get_path_time(self, t: float) -> float:
-        """Return the time in the queue at ``t``, which is reduced by the lag."""
+        """Return the time in the setpoint queue at time ``t``, which is earlier by the lag."""
         return t - self.lag_s
 
     def abort_transfer(self) -> None:
@@ -233,7 +251,10 @@ class CyclicFollower(SetpointFollower):
             axis.drive.mode_bits &= ~NEW
 
     def delay_path(self, waited_s: float) -> None:
-        """Delay the path by the seconds that the drives have waited at a setpoint."""
+        """Delay the path by the seconds that the drives have waited at a setpoint.
+
+        A delay that is too long in total sets a fault.
+        """
         if is_queue_finished(
             self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s) - waited_s
         ):
@@ -249,7 +270,7 @@ class CyclicFollower(SetpointFollower):
             )
 
     def feed_setpoints(self, now: float) -> None:
-        """Set the targets for the next SYNC, which the drives reach at the SYNC after it."""
+        """Set the targets for the next SYNC, which the drives reach one SYNC later."""
         standing = is_queue_finished(self._queue.queue_end(-1e9), self.get_path_time(now))
         self.lag_s = 0.0 if standing else max(self.lag_s - _RECOVERY_FRACTION * self.schedule.period_s, 0.0)
         self._fed = self.get_path_time(self.schedule.due_time_s + self.schedule.period_s)
@@ -260,7 +281,7 @@ class CyclicFollower(SetpointFollower):
             self._interpolate(now)
 
     def _interpolate(self, now: float) -> None:
-        """Set bit 4 when the drives have power in this mode, and check that they start."""
+        """Set bit 4 when the drives have power in this mode, and set a fault if they do not start."""
         if self._asked is None:
             self._asked = now
             for axis in self._axes:

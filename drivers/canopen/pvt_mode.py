@@ -1,4 +1,4 @@
-"""Interpolated position mode with PVT records in a queue of each drive, which ends at rest."""
+"""Interpolated position mode with PVT records, which each drive stores in a queue that ends at rest."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ _CHECK_FRACTIONS = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 
 
 class PathPiece(NamedTuple):
-    """Piece of the path: its duration, and the deviation of its cubic from the path in counts."""
+    """Piece of the path that is sent as one record.
+
+    ``deviation_counts`` is the deviation of the drive's cubic curve from the path in counts.
+    """
 
     duration_ms: int
     deviation_counts: float
@@ -40,11 +43,10 @@ class PathPiece(NamedTuple):
 def fit_longest_piece(
     motion_at: MotionFunction, t: float, max_duration_ms: int, count_sizes: Sequence[float]
 ) -> PathPiece:
-    """Return the longest piece of at most ``max_duration_ms`` ms whose cubic stays within half a count of
-    the path.
+    """Return the longest piece whose cubic curve deviates from the path by at most half a count.
 
-    ``count_sizes`` is the length of a count for each axis. The shortest piece is used regardless of its
-    deviation.
+    The piece starts at time ``t`` and takes at most ``max_duration_ms``. ``count_sizes`` is the distance
+    per count of each axis. The shortest possible piece is used even if its deviation is larger.
     """
     ms = max_duration_ms
     while True:
@@ -55,7 +57,10 @@ def fit_longest_piece(
 
 
 def find_max_deviation(motion_at: MotionFunction, t: float, dt: float, count_sizes: Sequence[float]) -> float:
-    """Return the largest deviation of the cubic from ``t`` to ``t + dt`` in counts of the worst axis."""
+    """Return the largest deviation from the path, in counts of the axis that deviates most.
+
+    The cubic curve runs from time ``t`` to ``t + dt``.
+    """
     p0, v0 = motion_at(t)
     p1, v1 = motion_at(t + dt)
     worst = 0.0
@@ -68,7 +73,10 @@ def find_max_deviation(motion_at: MotionFunction, t: float, dt: float, count_siz
 
 
 def interpolate_hermite(p0: float, v0: float, p1: float, v1: float, dt: float, fraction: float) -> float:
-    """Return the cubic through two points with their velocities, at fraction ``fraction`` of ``dt``."""
+    """Return the value of the cubic curve through two points with given velocities.
+
+    The value applies at the fraction ``fraction`` of the duration ``dt``.
+    """
     r = 1.0 - fraction
     return r * r * (p0 + fraction * (2.0 * p0 + v0 * dt)) + fraction * fraction * (
         p1 + r * (2.0 * p1 - v1 * dt)
@@ -93,7 +101,9 @@ class _Phase(Enum):
 
 
 class PvtFollower(SetpointFollower):
-    """Follower that fills the drives' queues a fixed time ahead, with the same points for all axes.
+    """Follower that fills the queues of the drives a fixed time ahead.
+
+    The records of all axes have the same times.
 
     The duration of each record is a whole number of milliseconds.
     """
@@ -119,24 +129,24 @@ class PvtFollower(SetpointFollower):
 
     @property
     def is_playing(self) -> bool:
-        """Whether the queues of the drives are running."""
+        """Return whether the drives are executing the records in their queues."""
         return self._phase is not _Phase.REST
 
     def prepare_targets(self) -> None:
-        """Clear the queues of the drives."""
+        """Clear the record queues of the drives."""
         for axis in self._axes:
             _get_record_queue(axis).clear()
         self.abort_transfer()
 
     def abort_transfer(self) -> None:
-        """Stop filling the queues."""
+        """Stop filling the record queues."""
         self._phase, self.failure = _Phase.REST, ""
         self._sent.clear()
         for axis in self._axes:
             axis.drive.mode_bits &= ~NEW
 
     def feed_setpoints(self, now: float) -> None:
-        """Start, fill or end the queues."""
+        """Start the record queues, fill them, or let them end, depending on the path."""
         if self._phase is _Phase.REST and not is_queue_finished(self._queue.queue_end(now), now):
             self._start_queues(now)
         elif self._phase is _Phase.PLAYING:
@@ -147,7 +157,7 @@ class PvtFollower(SetpointFollower):
             self.must_send_now = True  # The drives must detect the fall of bit 4 before it rises again.
 
     def _start_queues(self, now: float) -> None:
-        """Send points at rest, then start all drives at one SYNC from their present positions."""
+        """Send records at rest, and then start all drives at one SYNC from their present positions."""
         if any(self._queue.commanded_state_at(now)[1]):
             self.failure = Fault("the drives started late, after the path had begun", "queue-dry")
             return
@@ -191,7 +201,7 @@ class PvtFollower(SetpointFollower):
             self._push(piece.duration_ms)
 
     def _queued_record_count(self, now: float) -> int:
-        """Return the number of records that are not yet executed."""
+        """Return the number of records that the drives have not executed yet."""
         while self._sent and self._sent[0] < now:
             self._sent.popleft()
         return len(self._sent)
@@ -207,7 +217,7 @@ class PvtFollower(SetpointFollower):
         self._sent.append(self.next_point_time_s)
 
     def _count_sizes(self) -> list[float]:
-        """Return the length of a count for each axis, including C while it is engaged."""
+        """Return the distance per count of each axis, including C while it is engaged."""
         return [axis.config.count for axis in self._axes]
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -220,7 +230,10 @@ class PvtFollower(SetpointFollower):
 
 
 def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
-    """Return the queue of a drive. Raises DriverError if its family does not have one."""
+    """Return the record queue of a drive.
+
+    Raises DriverError if the drive family does not have a queue.
+    """
     if axis.records is None:
         raise DriverError(
             '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '

@@ -1,1 +1,1 @@
-"""Driver host: a separate process that owns bus and queue and survives a crash of the control."""
+"""The driver host: a separate process that owns the bus and the queue and survives a crash of the control."""

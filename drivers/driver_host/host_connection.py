@@ -1,6 +1,6 @@
-"""Connection to the driver host, by a socket or within one thread, with the last polled state.
+"""The connection to the driver host, by a socket or within one thread, with the last polled state.
 
-A driver host that has ended is a fault.
+If the driver host has ended, the connection reports a fault.
 """
 
 from __future__ import annotations
@@ -38,24 +38,33 @@ _MAX_BATCHES = 200  # Maximum number of sample batches waiting for the recorder.
 
 
 class HostLink(Protocol):
-    """Connection that transports requests and replies; ``end_signals`` become readable when it ends."""
+    """A connection that transports requests and replies.
+
+    ``end_signals`` are files that become readable when the connection ends.
+    """
 
     @property
     def end_signals(self) -> Sequence[int]: ...
 
     def send_request(self, message: Message) -> Message:
-        """Send a request and return the reply. Raises DriverError without a reply."""
+        """Send a request and return the reply.
+
+        Raises DriverError if no reply is received.
+        """
         ...
 
     def disconnect(self) -> None:
-        """Disconnect, from any thread."""
+        """End the connection; any thread may call this method."""
         ...
 
     def close(self) -> None: ...
 
 
 def clear_host_faults(link: HostLink) -> HostLink:
-    """Clear the faults of the drives after a restart of the driver host. Raises DriverError."""
+    """Clear the faults of the drives after a restart of the driver host, and return the link.
+
+    Raises DriverError if the faults cannot be cleared.
+    """
     answer = link.send_request(Message({"do": "do", "what": "clear_fault"}, NO_NUMBERS))
     if why := read_fault(answer.head, "error", "driver"):
         raise DriverError(why)
@@ -63,10 +72,10 @@ def clear_host_faults(link: HostLink) -> HostLink:
 
 
 class HostConnection:
-    """Connection that sends requests and caches the last polled state.
+    """A connection that sends requests to the driver host and caches the last polled state.
 
-    ``restart_host`` starts another driver host in place of a lost one. The driver host also uses
-    ``wakeup_bell`` while the control sleeps.
+    ``restart_host`` starts a new driver host to replace a lost one. The driver host rings ``wakeup_bell``
+    while the control sleeps.
     """
 
     def __init__(
@@ -111,33 +120,42 @@ class HostConnection:
         return answer
 
     def send_command(self, command: str, **values: object) -> None:
-        """Send a command that changes the machine, and invalidate the polled state."""
+        """Send a command that changes the machine, and invalidate the cached state."""
         self._at = -1.0
         self.send_request(Message({"do": "do", "what": command, **values}, NO_NUMBERS))
 
     def post_message(self, message: Message) -> None:
-        """Queue a message from any thread, which is sent before the next poll."""
+        """Queue a message, which is sent before the next poll.
+
+        Any thread may call this method.
+        """
         self._posted.put(message)
         if self.wakeup_bell is not None:
             self.wakeup_bell.ring()
 
     def enter_sleep(self) -> None:
-        """Let the driver host send wake-ups for changes until the next other request. Raises DriverError."""
+        """Let the driver host send a wake-up for each change, until the next other request.
+
+        Raises DriverError if the request fails.
+        """
         if not self._asleep:
             self.send_request(Message({"do": "rest"}, NO_NUMBERS))
         self._asleep = self._sleeps = True
 
     def leave_sleep(self) -> None:
-        """End the sleep, and invalidate the polled state."""
+        """End the sleep, and invalidate the cached state."""
         self._sleeps, self._at = False, -1.0
 
     @property
     def end_signals(self) -> Sequence[int]:
-        """The files of the connection, which become readable only when it ends."""
+        """Return the files of the connection, which become readable only when the connection ends."""
         return self._link.end_signals
 
     def poll_state(self, *, force: bool = False) -> Mapping[str, object]:
-        """Poll the state, at most once per tick unless forced; return the last state after a loss."""
+        """Poll the state, at most once per tick unless ``force`` is True, and return it.
+
+        After the loss of the driver host, the last state is returned.
+        """
         if self._opening is not None:
             self._reopen(self._opening)
         now = self.clock.now()
@@ -161,13 +179,14 @@ class HostConnection:
 
     @property
     def is_lost(self) -> bool:
-        """Whether no driver host is available."""
+        """Return whether no driver host is available."""
         return self.fault != "" or self._opening is not None
 
     def restart_host(self) -> None:
-        """Start another driver host; a later failure becomes the next fault.
+        """Start a new driver host.
 
-        Raises DriverError if a restart is not possible.
+        If the start fails later, the failure becomes the next fault. Raises DriverError if a restart is not
+        possible.
         """
         if self._again is None:
             words = Text("{fault}; restart TurnDesk", fault=self.fault)
@@ -175,7 +194,10 @@ class HostConnection:
         self.fault, self._opening = "", self._again()
 
     def read_properties(self) -> Mapping[str, object]:
-        """Return the properties of the driver host. Raises DriverError for another version."""
+        """Return the properties of the driver host.
+
+        Raises DriverError if the driver host uses another version of the protocol.
+        """
         hello = self.send_request(Message({"do": "hello"}, NO_NUMBERS)).head
         if hello.get("version") != PROTOCOL_VERSION:
             raise DriverError(
@@ -198,13 +220,19 @@ class HostConnection:
             self._opening, self.fault = None, error.fault
 
     def find_unknown_items(self) -> frozenset[UnknownPart]:
-        """Return the unknown states; all of them if the driver host is lost."""
+        """Return the parts of the machine state that are unknown.
+
+        All parts are unknown if the driver host is lost.
+        """
         if self.is_lost:
             return ALL_UNKNOWN_PARTS
         return frozenset(map(UnknownPart, parse_texts(self.poll_state().get("unknown"))))
 
     def disconnect(self) -> None:
-        """Disconnect from any thread; the driver host detects the loss and stops the machine for good."""
+        """End the connection; any thread may call this method.
+
+        The driver host detects the loss and stops the machine permanently.
+        """
         self._link.disconnect()
 
     def close(self) -> None:
@@ -223,7 +251,10 @@ _RECEIVE_SIZE = 1 << 16
 
 
 class InProcessLink:
-    """Link to a driver host in the same thread that uses the same bytes, for tests and headless runs."""
+    """A link to a driver host in the same thread, for tests and headless runs.
+
+    It exchanges the same bytes as a link to a separate process.
+    """
 
     end_signals = ()  # Its end is always detected.
 
@@ -231,7 +262,10 @@ class InProcessLink:
         self._host = host
 
     def send_request(self, message: Message) -> Message:
-        """Run one cycle of the driver host, then encode, handle and decode the message."""
+        """Run one cycle of the driver host, let it handle the message, and return its reply.
+
+        The message and the reply are encoded and decoded.
+        """
         self._host.run_cycle()
         (request,) = MessageDecoder().decode(encode_message(message))
         (answer,) = MessageDecoder().decode(encode_message(self._host.handle_message(request)))
@@ -247,7 +281,10 @@ class InProcessLink:
 
 
 class SocketLink:
-    """Link to a driver host in its own process, with one request at a time and a time limit for each."""
+    """A link to a driver host in its own process.
+
+    It handles one request at a time, with a time limit for each request.
+    """
 
     def __init__(self, sock: socket.socket) -> None:
         self._socket = sock
@@ -256,11 +293,14 @@ class SocketLink:
 
     @property
     def end_signals(self) -> tuple[int, ...]:
-        """The file of the socket, which becomes readable when the driver host ends."""
+        """Return the file of the socket, which becomes readable when the driver host ends."""
         return (self._socket.fileno(),)
 
     def send_request(self, message: Message) -> Message:
-        """Send a request and return the reply. Raises DriverError after a loss or a timeout."""
+        """Send a request and return the reply.
+
+        Raises DriverError after a loss of the connection or a timeout.
+        """
         limit = _LONG_TIMEOUTS_S.get(text(message.head, "what"), _REPLY_TIMEOUT_S)
         try:
             self._socket.settimeout(limit)
@@ -278,12 +318,12 @@ class SocketLink:
             ) from error
 
     def disconnect(self) -> None:
-        """Shut down both directions, even while another thread waits for a reply."""
+        """Shut down both directions of the socket, even while another thread waits for a reply."""
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_RDWR)
 
     def close(self) -> None:
-        """Disconnect and close the socket; the driver host then stops the machine."""
+        """Disconnect and close the socket, after which the driver host stops the machine."""
         self.disconnect()
         self._socket.close()
 

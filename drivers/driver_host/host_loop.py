@@ -1,4 +1,7 @@
-"""Loop of the driver host process, which runs every few milliseconds with real-time priority if allowed."""
+"""The loop of the driver host process, which runs every few milliseconds.
+
+It runs with real-time priority if this is permitted.
+"""
 
 from __future__ import annotations
 
@@ -24,14 +27,17 @@ _STOP_TIME_LIMIT_S = (
 
 
 def request_real_time(priority: int = REAL_TIME_PRIORITY) -> list[str]:
-    """Request SCHED_FIFO and return a message for the operator if it was refused."""
+    """Request SCHED_FIFO, and return a message for the operator if the request is refused."""
     cause = request_scheduling("SCHED_FIFO", priority)
     words = "the driver host runs without real-time priority ({cause}); see docs/integrator/computer.md"
     return [Message(words, cause=cause)] if cause else []
 
 
 def measure_wakeup_delay(period_s: float) -> float:
-    """Return the longest wake-up delay in seconds of a loop that only waits; the trial takes 0.3 s."""
+    """Return the longest wake-up delay in seconds of a loop that only waits.
+
+    The trial takes 0.3 s.
+    """
     clock = RealClock()
     due, most = 0.0, 0.0
     while due < TRIAL_TIME_S:
@@ -42,7 +48,10 @@ def measure_wakeup_delay(period_s: float) -> float:
 
 
 def lock_host_memory() -> list[str]:
-    """Lock the memory after the drivers are created; return messages for the operator about limits."""
+    """Lock the memory of the process, and return messages for the operator about limits.
+
+    Call this function after the drivers have been created.
+    """
     cause, limit = lock_process_memory()
     if cause:
         return [Message("the driver host's memory is not locked ({cause})", cause=cause)]
@@ -66,7 +75,7 @@ def run_driver_host(
 ) -> None:
     """Run the driver host until the control has ended and the axes are at rest.
 
-    ``bell`` wakes a control that sleeps.
+    ``wakeup_bell`` wakes a control that sleeps.
     """
     host = DriverHost(drivers, warnings, refresh_periods, partial(_ring, wakeup_bell))
     try:
@@ -105,7 +114,7 @@ _MAX_UNREAD_S = 0.005  # Seconds after which messages are read even if the drive
 
 
 class MessageListener:
-    """Listener for messages of the control between two cycles."""
+    """A listener for messages of the control between two cycles."""
 
     def __init__(self, sock: socket.socket, host: DriverHost, clock: Clock) -> None:
         self._sock, self._host, self._clock = sock, host, clock
@@ -114,9 +123,10 @@ class MessageListener:
         sock.setblocking(False)
 
     def listen_until_due(self, due_time: float, *, is_punctual: bool) -> float:
-        """Reply to messages until the next cycle is due and return its time, at once if a control wakes up.
+        """Reply to messages until the next cycle is due, and return the due time of that cycle.
 
-        ``is_punctual`` prevents starting a reply that would end after this time.
+        The method returns immediately if a control wakes up. If ``is_punctual`` is True, no reply is
+        started that would end after the due time.
         """
         host, clock = self._host, self._clock
         keep = _REPLY_DURATION_S if is_punctual else 0.0
@@ -138,7 +148,7 @@ class MessageListener:
 
 
 def _handle_messages(sock: socket.socket, inbox: MessageDecoder, host: DriverHost) -> bool:
-    """Reply to the received messages; return False if the control has ended."""
+    """Reply to the received messages, and return False if the control has ended."""
     try:
         data = sock.recv(_CHUNK)
         if not data:
@@ -153,7 +163,10 @@ def _handle_messages(sock: socket.socket, inbox: MessageDecoder, host: DriverHos
 
 
 def _send_bytes(sock: socket.socket, data: bytes) -> None:
-    """Send all bytes or fail; a control that does not read its replies counts as ended."""
+    """Send all bytes, or raise an error.
+
+    A control that does not read its replies is considered to have ended.
+    """
     sock.settimeout(0.05)
     try:
         sock.sendall(data)

@@ -20,7 +20,7 @@ PROTOCOL_VERSION = 5  # Version of the protocol, which both sides exchange first
 
 
 class Message(NamedTuple):
-    """Request or reply with its numbers in one flat row."""
+    """A request or a reply, with its numbers in one flat row."""
 
     head: Mapping[str, object]
     numbers: FloatArray
@@ -30,20 +30,23 @@ NO_NUMBERS: FloatArray = np.empty(0)
 
 
 def encode_message(message: Message) -> bytes:
-    """Return the bytes of one message."""
+    """Return a message encoded as bytes."""
     head = json.dumps(message.head).encode()
     numbers = np.ascontiguousarray(message.numbers, dtype="<f8").tobytes()
     return _LENGTHS.pack(len(head), len(numbers)) + head + numbers
 
 
 class MessageDecoder:
-    """Decoder of messages from received bytes."""
+    """A decoder that extracts messages from received bytes."""
 
     def __init__(self) -> None:
         self._bytes = bytearray()
 
     def decode(self, data: bytes) -> Iterator[Message]:
-        """Add bytes and yield every complete message. Raises DriverError for invalid data."""
+        """Add received bytes, and yield every complete message.
+
+        Raises DriverError for invalid data.
+        """
         self._bytes += data
         while len(self._bytes) >= _LENGTHS.size:
             head, numbers = _LENGTHS.unpack_from(self._bytes)
@@ -69,12 +72,15 @@ def _head(text: bytes) -> Mapping[str, object]:
 
 
 def flatten_segments(segments: Segments | None) -> FloatArray:
-    """Return segments in one flat row: t, dt, p, v, a."""
+    """Return the segments as one flat row in the order t, dt, p, v, a."""
     return NO_NUMBERS if segments is None else np.concatenate([part.ravel() for part in segments])
 
 
 def parse_segments(numbers: FloatArray, axes: int) -> Segments:
-    """Return the segments of one flat row. Raises DriverError for an invalid length or value."""
+    """Return the segments that one flat row contains.
+
+    Raises DriverError for an invalid length or value.
+    """
     width = 2 + 3 * axes
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
@@ -89,14 +95,17 @@ def parse_segments(numbers: FloatArray, axes: int) -> Segments:
 
 
 def encode_cam(cam: Cam) -> Message:
-    """Return a request to follow the spindle."""
+    """Return a request that makes the axes follow the spindle on a cam."""
     way = flatten_segments(cam.way)
     head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(way)}
     return Message(head, np.concatenate([way, flatten_segments(cam.following_segments)]))
 
 
 def number(head: Mapping[str, object], key: str) -> float:
-    """Return a finite number of the head. Raises DriverError if it is missing or invalid."""
+    """Return a finite number from the head of a message.
+
+    Raises DriverError if the number is missing or invalid.
+    """
     value = head.get(key)
     if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _MAX_NUMBER:
         raise DriverError(
@@ -109,13 +118,16 @@ def number(head: Mapping[str, object], key: str) -> float:
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a text of the head, or an empty text if it is missing."""
+    """Return a text from the head of a message, or an empty text if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
 
 def decode_cam(message: Message, axes: int) -> Cam:
-    """Return the cam of a request. Raises DriverError if it is invalid."""
+    """Return the cam that a request contains.
+
+    Raises DriverError if the cam is invalid.
+    """
     split = int(number(message.head, "way"))
     way, then = message.numbers[:split], message.numbers[split:]
     return Cam(
@@ -127,7 +139,10 @@ def decode_cam(message: Message, axes: int) -> Cam:
 
 
 def parse_floats(values: object) -> tuple[float, ...]:
-    """Return a list of numbers from JSON as a tuple. Raises DriverError if it is invalid."""
+    """Return a JSON list of numbers as a tuple.
+
+    Raises DriverError if the list is invalid.
+    """
     if not isinstance(values, Sequence) or not all(isinstance(v, int | float) for v in values):
         raise DriverError(
             "the driver host returned values that are not numbers", "feeder-silent", reason="no-numbers"
@@ -136,21 +151,21 @@ def parse_floats(values: object) -> tuple[float, ...]:
 
 
 def parse_list(value: object) -> list[object]:
-    """Return a list from JSON, or an empty list for any other value."""
+    """Return a JSON list, or an empty list for any other value."""
     return value if isinstance(value, list) else []
 
 
 def read_fault(head: Mapping[str, object], key: str, default_code: FaultCode) -> Fault:
-    """Return a fault of the head with its code, or an empty fault."""
+    """Return a fault with its code from the head of a message, or an empty fault."""
     code = next((each for each in get_args(FaultCode) if each == head.get(f"{key}_code")), default_code)
     return Fault(text(head, key), code)
 
 
 def make_fault_entries(key: str, fault: str, default_code: FaultCode) -> Mapping[str, str]:
-    """Return a fault and its code as entries of a head."""
+    """Return the entries of a message head for a fault and its code."""
     return {key: fault, f"{key}_code": get_fault_code(fault, default_code)}
 
 
 def parse_texts(value: object) -> list[str]:
-    """Return the texts of a list."""
+    """Return the texts of a JSON list, ignoring other values."""
     return [one for one in parse_list(value) if isinstance(one, str)]

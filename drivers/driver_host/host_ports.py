@@ -1,4 +1,4 @@
-"""Ports and station controls of the control's side, which send messages to the driver host."""
+"""Ports and station controls on the control's side, which send messages to the driver host."""
 
 from __future__ import annotations
 
@@ -36,14 +36,14 @@ from drivers.wakeups import ProcessBell
 
 
 class _HostPort:
-    """Base class of the ports on a connection."""
+    """The base class of ports that use a connection to the driver host."""
 
     def __init__(self, connection: HostConnection) -> None:
         self._line = connection
 
 
 class HostAxes(_HostPort):
-    """``core.ports.AxisSink`` of the driver host."""
+    """The ``core.ports.AxisSink`` of the driver host."""
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
@@ -55,21 +55,27 @@ class HostAxes(_HostPort):
         return self._line.clock.now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue."""
+        """Return the end time of the setpoint queue in seconds."""
         return number(self._line.send_request(Message({"do": "horizon"}, NO_NUMBERS)).head, "value")
 
     def splice(self, segments: Segments) -> None:
-        """Splice setpoints into the queue. Raises DriverError if the driver rejects them."""
+        """Splice setpoints into the queue.
+
+        Raises DriverError if the driver rejects the setpoints.
+        """
         self._line.send_request(Message({"do": "splice"}, flatten_segments(segments)))
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the queued positions and velocities at time ``t``."""
+        """Return the queued positions and velocities at ``time_s``."""
         numbers = self._line.send_request(Message({"do": "demand", "t": time_s}, NO_NUMBERS)).numbers.tolist()
         half = len(self.axes)
         return tuple(numbers[:half]), tuple(numbers[half:])
 
     def sample(self) -> AxisSample:
-        """Return the present state of the axes; a lost driver host is a fault of all axes."""
+        """Return the present state of the axes.
+
+        A lost driver host is a fault of all axes.
+        """
         raw = self._line.poll_state(force=True).get("sample")
         shown = raw if isinstance(raw, dict) else {}
         none = (0.0,) * len(self.axes)
@@ -89,15 +95,18 @@ class HostAxes(_HostPort):
         self._line.send_command("enable", on=on)
 
     def stop(self, mode: StopMode) -> None:
-        """Stop the axes by the drives."""
+        """Stop the axes in the given stop mode, by means of the drives."""
         self._line.send_command("stop", how=mode.value)
 
     def home(self, axis: str) -> None:
-        """Start to home an axis."""
+        """Start homing an axis."""
         self._line.send_command("home", name=axis)
 
     def clear_fault(self) -> None:
-        """Clear the fault, or restart a lost driver host. Raises DriverError."""
+        """Clear the fault, or restart a lost driver host.
+
+        Raises DriverError if the fault cannot be cleared.
+        """
         if self._line.fault:
             self._line.restart_host()
         else:
@@ -105,10 +114,13 @@ class HostAxes(_HostPort):
 
 
 class HostGear(_HostPort):
-    """``core.ports.SpindleGear`` of the driver host."""
+    """The ``core.ports.SpindleGear`` of the driver host."""
 
     def mesh(self, cam: Cam) -> None:
-        """Make the axes follow the spindle. Raises DriverError."""
+        """Make the axes follow the spindle.
+
+        Raises DriverError if the driver rejects the cam.
+        """
         self._line.send_request(encode_cam(cam))
 
     def geared(self) -> GearState | None:
@@ -118,14 +130,14 @@ class HostGear(_HostPort):
 
 
 class HostSpindle(_HostPort):
-    """``core.ports.Spindle`` of the driver host."""
+    """The ``core.ports.Spindle`` of the driver host."""
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed."""
+        """Run the spindle at the signed speed ``rpm``."""
         self._line.send_command("run", rpm=rpm)
 
     def coast(self) -> None:
-        """Remove the torque."""
+        """Remove the torque, so that the spindle coasts to a stop."""
         self._line.send_command("coast")
 
     def speed(self) -> float:
@@ -134,12 +146,12 @@ class HostSpindle(_HostPort):
         return number(shown, "speed") if shown else 0.0
 
     def get_line_delay(self) -> float:
-        """Return the seconds by which the line to the spindle drive delays commands and speeds."""
+        """Return the delay in seconds of commands and speeds on the line to the spindle drive."""
         shown = self._line.poll_state()
         return number(shown, "spindle_lag") if shown else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair of the encoder, or None without an encoder."""
+        """Return the time and the revolutions of the spindle encoder, or None without an encoder."""
         shown = self._line.poll_state().get("angle")
         if shown is None:
             return None
@@ -152,7 +164,7 @@ class HostSpindle(_HostPort):
 
 
 class HostWakeup(_HostPort):
-    """``core.ports.Wakeup`` of the driver host, which polls the drivers and sends wake-ups."""
+    """The ``core.ports.Wakeup`` of the driver host, which polls the drivers and sends wake-ups."""
 
     def __init__(self, connection: HostConnection, wakeup_bell: ProcessBell) -> None:
         super().__init__(connection)
@@ -164,7 +176,7 @@ class HostWakeup(_HostPort):
         return not self._line.is_lost
 
     def wait(self, seconds: float) -> bool:
-        """Wait for a wake-up or the end of the driver host; return whether there was one."""
+        """Wait for a wake-up or the end of the driver host, and return whether either occurred."""
         try:
             self._line.enter_sleep()
         except DriverError:
@@ -176,7 +188,7 @@ class HostWakeup(_HostPort):
 
 
 class HostSamples(_HostPort):
-    """``core.ports.SampleSource`` of the driver host, whose polls contain the samples."""
+    """The ``core.ports.SampleSource`` of the driver host, whose poll replies contain the samples."""
 
     def __init__(self, connection: HostConnection, properties: Mapping[str, object]) -> None:
         super().__init__(connection)
@@ -184,7 +196,10 @@ class HostSamples(_HostPort):
         self._width = 5 + 3 * len(parse_texts(properties.get("axes")))
 
     def take(self, max_rows: int = 8192) -> FloatArray:  # noqa: ARG002  an answer has few enough
-        """Return the samples since the last call; batches of the wrong length are ignored."""
+        """Return the samples since the last call.
+
+        Batches of the wrong length are ignored.
+        """
         waiting = self._line.sample_batches
         told = [waiting.popleft() for _ in range(len(waiting))]
         whole = [rows.reshape(-1, self._width) for rows in told if not len(rows) % self._width]
@@ -192,35 +207,38 @@ class HostSamples(_HostPort):
 
 
 class HostSpindleCAxis(_HostPort):
-    """``core.ports.SpindleCAxis`` of the driver host."""
+    """The ``core.ports.SpindleCAxis`` of the driver host."""
 
     def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
-        """Engage the spindle drive as C, or release it."""
+        """Engage the spindle drive as the C axis, or release it."""
         self._line.send_command("hold", on=enabled, orient=orient)
 
     def is_c_ready(self) -> bool:
-        """Return whether C may move."""
+        """Return whether the C axis may move."""
         return self._line.poll_state().get("held") is True and not self._line.is_lost
 
 
 class HostOrientation(_HostPort):
-    """``core.ports.OrientingSpindle`` of the driver host."""
+    """The ``core.ports.OrientingSpindle`` of the driver host."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
-        """Turn the spindle to an angle in degrees."""
+        """Orient the spindle to an angle in degrees."""
         self._line.send_command("orient", angle=angle, sense=direction)
 
     def release_spindle(self) -> None:
-        """Cancel the orientation."""
+        """Cancel the orientation of the spindle."""
         self._line.send_command("release")
 
     def is_oriented(self) -> bool:
-        """Return whether the spindle is at the commanded angle; after a loss, the last known state."""
+        """Return whether the spindle is at the commanded angle.
+
+        After a loss of the driver host, this is the last known state.
+        """
         return self._line.poll_state().get("oriented") is True
 
 
 class HostIO(_HostPort):
-    """``core.ports.DigitalIO`` of the driver host."""
+    """The ``core.ports.DigitalIO`` of the driver host."""
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name."""
@@ -231,7 +249,7 @@ class HostIO(_HostPort):
         return _flags(self._line.poll_state().get("outputs"))
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output."""
+        """Switch one output on or off."""
         self._line.send_command("write", name=name, on=on)
 
     def switch_to_safe_state(self) -> None:
@@ -240,10 +258,13 @@ class HostIO(_HostPort):
 
 
 class HostStation(_HostPort):
-    """``core.ports.Station`` of the driver host."""
+    """The ``core.ports.Station`` of the driver host."""
 
     def read_state(self) -> StationState:
-        """Return the present state of the station; after a loss, no button is pressed and the age is inf."""
+        """Return the present state of the station.
+
+        After a loss of the driver host, no button is pressed and the age is inf.
+        """
         shown = self._line.poll_state().get("station")
         if self._line.is_lost or not isinstance(shown, dict):
             return StationState(age=float("inf"))
@@ -251,10 +272,10 @@ class HostStation(_HostPort):
 
 
 class HostTouch(_HostPort):
-    """``core.ports.TouchInput`` of the driver host."""
+    """The ``core.ports.TouchInput`` of the driver host."""
 
     def arm_latch(self) -> None:
-        """Clear the latched touch."""
+        """Clear the latched touch, so that the next touch is latched."""
         self._line.send_command("arm")
 
     def read_latch(self) -> TouchLatch | None:
@@ -268,10 +289,10 @@ class HostTouch(_HostPort):
 
 
 class HostTripMonitor(_HostPort):
-    """``core.faults.TrippingDriverHost`` of the driver host."""
+    """The ``core.faults.TrippingDriverHost`` of the driver host."""
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the functions that the driver host has switched off since the last acknowledgment.
+        """Return the trip that has not been acknowledged, with the functions that were switched off.
 
         The result is None without a trip.
         """
@@ -291,7 +312,10 @@ class HostTripMonitor(_HostPort):
 
 
 def create_host_ports(connection: HostConnection) -> MachinePorts:
-    """Build the ports of the driver host. Raises DriverError without a reply."""
+    """Return the ports of the driver host.
+
+    Raises DriverError if the driver host does not reply.
+    """
     hello, spindle = connection.read_properties(), HostSpindle(connection)
     return MachinePorts(
         clock=connection.clock,
@@ -324,18 +348,21 @@ def _flags(value: object) -> dict[str, bool]:
 class HostStationControls(PostedControls):
     """Station controls whose actions are sent to the driver host, from any thread.
 
-    ``app.desk.station_controls.StationPanel`` explains the actions.
+    ``app.desk.station_controls.StationPanel`` describes the actions.
     """
 
     def __init__(self, connection: HostConnection) -> None:
         self._line = connection
 
     def set_input(self, name: str, on: bool) -> None:
-        """Set an input of a simulated machine at once. Raises DriverError."""
+        """Set an input of a simulated machine immediately.
+
+        Raises DriverError if the driver host rejects the action.
+        """
         self._line.send_request(_act("set_input", name, on))
 
     def post_action(self, name: str, *values: object) -> None:
-        """Send the name of a station method and its arguments, without waiting."""
+        """Send the name of a station method and its arguments, without waiting for a reply."""
         self._line.post_message(_act(name, *values))
 
 

@@ -1,4 +1,4 @@
-"""Axes of a grblHAL controller, which accept no setpoints because the controller plans its own motion."""
+"""Axes of a grblHAL controller, which do not accept setpoints because the controller plans its own motion."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class GrblAxes:
     ) -> None:
         """Create the axes.
 
-        ``run_cycle`` runs one cycle of the driver. ``reopen`` starts to reopen the connection.
+        ``run_cycle`` runs one cycle of the driver, and ``reopen`` starts to reopen the connection.
         """
         self._c = controller
         self._reopen = reopen
@@ -43,7 +43,9 @@ class GrblAxes:
         self._homing = ""
 
     def now(self) -> float:
-        """Return the time of the host's clock, because the controller has no clock that can be read."""
+        """Return the time of the host's clock in seconds, because the controller does not have a readable
+        clock.
+        """
         return self._c.clock.now()
 
     def horizon(self) -> float:
@@ -51,20 +53,20 @@ class GrblAxes:
         return self.now()
 
     def splice(self, segments: Segments) -> None:  # noqa: ARG002  the port's
-        """Raise DriverError, because the controller accepts blocks only."""
+        """Raise DriverError, because the controller accepts only blocks."""
         raise DriverError(
             "this controller plans its own motion; it accepts blocks, not setpoints", reason="blocks-only"
         )
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:  # noqa: ARG002  at rest only
-        """Return the positions at rest and zero velocities.
+        """Return the present positions and zero velocities.
 
-        The positions are the exact end of the last block where this end is known.
+        If the exact end of the last block is known, the positions are this end.
         """
         return self._places(), (0.0,) * len(self.axes)
 
     def sample(self) -> AxisSample:
-        """Run one cycle of the driver and return the state of the last report."""
+        """Run one cycle of the driver, and return the axis state of the last report."""
         self._pump()
         c = self._c
         if c.has_restarted:
@@ -87,7 +89,10 @@ class GrblAxes:
         )
 
     def enable(self, on: bool) -> None:
-        """Permit or block motion in the driver. Raises DriverError while a fault is active."""
+        """Permit or block motion in the driver.
+
+        Raises DriverError if motion is to be permitted while a fault is active.
+        """
         if on and self._c.fault:
             raise DriverError(
                 "the controller stays locked: {fault}; press Reset first", "no-power", fault=self._c.fault
@@ -95,7 +100,7 @@ class GrblAxes:
         self._blocks.is_motion_enabled = on
 
     def stop(self, mode: StopMode) -> None:
-        """Abort the motion; unless ``mode`` is RAMP_HOLD, also block further motion."""
+        """Abort the motion and, unless ``mode`` is RAMP_HOLD, block further motion."""
         self._blocks.is_motion_enabled = self._blocks.is_motion_enabled and mode is StopMode.RAMP_HOLD
         if self._c.alarm_number not in grblhal_codes.STANDSTILL_ALARMS:
             self._blocks.abort_blocks()
@@ -103,7 +108,8 @@ class GrblAxes:
     def home(self, axis: str) -> None:
         """Start to home an axis.
 
-        Raises DriverError if the controller does not have the axis, without power, or if it cannot start.
+        Raises DriverError if the controller does not have the axis, if motion is not permitted, or if the
+        controller cannot start the homing now.
         """
         axes = {each.name: each for each in self._c.config.axes}
         if axis not in axes or not axes[axis].is_wired:
@@ -125,7 +131,7 @@ class GrblAxes:
     def clear_fault(self) -> None:
         """Reset, unlock and verify the controller, or start to reopen a lost connection.
 
-        If reopening fails, the reason becomes the next fault.
+        If the connection cannot be reopened, the reason becomes the next fault.
         """
         self._blocks.is_motion_enabled = False
         if not self._c.is_position_reliable:
@@ -143,7 +149,7 @@ class GrblAxes:
     def _is_known(self, name: str) -> bool:
         """Return whether the position of an axis is known.
 
-        The report of the controller decides where its homing is on, otherwise the machine file.
+        If homing is enabled in the controller, its report decides, otherwise the machine file.
         """
         told = self._c.is_homed(name)
         known = self._known[name] if told is None or name not in self._wired else told
@@ -160,6 +166,6 @@ class GrblAxes:
         return tuple(places)
 
     def _position_tolerance(self, name: str) -> float:
-        """Return half a step of the controller in mm, with the rounding of its reports."""
+        """Return half a motor step of the axis in mm, plus the rounding of the reports."""
         steps = self._c.read_axis_setting(_STEPS, name)
         return max(_REPORT_TOLERANCE_MM, 0.5 / steps + 0.001) if steps else _REPORT_TOLERANCE_MM

@@ -1,4 +1,4 @@
-"""Block port of a grblHAL controller, with tickets, feed holds, overrides and jogs."""
+"""Block port of a grblHAL controller, including tickets, feed holds, overrides and jogs."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _ABORT_PURPOSE = "abort"
 
 
 class GrblBlocks:
-    """``core.ports.BlockController`` of one controller, called by the executor's thread only."""
+    """``core.ports.BlockController`` of one grblHAL controller.
+
+    Only the thread of the executor may call the methods.
+    """
 
     max_lead_s = QUEUED_TIME_S
 
@@ -47,17 +50,20 @@ class GrblBlocks:
 
     @property
     def is_listening(self) -> bool:
-        """Whether the controller reads and executes lines, which is not the case in a jog or feed hold."""
+        """Return whether the controller reads and executes lines.
+
+        This is not the case during a jog or a feed hold.
+        """
         return self._c.is_ready and not self._jogs.is_active and self._c.state not in {"Jog", "Hold"}
 
     @property
     def capabilities(self) -> frozenset[str]:
-        """The requirements that the controller meets, as named in ``machine_requirements``.
+        """Return the requirements that the controller meets, with the names of ``machine_requirements``.
 
-        Threads need an encoder at the controller, which appears as a third speed in its reports. A constant
-        surface speed needs a variable spindle, or a spindle that the controller does not drive. A thread sets
-        the spindle override to 100 %, so that the controller's own spindle cannot follow the radius in a
-        thread.
+        Threads need an encoder at the controller, which appears as a third speed in its reports. Constant
+        surface speed needs a spindle with variable speed, or a spindle that the controller does not drive.
+        During a thread, the spindle override is set to 100 %, so a spindle that the controller drives
+        cannot follow the radius.
         """
         report, own = self._c.report, self._c.config.has_own_spindle
         able = {"arc"} if report is None or report.measured is None else {"arc", "thread"}
@@ -69,28 +75,34 @@ class GrblBlocks:
         )
 
     def max_line_speed(self, dx: float, dz: float) -> float:
-        """Return the speed limit in mm/s along a direction.
+        """Return the maximum speed in mm/s along a direction.
 
-        The limit is the lower of the machine file's and the controller's.
+        The limit of each axis is the lower value of the machine file and the controller.
         """
         return self._directional_limit(
             dx, dz, lambda axis: min(axis.vmax, self._c.get_max_axis_speed(axis.name) or axis.vmax)
         )
 
     def prepare_css(self, max_rpm: float) -> None:
-        """Store the highest speed in rpm for constant surface speed, or 0 for a constant speed."""
+        """Store the highest spindle speed in rpm for constant surface speed.
+
+        A value of 0 means a constant spindle speed.
+        """
         self.max_css_rpm = max_rpm
 
     @property
     def is_quiet(self) -> bool:
-        """Whether nothing moves and nothing is pending, so that lines which need a standstill can be sent."""
+        """Return whether the axes are at rest and nothing is pending.
+
+        Lines that require a standstill can be sent in this state.
+        """
         return self._settled and not self._c.is_busy
 
     def submit_block(self, operation: BlockOperation) -> int | None:
-        """Send one block and return its ticket, or None while the controller's buffer is full.
+        """Send one block and return its ticket, or None while the buffer of the controller is full.
 
-        Raises DriverError if the controller is not ready. A thread also waits until the reported overrides
-        are 100 %, because a feed override would change the lead.
+        A thread is sent only after the reported overrides are 100 %, because a feed override would change
+        the lead. Raises DriverError if the controller is not ready.
         """
         c = self._c
         self._demand_ready()
@@ -112,7 +124,9 @@ class GrblBlocks:
         return ticket
 
     def state(self) -> BlockState:
-        """Return the state of the blocks by the last report and the lines sent since then."""
+        """Return the state of the blocks from the last report and the lines that were sent after that
+        report.
+        """
         c = self._c
         resting = self.is_quiet or c.is_lost or (c.fault != "" and self._is_motion_ended())
         return BlockState(
@@ -120,18 +134,19 @@ class GrblBlocks:
         )
 
     def describe_start_refusal(self) -> str:
-        """Return the reason why no block can be started, or an empty text."""
+        """Return the reason why no block can start, or an empty text."""
         return self._c.start_refusal
 
     def hold_on_path(self) -> None:
-        """Start a feed hold immediately (0x82).
+        """Start a feed hold immediately (byte 82h).
 
-        The caller must not do so in a thread pass, because the controller would stop within the cut.
+        This method must not be called during a thread pass, because the controller would stop within the
+        cut.
         """
         self._holds.start_hold()
 
     def resume(self) -> None:
-        """End any feed hold (0x81), also one that was started at the controller."""
+        """End the feed hold (byte 81h), even if it was started at the controller."""
         self._holds.end_hold()
 
     def abort_blocks(self) -> None:
@@ -141,15 +156,18 @@ class GrblBlocks:
             self._c.run_script(grblhal_scripts.abort_and_verify(self._c), _ABORT_PURPOSE)
 
     def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
-        """Set the feed and rapid overrides as fractions; ``pump`` sends and verifies them."""
+        """Set the feed and rapid overrides as fractions.
+
+        ``send_pending`` sends the overrides to the controller and verifies them.
+        """
         self.overrides.set_feed_and_rapid(feed_fraction, rapid_fraction)
 
     def start_jog(
         self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
     ) -> bool:
-        """Start or renew a jog.
+        """Start or renew a jog, and return False if the axis is at the end of its travel.
 
-        Return False at the end of the travel. Raises DriverError if the controller is not ready.
+        Raises DriverError if the controller is not ready.
         """
         if not self._jogs.is_active:
             self._demand_ready()
@@ -159,7 +177,10 @@ class GrblBlocks:
         return moves
 
     def step_to(self, axis: str, target: float, speed: float) -> None:
-        """Jog by one step to ``target``. Raises DriverError if the controller is not ready."""
+        """Jog the axis to ``target`` in one step.
+
+        Raises DriverError if the controller is not ready.
+        """
         self._demand_ready()
         place = self.last_block_end or (self._c.position.get("X", 0.0), self._c.position.get("Z", 0.0))
         self._jogs.start_step(axis, target, speed)
@@ -167,7 +188,7 @@ class GrblBlocks:
         self._target = (target, place[1]) if axis == "X" else (place[0], target)
 
     def stop_jog(self) -> None:
-        """Stop the jog (0x85), and wait for the replies to lines that the controller has discarded."""
+        """Stop the jog (byte 85h), and wait for the replies to lines that the controller has discarded."""
         if self._jogs.is_active or not self._settled:
             self._jogs.clear_jog()
             self._settled = False
@@ -178,12 +199,12 @@ class GrblBlocks:
                 self._c.run_script(grblhal_scripts.finish_jog(self._c))
 
     def start_homing(self, axis: str) -> None:
-        """Start to home an axis."""
+        """Start to home an axis in the controller."""
         self._settled, self.last_block_end = False, None
         self._c.run_script(grblhal_scripts.home_axis(self._c, axis))
 
     def send_pending(self) -> None:
-        """Send jogs and overrides; called once per tick after the controller's own cycle."""
+        """Send jogs and overrides; call this method once per tick after the cycle of the controller."""
         c = self._c
         self._jogs.send_travel()
         steady = self._threads or c.is_busy or not c.is_ready
@@ -192,7 +213,7 @@ class GrblBlocks:
             self.overrides.send_differences(c.overrides, c.override_report_count, c.clock.now())
 
     def require_motion_enabled(self) -> None:
-        """Raise DriverError while motion is not permitted."""
+        """Raise DriverError unless motion is permitted."""
         require_power("", self.is_motion_enabled)
 
     # --- inside -------------------------------------------------------------------------------------------
@@ -200,7 +221,7 @@ class GrblBlocks:
     def _rapid_rate(self, op: BlockOperation) -> float:
         """Return the speed of G0 to the end of a block in mm/s.
 
-        The controller's axis limits apply, as in ``planner.c``.
+        The axis limits of the controller determine this speed, as in ``planner.c`` of grblHAL.
         """
         at = self._c.position
         x, z = self._target or self.last_block_end or (at.get("X", 0.0), at.get("Z", 0.0))
@@ -209,7 +230,10 @@ class GrblBlocks:
         )
 
     def _directional_limit(self, dx: float, dz: float, max_speed: Callable[[GrblAxis], float]) -> float:
-        """Return the speed in mm/s at which no axis exceeds ``max_speed``; inf for a move without length."""
+        """Return the highest speed in mm/s along a direction at which no axis exceeds its ``max_speed``.
+
+        Return inf for a move of zero length.
+        """
         way = math.hypot(dx, dz)
         shares = {"X": abs(dx), "Z": abs(dz)}
         told = ((max_speed(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired_axes)
@@ -255,7 +279,7 @@ class GrblBlocks:
         self._jogs.handle_rest()
 
     def _discard_tickets(self) -> None:
-        """Discard all tickets after a stop, reset or alarm; the position is the reported one."""
+        """Discard all tickets after a stop, reset or alarm, so that the position is the reported position."""
         self._done, self._active, self._target, self.last_block_end = self._last, 0, None, None
         self._threads.clear()
         self._settled = False

@@ -1,6 +1,6 @@
-"""Bytes, modes and G-code lines of grblHAL, and the texts of its alarms and errors.
+"""Real-time bytes, modes and G-code lines of grblHAL, and the texts of its alarms and errors.
 
-Blocks are sent in mm, with X as a radius, in plane G18, in absolute positions and with feed per minute.
+Blocks are sent in mm, with X as a radius, in plane G18, with absolute positions and feed per minute.
 """
 
 from __future__ import annotations
@@ -110,12 +110,12 @@ _HOMING = frozenset((6, 7, 8, 9, 15, 18))
 
 
 def get_alarm_code(number: int) -> FaultCode:
-    """Return the fault code of the alarm catalog for an alarm of the controller."""
+    """Return the fault code in the alarm catalog for an alarm of the controller."""
     return "homing" if number in _HOMING else _AXIS_ALARM_CODES.get(number, "controller-alarm")
 
 
 def describe_alarm(number: int) -> str:
-    """Return a sentence that describes an alarm."""
+    """Return a sentence that describes an alarm of the controller."""
     return Message(
         "the controller reports ALARM:{number} ({number2})",
         number=number,
@@ -124,7 +124,7 @@ def describe_alarm(number: int) -> str:
 
 
 def describe_error(number: int, line: str) -> str:
-    """Return a sentence that describes an error and the rejected line."""
+    """Return a sentence that describes an error of the controller and the rejected line."""
     return Message(
         "the controller rejects {line} with error:{number} ({number2})",
         line=f"{line!r}",
@@ -142,16 +142,16 @@ _EQUAL_RAPID_RATIO = 1.01  # Rapids that differ by less than this ratio are equa
 
 
 def number(value: float) -> str:
-    """Return a number as text with at most five decimals, without trailing zeros.
+    """Return a number as text with at most five decimals and without trailing zeros.
 
-    Five decimals of a millimeter are a tenth of the finest step.
+    The fifth decimal of a millimeter is a tenth of the finest step.
     """
     text = f"{value:.5f}".rstrip("0").rstrip(".")
     return "0" if text in {"-0", ""} else text
 
 
 def get_ticket_line_number(ticket: int) -> int:
-    """Return the N word of a ticket."""
+    """Return the line number (N word) for a ticket."""
     return (ticket - 1) % _MAX_LINE_NUMBER + 1
 
 
@@ -162,12 +162,12 @@ def format_block(
     feed_override: float,
     origin: Mapping[str, float] | None = None,
 ) -> str:
-    """Return the line of one block.
+    """Return the G-code line of one block.
 
-    ``rapid`` is the speed of G0 on this path in mm/s, and ``feed_override`` a fraction. A rapid that is
+    ``rapid`` is the speed of G0 on this path in mm/s, and ``feed_override`` is a fraction. A rapid that is
     slower than G0 is sent as a feed, because the rapid override of the controller has only three steps. A
-    feed override above 1 does not speed up a rapid. ``origin`` is the home position in the controller's
-    coordinates.
+    feed override above 1 does not make a rapid faster. ``origin`` is the home position in the coordinates
+    of the controller.
     """
     head = f"N{get_ticket_line_number(ticket)}"
     home = origin or {}
@@ -186,15 +186,16 @@ def format_block(
 
 
 def format_jog(letter: str, target: float, speed: float) -> str:
-    """Return the line of an absolute jog in machine coordinates."""
+    """Return the line of a jog to an absolute position in machine coordinates."""
     return f"$J=G53G21G90{letter}{number(target)}{_feed(speed)}"
 
 
 def _format_arc(op: ArcOperation) -> str:
     """Return G2 or G3, or G1 for a very short arc.
 
-    The angle counts from the first axis of the plane, Z, to the second, X, so G3 turns from Z+ to X+. The
-    controller treats an arc whose angle rounds to zero or less as a full circle.
+    Angles count from the first axis of the plane, Z, to the second axis, X, so G3 turns from Z+ to X+. A
+    very short arc is sent as G1, because the controller treats an arc whose angle rounds to zero or less as
+    a full circle.
     """
     if _is_point(op):
         return "G1"
@@ -202,7 +203,7 @@ def _format_arc(op: ArcOperation) -> str:
 
 
 def _is_point(op: ArcOperation) -> bool:
-    """Return whether the ends of an arc practically coincide and the arc is shorter than half a circle."""
+    """Return whether the two ends of an arc almost coincide and the arc is shorter than half a circle."""
     if math.hypot(op.x - op.x0, op.z - op.z0) >= _MIN_ARC_MM:
         return False
     turned = (op.z0 - op.cz) * (op.x - op.cx) - (op.x0 - op.cx) * (op.z - op.cz)  # sign as from Z+ to X+
@@ -210,15 +211,15 @@ def _is_point(op: ArcOperation) -> bool:
 
 
 def _format_center(op: ArcOperation) -> str:
-    """Return the I and K words of an arc, relative to its start; I is a radius in G7 too."""
+    """Return the I and K words of an arc, relative to its start; I is a radius in mode G7 too."""
     return "" if _is_point(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
 
 
 def _thread_pitch(op: ThreadOperation) -> float:
     """Return the K word of a thread, which the controller measures along the path.
 
-    ``stepper.c`` compares the spindle angle times K with the length of the block, so a tapered thread needs
-    more than its lead.
+    ``stepper.c`` of grblHAL compares the spindle angle times K with the length of the block, so K of a
+    tapered thread must be larger than its lead.
     """
     along = abs(op.z - op.z0)
     return op.lead * math.hypot(op.x - op.x0, along) / along if along else op.lead

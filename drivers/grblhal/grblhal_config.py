@@ -1,4 +1,4 @@
-"""Configuration of the grblHAL driver, which the app fills from the machine file."""
+"""Configuration of the grblHAL driver, which the application reads from the machine file."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from drivers.grblhal.grblhal_table import GrblhalTable
 
 @dataclass(frozen=True, slots=True)
 class GrblAxis:
-    """One axis of the machine file, in mm and seconds; ``is_wired`` is True if the controller has the axis.
+    """One axis of the machine file, in mm and seconds.
 
-    ``home_position_mm``: homing sets the present position to this value in mm without motion. None: the
-    controller homes on a switch.
+    ``is_wired`` is true if the controller has the axis. If ``home_position_mm`` is a number, homing sets
+    the present position to this value without motion; with None, the controller homes on a switch.
     """
 
     name: str
@@ -26,9 +26,9 @@ class GrblAxis:
 
 @dataclass(frozen=True, slots=True)
 class GrblOutput:
-    """Terminal of an output, which is ``flood``, ``mist`` or ``out.N``, and its safe state.
+    """Output with its terminal, which is "flood", "mist" or "out.N", and its safe state.
 
-    None as the safe state leaves the output unchanged.
+    If the safe state is None, the output is not changed when the machine enters the safe state.
     """
 
     terminal: str
@@ -40,9 +40,9 @@ ESTOP, HARDWARE = "estop", "hardware"  # Terminal of an E-stop that only cuts th
 
 @dataclass(frozen=True, slots=True)
 class GrblInput:
-    """Terminal of an input; ``pn.E`` is the letter E of the pins in a status report.
+    """Input with its terminal; ``pn.E`` means the letter E of the pins in a status report.
 
-    ``hardware``, for the E-stop only, means that the controller has no input for it.
+    The terminal "hardware", for the E-stop only, means that the controller does not report this input.
     """
 
     terminal: str
@@ -53,8 +53,8 @@ class GrblInput:
 class GrblConfig:
     """Configuration of the controller with its axes, spindle and terminals.
 
-    ``has_own_spindle`` is True if the controller drives the spindle. Otherwise an inverter drives the
-    spindle, and the controller may only measure it.
+    ``has_own_spindle`` is true if the controller drives the spindle. Otherwise an inverter drives the
+    spindle, and the controller may only measure the speed.
     """
 
     table: GrblhalTable

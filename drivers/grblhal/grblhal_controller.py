@@ -1,6 +1,6 @@
 """Communication with one grblHAL controller: lines, report requests and timeouts.
 
-``pump`` must be called at least once per tick of the executor and never waits.
+``GrblController.update`` must be called at least once per tick of the executor and never waits.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _MAX_LISTEN_SLICE_S = (
 
 
 class GrblController(ReportedState):
-    """Connection to one controller, with the pending lines and the reported state."""
+    """Connection to one grblHAL controller, including its pending lines and its reported state."""
 
     def __init__(self, config: GrblConfig, wire: GrblTransport, clock: Clock) -> None:
         super().__init__(config, clock)
@@ -90,33 +90,38 @@ class GrblController(ReportedState):
         )
 
     def send_line(self, line: str, ticket: int = 0) -> SentLine:
-        """Queue a line for the controller and return its entry, which later calls of ``pump`` complete."""
+        """Queue a line for the controller and return its entry, which a later call of ``update``
+        completes.
+        """
         return self.line_sender.send_line(line, self.listened_s, ticket)
 
     def run_script(self, script: Script, purpose: str = "") -> None:
-        """Start a script; a script that is running is canceled."""
+        """Start a script, and cancel the script that is running."""
         self.is_ready, self.is_reset_expected = False, False
         self.script_runner.start_script(script, purpose, self.listened_s)
         self._advance()
 
     @property
     def script_purpose(self) -> str:
-        """The purpose of the present script."""
+        """Return the purpose of the script that is running."""
         return self.script_runner.purpose
 
     def expect_driver_reset(self) -> None:
-        """Declare that the next banner results from a reset by the driver."""
+        """Treat the next startup message of the controller as the result of a reset by the driver."""
         self.is_reset_expected = True
 
     def request_overrides(self, enabled: bool) -> None:
-        """Select plain reports that contain the overrides.
+        """Select whether plain reports, which contain the overrides, are requested.
 
-        A full report omits the overrides when it contains the offsets, which is always the case.
+        A full report always contains the offsets, and then the controller omits the overrides.
         """
         self._sees_overrides = enabled
 
     def request_report(self, *, full: bool = False) -> None:
-        """Request a status report; a full one does not delay a plain one that is needed for the overrides."""
+        """Request a status report.
+
+        A full report does not delay a plain report that is needed for the overrides.
+        """
         self.send_realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
         while (
@@ -134,21 +139,27 @@ class GrblController(ReportedState):
             self._next_question = now + self._interval()
 
     def request_modes(self) -> None:
-        """Request the parser state with a real-time byte; ``reported_modes`` receives the reply."""
+        """Request the parser state with a real-time byte; the reply is stored in ``reported_modes``."""
         self.reported_modes, self._asks_modes = "", True
         self.send_realtime(grblhal_codes.TELL_MODES)
 
     def reconnect(self, opening: ConnectionAttempt[GrblTransport], script: Callable[[], Script]) -> None:
-        """Start to open the connection again, then run a script; a failure becomes the fault."""
+        """Start to reopen the connection, and run a script when it is open.
+
+        If the connection cannot be opened, the reason becomes the fault.
+        """
         self.fault, self.is_ready = "", False
         self._opening, self._then = opening, script
 
     def close(self) -> None:
-        """Close the connection."""
+        """Close the connection to the controller."""
         self._wire.close()
 
     def update(self) -> None:
-        """Read, continue the script, send and check timeouts, without waiting or raising an error."""
+        """Read replies, continue the script, send lines and check timeouts.
+
+        This method never waits and never raises an exception.
+        """
         if self._opening is not None:
             self._reopen(self._opening)
         if self.is_lost:
@@ -164,10 +175,10 @@ class GrblController(ReportedState):
             self._gone(error)
 
     def halt_motion(self) -> None:
-        """Stop the motion from any thread if ``pump`` has stopped being called.
+        """Stop the motion if ``update`` is no longer called; any thread may call this method.
 
-        The first call sends a jog cancel and a feed hold. The next call, for axes that are then at rest,
-        resets the controller, which also stops spindle and coolant. The bytes bypass all buffers.
+        The first call sends a jog cancel and a feed hold. The next call, when the axes are at rest, resets
+        the controller, which also stops spindle and coolant. The bytes bypass all buffers.
         """
         self._wire.write(
             bytes([grblhal_codes.RESET] if self._halted else [grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
@@ -178,12 +189,12 @@ class GrblController(ReportedState):
 
     @property
     def is_busy(self) -> bool:
-        """Whether a script is running."""
+        """Return whether a script is running."""
         return self.script_runner.is_busy
 
     @property
     def start_refusal(self) -> str:
-        """The reason why nothing can be started now, or an empty text."""
+        """Return the reason why no motion can start now, or an empty text."""
         if self.fault:
             return self.fault
         if self.alarm_number == grblhal_codes.HOMING_REQUIRED_ALARM and not self.is_busy:
@@ -199,9 +210,9 @@ class GrblController(ReportedState):
         self._write(bytes(codes_))
 
     def set_fault(self, reason: str, code: FaultCode, **values: object) -> None:
-        """Set the fault, discard waiting lines and stop the motion; the operator must clear the fault.
+        """Set a fault, discard waiting lines and stop the motion; the operator must clear the fault.
 
-        A jog is canceled, and any other motion is stopped by a feed hold.
+        A jog cancel stops a jog, and a feed hold stops any other motion.
         """
         if not self.fault:
             self.fault = Fault(reason, code, **values)
@@ -217,7 +228,10 @@ class GrblController(ReportedState):
         self.on_discard()
 
     def handle_line(self, line: str) -> None:
-        """Handle one complete line; an unknown line that begins with ``[`` is passed on as a message."""
+        """Handle one complete line from the controller.
+
+        An unknown line that begins with ``[`` is passed on as a message.
+        """
         if line.startswith("<"):
             self._reported(parse_report(line), line)
         elif line == "ok" or _ERROR_PATTERN.fullmatch(line):
@@ -251,9 +265,10 @@ class GrblController(ReportedState):
         return last is not None and (last.moves or (last.state == "Idle" and not self.are_blocks_settled()))
 
     def handle_invalid_line(self, line: str) -> None:
-        """Handle a line that is not valid, which may have been a reply.
+        """Handle an invalid line, which may have been a damaged reply.
 
-        The driver never guesses which line was acknowledged. It sets a fault if a reply may be missing.
+        The driver never guesses which line the controller acknowledged. It sets a fault if a reply may be
+        missing.
         """
         now = self.clock.now()
         self._garbage.append(now)
@@ -330,7 +345,9 @@ class GrblController(ReportedState):
         self.on_status_report(report)
 
     def _check_report(self, report: StatusReport) -> None:
-        """Handle a state in a report that shows an event, even if its message was missed."""
+        """Handle an event that the state in a report shows, even if the message about this event was
+        missed.
+        """
         if report.state != "Alarm":
             self.alarm_number = 0
         if self.is_busy:
@@ -364,7 +381,7 @@ class GrblController(ReportedState):
             self._gone(error)
 
     def _reopen(self, opening: ConnectionAttempt[GrblTransport]) -> None:
-        """Complete the opening of the connection and discard everything that belongs to the old one."""
+        """Complete the opening of the connection, and discard all data of the previous connection."""
         try:
             wire = opening.take()
         except DriverError as error:
@@ -409,7 +426,7 @@ class GrblController(ReportedState):
             self.handle_line(line.decode("ascii", "replace").strip("\r"))
 
     def _advance(self) -> None:
-        """Continue the script; the reason for a failure becomes the fault."""
+        """Continue the script; if the script fails, the reason becomes the fault."""
         why = self.script_runner.advance(self.listened_s)
         self.is_reset_expected = self.is_reset_expected and self.is_busy
         if why:
@@ -436,15 +453,15 @@ class GrblController(ReportedState):
     def _can_request(self) -> bool:
         """Return whether a report can be requested now.
 
-        Only one request is pending at a time, because each one delays the lines after it.
+        Only one request is pending at a time, because each request delays the lines that follow.
         """
         return self.report_due_since_s is None or self.listened_s - self._questioned_at >= _REPEAT_REQUEST_S
 
     def _check_timeouts(self) -> None:
         """Set a fault if the controller does not respond in time.
 
-        The limit is longer while a thread waits for its index. A reply to a line counts as a response,
-        because a report request may be delayed by lines.
+        The timeout is longer while a thread waits for the spindle index. A reply to a line also counts as a
+        response, because lines may delay a report request.
         """
         if self.is_busy:
             return

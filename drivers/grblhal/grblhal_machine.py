@@ -1,4 +1,4 @@
-"""grblHAL controller as a machine: its connection and the ports for the executor."""
+"""Machine that a grblHAL controller runs: its connection and the ports for the executor."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _CLOSE_TIMEOUT_S = 4.0
 
 
 class GrblMachine:
-    """Connected and verified controller with its ports.
+    """Connected and verified grblHAL controller with its ports.
 
     The constructor raises DriverError if the controller does not respond or is not suitable. ``wire`` and
-    ``idle`` are for tests, whose clock does not advance automatically.
+    ``idle`` are for tests, in which the clock does not advance automatically.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class GrblMachine:
         )
 
     def run_cycle(self) -> None:
-        """Run one cycle of all parts without waiting."""
+        """Run one cycle of the controller, blocks, spindle and terminals, without waiting."""
         self.controller.update()
         self.block_controller.send_pending()
         self.spindle.send_commands()
@@ -91,16 +91,17 @@ class GrblMachine:
             self.touch_input.check_touch()
 
     def find_unknown_items(self) -> frozenset[UnknownPart]:
-        """Return the states that are unknown because the controller is silent.
+        """Return the parts of the machine whose state is unknown.
 
-        A silent controller may continue its blocks, and its spindle may turn.
+        While the controller is silent, all states are unknown, because it may continue its blocks and its
+        spindle may turn.
         """
         return ALL_UNKNOWN_PARTS if self.controller.is_silent else frozenset()
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the functions that were still on after a silence, or None.
+        """Return the spindle and outputs that were still on after the controller was silent, or None.
 
-        The driver has switched this spindle and these outputs off after the silence.
+        The driver has switched them off after the silence.
         """
         found = self.controller.active_at_silence
         if found is None:
@@ -115,12 +116,12 @@ class GrblMachine:
         )
 
     def acknowledge(self, trip: DriverHostTrip) -> None:
-        """Clear the trip that the control has handled."""
+        """Clear a trip after the control has handled it."""
         if trip.number == self._trips:
             self._trips, self.controller.active_at_silence = self._trips + 1, None
 
     def _reopen(self) -> ConnectionAttempt[GrblTransport]:
-        """Start to reopen the connection; the old one is closed first to release the port."""
+        """Start to reopen the connection, after closing the old connection to release the port."""
         close, config = self.controller.close, self.controller.config
 
         def opened() -> GrblTransport:
@@ -130,7 +131,7 @@ class GrblMachine:
         return ConnectionAttempt(opened, synchronous=self._wire is not None)
 
     def close(self) -> None:
-        """Stop all motion, then close the connection."""
+        """Stop all motion and then close the connection."""
         self.axes.stop(StopMode.RAMP_OFF)
         self._rounds(_CLOSE_TIMEOUT_S)
         self.controller.close()
@@ -151,7 +152,7 @@ class GrblMachine:
             self._clock.sleep_until(self._clock.now() + _CYCLE_S)
 
     def _list_differences(self) -> list[str]:
-        """Return warnings about controller settings that differ from the machine file."""
+        """Return a warning for each controller setting that differs from the machine file."""
         c = self.controller
         told: list[str] = []
         for axis in c.wired_axes:
@@ -186,7 +187,7 @@ class GrblMachine:
         return told
 
     def _list_homing_warnings(self) -> list[str]:
-        """Return a warning about axes that need a home switch although homing is off in the controller."""
+        """Return a warning if axes need a home switch, but homing is disabled in the controller."""
         if self.controller.homing_setting:
             return []
         names = [
@@ -230,7 +231,10 @@ class GrblMachine:
 
 
 def _group_texts(items: Mapping[str, str], one: str, several: str) -> list[str]:
-    """Return one sentence for all names with the same reason; a name without a reason is omitted."""
+    """Return one sentence for each reason, with all names that have this reason.
+
+    A name without a reason is omitted.
+    """
     reasons: dict[str, list[str]] = {}
     for name, reason in items.items():
         if reason:

@@ -1,7 +1,8 @@
 """Feed holds, jogs and overrides of a grblHAL controller.
 
-The controller changes its overrides in steps only. The steps start from the reported value and are verified.
-A jog is a motion lease: the controller never has more travel than the lease permits, so silence stops it.
+The controller can change its overrides only in steps. The steps start from the reported value, and the
+result is verified. A jog is a motion lease: the controller never has more travel than the lease permits, so
+the axis stops if the driver sends nothing.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ LEAST, MOST = 10, 200  # Range of the controller in percent.
 def encode_override_steps(
     target_percent: int, reported_percent: int, step_codes: tuple[int, ...] = grblhal_codes.FEED
 ) -> bytes:
-    """Return the bytes that change an override from the reported percentage to ``percent``.
+    """Return the bytes that change an override from ``reported_percent`` to ``target_percent``.
 
-    The path through 100 % is used only if 100 % is in between, because the reset to 100 % is immediate and
-    slow axes would jump. The number of bytes never exceeds the controller's queue.
+    The sequence starts with the reset to 100 % only if 100 % is between both values, because the reset is
+    immediate and a slow axis would jump. The number of bytes never exceeds the queue of the controller.
     """
     reset, *moves = step_codes
     straight, over = (
@@ -42,7 +43,10 @@ def encode_override_steps(
 
 
 def _encode_steps(reported_percent: int, percent: int, moves: list[int]) -> bytes:
-    """Return coarse steps before fine steps, or fine steps first if a coarse step would exceed a limit."""
+    """Return the coarse steps and then the fine steps.
+
+    If a coarse step would exceed a limit, the fine steps are first.
+    """
     up_10, down_10, up_1, down_1 = moves
     tens, ones = divmod(abs(percent - reported_percent), 10)
     tens, ones = (tens + 1, ones - 10) if ones > 5 else (tens, ones)
@@ -54,17 +58,23 @@ def _encode_steps(reported_percent: int, percent: int, moves: list[int]) -> byte
 
 
 def round_rapid_override(fraction: float) -> int:
-    """Return the largest rapid override of the controller that is not above ``fraction``, at least 25 %."""
+    """Return the largest rapid override of the controller that does not exceed ``fraction``, in percent.
+
+    The result is at least 25 %.
+    """
     return 100 if fraction >= 1.0 else 50 if fraction >= 0.5 else 25
 
 
 def limit_override_percent(fraction: float) -> int:
-    """Return a fraction in percent, limited to the range of the controller."""
+    """Convert a fraction into percent, limited to the override range of the controller."""
     return min(max(round(100 * fraction), LEAST), MOST)
 
 
 class GrblOverrides:
-    """Commanded overrides, which are compared with the reported ones and sent again if they differ."""
+    """Commanded overrides, which are compared with the reported overrides.
+
+    If they differ, override steps are sent.
+    """
 
     def __init__(self, write: Callable[[bytes], None], fail: Callable[[str, FaultCode], None]) -> None:
         self._write = write
@@ -77,7 +87,7 @@ class GrblOverrides:
 
     @property
     def commanded(self) -> list[int]:
-        """The commanded overrides in percent: feed, rapid and spindle."""
+        """Return the commanded feed, rapid and spindle overrides in percent."""
         return [100, self._asked[1], 100] if self.is_thread_active else self._asked
 
     def set_feed_and_rapid(self, feed: float, rapid: float) -> None:
@@ -85,17 +95,18 @@ class GrblOverrides:
         self._asked[:2] = limit_override_percent(feed), round_rapid_override(rapid)
 
     def set_spindle(self, percent: int) -> None:
-        """Set the spindle override in percent of the last S word."""
+        """Set the spindle override as a percentage of the last S word."""
         self._asked[2] = percent
 
     def are_confirmed(self, reported: tuple[int, ...] | None) -> bool:
-        """Return whether the reported overrides equal the commanded ones."""
+        """Return whether the reported overrides are equal to the commanded overrides."""
         return reported is not None and list(reported[:3]) == self.commanded
 
     def send_differences(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
-        """Send the steps for differences, based on a report that is newer than the last steps sent.
+        """Send override steps for the differences to a report that is newer than the last steps.
 
-        The second argument is the number of override reports. If no report arrives, the steps are sent again.
+        ``report_count`` is the number of reports with overrides. If no such report arrives, the steps are
+        sent again.
         """
         if reported is None or self.are_confirmed(reported) or reported != self._last:
             self._since = None  # A spindle that follows the radius changes continuously.
@@ -136,7 +147,7 @@ _MAX_STALE_REPORTS = 3  # Reports that may still show the state before a hold or
 
 
 class FeedHolds:
-    """Feed holds (0x82) and their ends (0x81), tracked from report to report."""
+    """Feed holds (byte 82h) and their ends (byte 81h), tracked from report to report."""
 
     def __init__(self, controller: GrblController) -> None:
         self._c = controller
@@ -147,7 +158,7 @@ class FeedHolds:
 
     @property
     def is_holding(self) -> bool:
-        """Whether the controller is at rest in a feed hold."""
+        """Return whether the controller is at rest in a feed hold."""
         c = self._c
         held = c.report is not None and c.report.state == "Hold" and not c.report.sub
         return held and c.report_count >= self._released and not c.is_busy
@@ -159,16 +170,16 @@ class FeedHolds:
         self._say()
 
     def end_hold(self) -> None:
-        """End any feed hold as soon as the axes are at rest."""
+        """End a feed hold as soon as the axes are at rest."""
         self._asked, self._ours = False, True
         self._send_resume()
 
     def clear_request(self) -> None:
-        """Clear the hold request, because a final stop does not need it."""
+        """Clear the request for a feed hold, because a final stop does not need a feed hold."""
         self._asked = self._ours = False
 
     def process_report(self, report: StatusReport) -> None:
-        """Update the hold from a report."""
+        """Update the state of the feed hold from a report."""
         if report.state == "Hold":
             self._send_resume()
         elif self._asked and report.state == "Run" and self._c.report_count >= self._again:
@@ -184,9 +195,9 @@ class FeedHolds:
         self._c.request_report()
 
     def _send_resume(self) -> None:
-        """Resume if the axes are at rest and the operator has ended the hold.
+        """Resume the motion if the axes are at rest and the operator has ended the hold.
 
-        A hold that was started at the controller is never ended automatically.
+        A hold that was started at the controller never ends automatically.
         """
         report = self._c.report
         if (
@@ -210,10 +221,10 @@ _MIN_RENEWAL_S = 0.02  # Seconds; a shorter renewal is not sent.
 
 
 class GrblJogs:
-    """Sender of ``$J`` lines, with one unacknowledged line at a time.
+    """Sender of jog lines (``$J``), which waits for the acknowledgment of each line.
 
-    At time ``t``, the target is the position that an axis at full speed since the start would reach one lease
-    later. The remaining travel is therefore at most lease · v plus the braking distance.
+    The target at any time is the position that an axis at full speed since the start would reach one lease
+    later. The remaining travel is therefore at most lease · velocity plus the braking distance.
     """
 
     def __init__(self, controller: GrblController) -> None:
@@ -228,7 +239,7 @@ class GrblJogs:
     def start_or_renew(
         self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None
     ) -> bool:
-        """Start or renew a jog; return False at the end of the travel."""
+        """Start or renew a jog, and return False if the axis is at the end of its travel."""
         now = self._c.clock.now()
         if not self.is_active or axis != self._axis or velocity != self._velocity:
             self._begin(axis, velocity, now)
@@ -243,13 +254,13 @@ class GrblJogs:
         return True
 
     def start_step(self, axis: str, target: float, speed: float) -> None:
-        """Jog to ``target`` from rest to rest."""
+        """Jog an axis from rest to ``target``, where it stops."""
         self._begin(axis, speed, self._c.clock.now())
         self._wanted, self.is_active = target, True
         self.send_travel()
 
     def send_travel(self) -> None:
-        """Send the added travel after the last line is acknowledged."""
+        """Send the additional travel if the last line has been acknowledged."""
         if not self.is_active or (self._ask is not None and not self._ask.is_done):
             return
         added = abs(self._wanted - self._sent)
@@ -260,12 +271,12 @@ class GrblJogs:
         self._ask = self._c.send_line(format_jog(self._axis, target, abs(self._velocity)))
 
     def handle_rest(self) -> None:
-        """Handle a report that the controller has no motion left."""
+        """End the jog after a report shows that the controller is at rest."""
         if self._ask is None or self._ask.is_done:
             self.clear_jog()
 
     def clear_jog(self) -> None:
-        """End the jog."""
+        """Mark the jog as ended."""
         self.is_active, self._ask = False, None
 
     def _begin(self, axis: str, velocity: float, now: float) -> None:

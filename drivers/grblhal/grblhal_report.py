@@ -1,4 +1,4 @@
-"""Parser of grblHAL status reports, and the identity of a controller by ``$I``."""
+"""Parsers for grblHAL status reports and for the identity of a controller (reply to ``$I``)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ _STATES = frozenset(("Idle", "Run", "Hold", "Jog", "Home", "Alarm", "Door", "Che
 
 
 class StatusReport(NamedTuple):
-    """Status report with None for missing fields; positions in mm, X as the controller counts it."""
+    """Status report, in which a missing field is None.
+
+    Positions are in mm, with X as a radius or diameter, as the controller counts it.
+    """
 
     state: str
     sub: int | None = None
@@ -34,18 +37,18 @@ class StatusReport(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """Whether axes may be moving."""
+        """Return whether the axes may be moving in the reported state."""
         resting = {"Hold": (0,), "Door": (0, 1)}.get(self.state)  # The door is open, or closed again.
         return self.state in {"Run", "Jog", "Home"} if resting is None else self.sub not in resting
 
     @property
     def measured(self) -> float | None:
-        """The spindle speed measured by an encoder in rpm, or None."""
+        """Return the spindle speed in rpm that an encoder measures, or None without an encoder."""
         return self.speeds[2] if self.speeds is not None and len(self.speeds) > 2 else None
 
 
 def parse_report(line: str) -> StatusReport | None:
-    """Parse a line and return its report, or None if the line is damaged."""
+    """Parse a line and return its status report, or None if the line is damaged."""
     if not (line.startswith("<") and line.endswith(">")):
         return None
     head, *fields = line[1:-1].split("|")
@@ -122,9 +125,10 @@ _CONTROL_INPUTS = "RHSDLTEOFMQ"
 
 
 class ControllerIdentity(NamedTuple):
-    """Identity of a controller, with the axis letters in the order of the reports.
+    """Identity of a controller, with its axis letters in the order of the reports.
 
-    ``planner_block_count`` is the size of the planner and ``buffer_size`` the number of bytes for lines.
+    ``planner_block_count`` is the number of blocks that the planner can store. ``buffer_size`` is the size
+    of the line buffer in bytes.
     """
 
     version: str
@@ -140,10 +144,10 @@ class ControllerIdentity(NamedTuple):
     )
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has an input with this letter, as far as it is reported.
+        """Return whether the board has an input with this letter, if the controller reports its inputs.
 
-        Control inputs are in [SIGNALS:…], which firmware before 2024 omits. Limit switches follow from the
-        axes.
+        The control inputs are in [SIGNALS:…], which firmware before 2024 omits; then each of them is
+        assumed to exist. The limit switches follow from the axes.
         """
         if letter in _AXES:
             return letter in self.axis_letters
@@ -151,7 +155,7 @@ class ControllerIdentity(NamedTuple):
 
     @property
     def is_lathe_mode(self) -> bool:
-        """Whether the controller reports lathe mode."""
+        """Return whether the controller reports lathe mode."""
         return any(option.startswith("LATHE") for option in self.options)
 
 

@@ -1,6 +1,6 @@
-"""Spindle of a grblHAL controller: M codes at standstill, and override steps while the axes move.
+"""Spindle of a grblHAL controller, commanded by M codes at standstill and by override steps during motion.
 
-In a feed hold, a toggle stops and restarts the spindle.
+In a feed hold, a toggle byte stops and restarts the spindle.
 """
 
 from __future__ import annotations
@@ -27,7 +27,10 @@ _STANDSTILL_RPM = 30.0  # Rpm, between two reports of a spindle that reverses.
 
 
 class GrblEncoder:
-    """Encoder at the controller for a spindle with another drive; it does not report the direction."""
+    """Encoder that is connected to the controller, for a spindle that another device drives.
+
+    The encoder does not report the direction.
+    """
 
     def __init__(self, controller: GrblController) -> None:
         self._c = controller
@@ -37,14 +40,14 @@ class GrblEncoder:
 
     @property
     def is_measuring(self) -> bool:
-        """Whether the controller reports a measured speed."""
+        """Return whether the controller reports a measured speed."""
         return self._c.report is not None and self._c.report.measured is not None
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, with the sign of the speed that the spindle's drive reports.
+        """Return the measured speed in rpm, with the sign of the speed that the spindle drive reports.
 
-        At a reported speed of 0, the previous sign remains, for example while the spindle runs down. While
-        the controller is silent, return the speed that the drive reports.
+        At a reported speed of 0, the previous sign remains valid, for example while the spindle coasts.
+        While the controller is silent, the speed that the drive reports is returned.
         """
         way, report = self.get_reported_rpm(), self._c.report
         if self._c.is_silent:
@@ -58,13 +61,16 @@ class GrblEncoder:
 
 
 class _SpeedSign:
-    """Sign of a speed that is measured without direction, which changes only after the speed has fallen."""
+    """Sign of a speed that is measured without direction.
+
+    The sign changes only after the speed has fallen.
+    """
 
     def __init__(self) -> None:
         self._sign, self._least = 1.0, math.inf
 
     def apply_sign(self, rpm: float, commanded_rpm: float) -> float:
-        """Return ``rpm`` with its sign, where ``commanded_rpm`` has the commanded sign."""
+        """Return the speed ``rpm`` with its sign, which follows the sign of ``commanded_rpm``."""
         rpm = abs(rpm)
         if math.copysign(1.0, commanded_rpm) == self._sign:
             self._least = math.inf
@@ -76,7 +82,10 @@ class _SpeedSign:
 
 
 class GrblSpindle:
-    """``core.ports.Spindle``: M3, M4 and M5 at standstill, otherwise the override of the last S word."""
+    """``core.ports.Spindle`` of the controller.
+
+    At standstill, M3, M4 and M5 are sent; otherwise the override of the last S word is changed.
+    """
 
     def __init__(self, controller: GrblController, blocks: GrblBlocks) -> None:
         self._c = controller
@@ -90,10 +99,11 @@ class GrblSpindle:
         self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed and limited to the machine's maximum; 0 stops it.
+        """Turn the spindle at ``rpm``, signed and limited to the maximum of the machine; 0 stops the
+        spindle.
 
-        Raises DriverError above the controller's own limit, which would silently reduce the speed, and while
-        the controller accepts no lines.
+        Raises DriverError if the controller does not accept lines, or if the speed exceeds the limit of the
+        controller, which would reduce the speed without a message.
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())
@@ -110,16 +120,19 @@ class GrblSpindle:
         self.send_commands()
 
     def coast(self) -> None:
-        """Stop with M5, because the controller has no other stop."""
+        """Stop the spindle with M5, because the controller has no other stop."""
         self.run_at(0.0)
 
     @property
     def max_controller_rpm(self) -> float:
-        """The controller's speed limit in rpm, to which it reduces higher speeds; 0 if not reported."""
+        """Return the speed limit of the controller in rpm, or 0 if it is not reported.
+
+        The controller reduces higher speeds to this limit.
+        """
         return float(self._c.settings.get(_MAX_SPEED_SETTING, "0"))
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, or the commanded one without an encoder; signed."""
+        """Return the measured speed in rpm, signed; without an encoder, return the commanded speed."""
         report = self._c.report
         if report is None or report.speeds is None or len(report.speeds) < 2:
             return 0.0
@@ -132,11 +145,11 @@ class GrblSpindle:
         return None
 
     def read_fault(self) -> str:
-        """Return an empty text, because the axes report the alarms."""
+        """Return an empty text, because the axes report all alarms of the controller."""
         return ""
 
     def handle_reset(self) -> None:
-        """Handle a stop or reset, which switches the spindle off until the program starts it again."""
+        """Record that a stop or reset has switched the spindle off until the program starts it again."""
         self._wanted, self._runs, self._paused_at, self._word = 0.0, False, None, None
 
     def send_commands(self) -> None:
@@ -168,11 +181,11 @@ class GrblSpindle:
 
     @property
     def _base_rpm(self) -> float:
-        """The S word, signed.
+        """Return the speed for the S word in rpm, signed.
 
         For constant surface speed, it is half of the highest speed, because the override ranges from 10 to
-        200 %. A reset of the override to 100 %, for example by a pendant, then never exceeds the programmed
-        limit.
+        200 %. If the override is reset to 100 %, for example by a pendant, the speed then never exceeds the
+        programmed limit.
         """
         highest, wanted = self._blocks.max_css_rpm, abs(self._wanted)
         if not highest:
@@ -184,7 +197,10 @@ class GrblSpindle:
         return math.copysign(max(min(highest / _OVER, wanted / _UNDER), wanted / _OVER), self._wanted)
 
     def _start(self) -> None:
-        """Send M3 or M4; for constant surface speed, first wait until the override is reported."""
+        """Send M3 or M4.
+
+        For constant surface speed, the command is sent only after the override is reported.
+        """
         base = self._base_rpm
         if self._blocks.max_css_rpm:
             self._follow_by_override(base)
@@ -198,8 +214,8 @@ class GrblSpindle:
     def _check_clipping(self) -> None:
         """Set a fault if the controller limits the speed without a message.
 
-        A changed $30 may take effect only after a restart of the controller. The reported commanded speed is
-        the actual one.
+        A changed setting $30 may take effect only after a restart of the controller. The commanded speed in
+        the reports is the speed after this limit.
         """
         c = self._c
         now, told = c.clock.now(), c.report.speeds if c.report is not None else None
@@ -224,7 +240,7 @@ class GrblSpindle:
             )
 
     def _follow_by_override(self, base: float) -> None:
-        """Set the override that gives the requested speed with S word ``base``."""
+        """Set the spindle override that results in the requested speed if the S word is ``base``."""
         if self._wanted * base > 0.0:
             share = round(100.0 * self._wanted / base)
             self._blocks.overrides.set_spindle(min(max(share, LEAST), MOST))
@@ -239,10 +255,10 @@ class GrblSpindle:
             self._blocks.stop_jog()  # A line would be rejected; M5 follows when the axes rest.
 
     def _abort_start_wait(self) -> bool:
-        """Return whether M3 or M4 is not yet acknowledged.
+        """Return whether M3 or M4 has not been acknowledged yet, and abort a long wait.
 
-        While the firmware waits for the speed, it does not read M5 and ignores the spindle toggle. Only an
-        abort with a reset then stops the spindle.
+        While the firmware waits for the spindle speed, it does not read M5 and ignores the spindle toggle.
+        Only an abort with a reset can then stop the spindle.
         """
         word = self._word
         if word is None or word.is_done:
@@ -252,7 +268,7 @@ class GrblSpindle:
         return True
 
     def _handle_hold(self) -> None:
-        """Stop or restart the spindle in a feed hold by one toggle, and verify it."""
+        """Stop or restart the spindle in a feed hold with one toggle byte, and verify the result."""
         stops = self._runs and self._wanted == 0.0
         if self._paused_at is None and stops and self._abort_start_wait():
             return
@@ -272,7 +288,7 @@ class GrblSpindle:
             )
 
     def _restore_after_hold(self) -> None:
-        """Send M5 after a feed hold, in case the controller has restarted the spindle."""
+        """Send M5 after a feed hold, because the controller may have restarted the spindle."""
         self._paused_at, self._runs = None, False
         self._c.send_line("M5")
 

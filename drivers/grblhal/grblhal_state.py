@@ -1,9 +1,10 @@
-"""Reported state and settings of a grblHAL controller, and the longest wait before an acknowledgment.
+"""Reported state and settings of a grblHAL controller, and its longest wait before an acknowledgment.
 
-In grblHAL's ``spindle_control.c``, M3, M4 and M5 wait for the measured speed if the at-speed tolerance ($340)
-is set. The limit is the delay of $394 (on) or $539 (off), or one minute if the delay is 0; then ALARM:14
-follows. Without a tolerance, they wait for the delay. In ``coolant_control.c``, M7 and M8 wait for $673.
-During a wait, the state is Idle, status reports are sent, and no later line is read.
+In ``spindle_control.c`` of grblHAL, M3, M4 and M5 wait for the measured speed if the at-speed tolerance
+($340) is set. The limit of this wait is the delay in $394 (on) or $539 (off), or one minute if the delay is
+0; then ALARM:14 follows. Without a tolerance, M3, M4 and M5 wait for the delay. In ``coolant_control.c``,
+M7 and M8 wait for the delay in $673. During a wait, the state is Idle, status reports are sent, and no
+further line is read.
 """
 
 from __future__ import annotations
@@ -32,7 +33,10 @@ _FUNCTION = re.compile(r"M0*(\d+)")
 
 
 def get_max_firmware_wait(line: str, settings: Mapping[int, str]) -> float:
-    """Return the seconds that the firmware may wait before it acknowledges ``line``; 0 for most lines."""
+    """Return the seconds that the firmware may wait before it acknowledges ``line``.
+
+    The result is 0 for most lines.
+    """
     return max((_wait(int(number), settings) for number in _FUNCTION.findall(line)), default=0.0)
 
 
@@ -51,7 +55,9 @@ def _value(settings: Mapping[int, str], number: int) -> float:
 
 
 class ReportedState:
-    """State of a controller, assembled from reports that each contain only a part of it."""
+    """State of a controller, assembled from several reports, each of which contains only a part of the
+    state.
+    """
 
     def __init__(self, config: GrblConfig, clock: Clock) -> None:
         self.config = config
@@ -77,7 +83,7 @@ class ReportedState:
 
     @property
     def state(self) -> str:
-        """The state in the last report, or an empty text before the first report."""
+        """Return the state in the last report, or an empty text before the first report."""
         return self.report.state if self.report is not None else ""
 
     def store_report(self, report: StatusReport) -> None:
@@ -103,7 +109,8 @@ class ReportedState:
         self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
     def is_plausible(self, report: StatusReport) -> bool:
-        """Return whether no axis has moved further than possible since the last report was created.
+        """Return whether every axis could have moved to its reported position since the last report was
+        created.
 
         A report may be created long before it is read, because this computer may be delayed.
         """
@@ -121,45 +128,54 @@ class ReportedState:
 
     @property
     def axis_letters(self) -> str:
-        """The axis letters in the order of the controller's reports and settings."""
+        """Return the axis letters in the order of the controller's reports and settings."""
         return self.identity.axis_letters if self.identity is not None else "XYZ"
 
     def has_pin(self, letter: str) -> bool:
-        """Return whether the board has an input with this letter, as far as it is reported."""
+        """Return whether the board has an input with this letter, if the controller reports its inputs."""
         return self.identity is None or self.identity.has_pin(letter)
 
     @property
     def has_variable_speed(self) -> bool:
-        """Whether the firmware supports a spindle with variable speed."""
+        """Return whether the firmware supports a spindle with variable speed."""
         return self.identity is not None and _VARIABLE in self.identity.build_letters
 
     @property
     def wired_axes(self) -> tuple[GrblAxis, ...]:
-        """The axes of the machine file that the controller moves."""
+        """Return the axes of the machine file that the controller moves."""
         return tuple(axis for axis in self.config.axes if axis.is_wired)
 
     def read_axis_setting(self, group_start: int, letter: str) -> float:
-        """Return a setting of an axis from the group that starts at ``group_start``, or 0 if it is not
-        reported.
+        """Return the setting of an axis, or 0 if it is not reported.
+
+        The setting is in the group of axis settings that starts at number ``group_start``.
         """
         index = self.axis_letters.find(letter)
         return float(self.settings.get(group_start + index, "0")) if index >= 0 else 0.0
 
     def get_max_axis_speed(self, letter: str) -> float:
-        """Return the controller's maximum speed of an axis in mm/s, or 0 if it is not reported."""
+        """Return the maximum speed of an axis in the controller's settings in mm/s, or 0 if it is not
+        reported.
+        """
         return self.read_axis_setting(110, letter) / 60.0
 
     def get_max_wait(self, line: str) -> float:
-        """Return the seconds that the controller may wait for the spindle or coolant in a line."""
+        """Return the maximum seconds that the controller waits for the spindle or coolant when it executes
+        a line.
+        """
         return get_max_firmware_wait(line, self.settings)
 
     @property
     def homing_setting(self) -> int:
-        """The homing setting $22: bit 0 enables homing, bit 1 permits homing of single axes."""
+        """Return the homing setting $22, in which bit 0 enables homing and bit 1 permits homing of single
+        axes.
+        """
         return int(float(self.settings.get(_HOMING, "0")))
 
     def is_homed(self, letter: str) -> bool | None:
-        """Return whether the controller has homed an axis, or None if its homing is off."""
+        """Return whether the controller has homed an axis, or None if homing is disabled in the
+        controller.
+        """
         index = self.axis_letters.find(letter)
         if not self.homing_setting & _HOMED or self.homed_flags is None or index < 0:
             return None
@@ -172,9 +188,9 @@ class ReportedState:
         return {letter: place - self.home_origin.get(letter, 0.0) for letter, place in raw}
 
     def _confirms_jump(self, report: StatusReport, first_report: StatusReport) -> bool:
-        """Return whether ``report`` continues from the implausible position of ``first_report``.
+        """Return whether ``report`` continues from the implausible position in ``first_report``.
 
-        A delayed controller catches up, so that its position is correct.
+        In this case, a delayed controller has caught up, and its position is correct.
         """
         before, now = self._places(first_report), self._places(report)
         near = ((axis, now.get(axis.name), before.get(axis.name)) for axis in self.config.axes)

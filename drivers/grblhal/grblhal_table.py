@@ -1,4 +1,4 @@
-"""Table [grblhal] of the machine file: port and settings of the controller."""
+"""Table [grblhal] of the machine file, which contains the port and the settings of the controller."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ _TRAVEL = 130
 
 @make_key_table
 class GrblhalTable:
-    """Settings of a motion controller with its own planner, which are written at each connection."""
+    """Port and settings of a motion controller that plans its own motion.
+
+    The settings are written each time the driver connects.
+    """
 
     port: str = declare_key(meaning="Serial port of the controller, or its address as `tcp://host:port`.")
     baud: int = declare_key(KeyRange(110, 4_000_000), default=115_200, meaning="Bit rate of the serial port.")
@@ -63,7 +66,7 @@ def _is_setting(value: object) -> bool:
 
 
 def _read_settings(file: MachineFileReading) -> dict[int, float | str]:
-    """Return the valid entries of the settings table by number."""
+    """Return the valid entries of the settings table by setting number."""
     table = file.raw(_SETTINGS)
     entries = table.items() if isinstance(table, dict) else ()
     return {int(key): value for key, value in entries if key.isdecimal() and _is_setting(value)}
@@ -107,7 +110,7 @@ def _check_guard(file: MachineFileReading) -> Iterator[FileFinding]:
 def _check_travel(
     file: MachineFileReading, settings: Mapping[int, float | str], axis: str
 ) -> Iterator[FileFinding]:
-    """Yield findings for an axis whose limits exceed those in the controller's settings."""
+    """Yield findings for an axis whose limits exceed the limits in the controller's settings."""
     values, offset = file.values, _AXES[axis]
     for first, key, factor, unit in _LIMITS:
         path = f"axis.{axis}.{key}"

@@ -1,4 +1,4 @@
-"""Inputs, outputs and probe of a grblHAL controller with the names from the machine file."""
+"""Inputs, outputs and probe of a grblHAL controller, named as in the machine file."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ _REQUEST_INTERVAL_S = 0.2  # Seconds between two requests.
 
 
 class GrblInputs:
-    """Inputs of the controller: pins from each report, auxiliary inputs by request.
+    """Inputs of the controller: pins, which each report contains, and auxiliary inputs.
 
-    ``M66 P… L0`` reads one auxiliary input, and the next full report has the result. The controller executes
-    it only at standstill, so the last state applies while anything moves.
+    ``M66 P… L0`` reads one auxiliary input, and the next full report contains the result. The controller
+    executes this line only at standstill, so the last state applies while anything moves.
     """
 
     def __init__(self, controller: GrblController, blocks: GrblBlocks) -> None:
@@ -38,7 +38,10 @@ class GrblInputs:
         self._next = 0.0
 
     def read_states(self) -> Mapping[str, bool]:
-        """Return the inputs by name, without those that have never been read or do not exist on the board."""
+        """Return the states of the inputs by name.
+
+        Inputs that have never been read or that the board does not have are omitted.
+        """
         states, report = dict(self._read), self._c.report
         if report is None:
             return states
@@ -49,7 +52,7 @@ class GrblInputs:
         return states
 
     def list_missing(self) -> dict[str, str]:
-        """Return the inputs that the controller does not have, with the reason."""
+        """Return the names of the inputs that the controller does not have, and the reason for each."""
         have = self._c.identity.input_count if self._c.identity is not None else 0
         missing: dict[str, str] = {}
         for name, wired in self._c.config.inputs.items():
@@ -67,7 +70,7 @@ class GrblInputs:
         return missing
 
     def request_next(self) -> None:
-        """Request one auxiliary input at a time, and only at standstill."""
+        """Request the next auxiliary input, if the machine is at standstill and no request is pending."""
         c, now = self._c, self._c.clock.now()
         if self._asked is not None:
             self._take(*self._asked)
@@ -105,7 +108,7 @@ _COLLET = "collet"  # Assumed to be closed at the start.
 
 
 class GrblIO:
-    """``core.ports.DigitalIO`` of the controller: flood, mist and auxiliary outputs."""
+    """``core.ports.DigitalIO`` of the controller, with flood, mist and auxiliary outputs."""
 
     def __init__(self, controller: GrblController, blocks: GrblBlocks, inputs: GrblInputs) -> None:
         self._c = controller
@@ -118,14 +121,14 @@ class GrblIO:
         self._asks: dict[str, SentLine] = {}  # Lines not yet executed, which wait for earlier blocks and M3.
 
     def inputs(self) -> Mapping[str, bool]:
-        """Return the inputs by name."""
+        """Return the states of the inputs by name."""
         return self._inputs.read_states()
 
     def outputs(self) -> Mapping[str, bool]:
-        """Return the outputs by name, without those that the controller does not have.
+        """Return the states of the outputs by name, without outputs that the controller does not have.
 
-        Coolant is as reported, with a delay of 1 s. Auxiliary outputs are as written, because they are not
-        reported.
+        A coolant output has the reported state, starting 1 s after its last command. An auxiliary output
+        has the commanded state, because the controller does not report it.
         """
         told = self._c.reported_accessories
         shown = {name: on for name, on in self._wanted.items() if not self.describe_missing(name)}
@@ -141,8 +144,8 @@ class GrblIO:
     def write(self, name: str, on: bool) -> None:
         """Switch an output.
 
-        Raises DriverError if the machine does not have the output, or if it is switched on and the controller
-        does not have it.
+        Raises DriverError if the machine file does not define the output, or if an output that the
+        controller does not have is to be switched on.
         """
         find_output(name, self._wanted)
         why = self.describe_missing(name)
@@ -168,7 +171,9 @@ class GrblIO:
                 self.write(name, output.safe_state)
 
     def describe_missing(self, name: str) -> str:
-        """Return the reason why the controller does not have an output, or an empty text."""
+        """Return the reason why the controller does not have an output, or an empty text if it has the
+        output.
+        """
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
             mist = self._c.identity is not None and _MIST in self._c.identity.build_letters
@@ -186,7 +191,9 @@ class GrblIO:
         )
 
     def list_available_terminals(self) -> frozenset[str]:
-        """Return the terminals that a program may use, as named in ``machine_requirements``."""
+        """Return the inputs and outputs that a program may use, with the names of
+        ``machine_requirements``.
+        """
         outputs = {
             Message("output {name}", name=name) for name in self._wanted if not self.describe_missing(name)
         }
@@ -195,7 +202,10 @@ class GrblIO:
         return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
     def handle_reset(self) -> None:
-        """Handle a stop or reset, which switches coolant off; auxiliary outputs may or may not change."""
+        """Record that a stop or reset has switched coolant off.
+
+        Auxiliary outputs may or may not change.
+        """
         self._asks.clear()
         for name, output in self._c.config.outputs.items():
             if output.terminal in _COOLANT:
@@ -204,7 +214,9 @@ class GrblIO:
                 self._said_at[name] = self._c.clock.now()
 
     def send_changes(self) -> None:
-        """Send changes that could not be sent while the controller was locked, jogging or in feed hold."""
+        """Send the changes that could not be sent while the controller was locked, jogging or in
+        feed hold.
+        """
         for name in [name for name, ask in self._asks.items() if ask.is_done]:
             del self._asks[name]
             self._said_at[name] = self._c.clock.now()
@@ -226,9 +238,9 @@ class GrblIO:
             self._c.send_line(f"M{64 if on else 65}P{terminal.removeprefix('out.')}")
 
     def _coolant_off_lines(self) -> list[str]:
-        """Return the lines that switch coolant off.
+        """Return the lines that switch one kind of coolant off.
 
-        M9 ends both kinds of coolant, so the other kind is switched on again.
+        M9 switches flood and mist off, so the other kind is then switched on again.
         """
         on = [
             _COOLANT[output.terminal]
@@ -246,9 +258,10 @@ _TOUCH_POLLING_S = 0.5  # Seconds after a touch with more frequent requests.
 
 
 class GrblProbe(FirstTouchInput):
-    """Touch input by reports, which are requested more often while the probe is armed.
+    """Touch input that is evaluated from reports, which are requested more often while the probe is armed.
 
-    G38.2 is not used, because it would continue after a loss of the host. A jog ends with its motion lease.
+    G38.2 is not used, because its motion would continue after a loss of the host. A jog ends when its
+    motion lease expires.
     """
 
     def __init__(self, controller: GrblController, axes: GrblAxes, inputs: GrblInputs) -> None:
@@ -263,7 +276,9 @@ class GrblProbe(FirstTouchInput):
         self._c.fast_polling_until = self._c.clock.now() + _ARMED_POLLING_S
 
     def check_touch(self) -> None:
-        """Check a new report for a touch; called once per cycle after the controller's own cycle."""
+        """Check a new report for a touch; call this method once per cycle after the cycle of the
+        controller.
+        """
         now, report = self._c.clock.now(), self._c.report
         if report is self._report or report is None:
             return

@@ -1,6 +1,6 @@
 """Connection to a grblHAL controller, lines with one reply each, and scripts that wait for replies.
 
-The connection is a serial device, a pseudo terminal or TCP. Only opening and closing wait.
+The connection is a serial device, a pseudo terminal or a TCP connection. Only opening and closing may wait.
 """
 
 from __future__ import annotations
@@ -25,11 +25,14 @@ _OPENING, _CLOSING = 3.0, 0.5  # s
 
 
 class TransportLostError(Exception):
-    """Loss of the connection; the text states how it was detected."""
+    """Loss of the connection; the text states how the loss was detected."""
 
 
 class GrblTransport(Protocol):
-    """Byte connection whose ``read`` and ``write`` never wait and raise WireLostError after a loss."""
+    """Byte connection to a controller.
+
+    ``read`` and ``write`` never wait, and raise TransportLostError if the connection is lost.
+    """
 
     def read(self) -> bytes: ...
 
@@ -39,9 +42,9 @@ class GrblTransport(Protocol):
 
 
 def parse_tcp_address(port: str) -> tuple[str, int] | None:
-    """Return host and port of ``tcp://…:…`` or ``socket://…:…``, or None for a device.
+    """Return the host and port of an address such as ``tcp://host:port`` or ``socket://host:port``.
 
-    Raises DriverError if the address is malformed.
+    Return None for the name of a serial device. Raises DriverError if the address is malformed.
     """
     if "://" not in port:
         return None
@@ -52,13 +55,19 @@ def parse_tcp_address(port: str) -> tuple[str, int] | None:
 
 
 def open_transport(port: str, baud: int) -> GrblTransport:
-    """Open a serial device or a TCP port. Raises DriverError if it cannot be opened."""
+    """Open a connection to a serial device or a TCP address.
+
+    Raises DriverError if the connection cannot be opened.
+    """
     address = parse_tcp_address(port)
     return GrblSerialTransport(port, baud) if address is None else GrblTcpTransport(*address)
 
 
 class GrblSerialTransport:
-    """Serial port without DTR and RTS, because some boards reset and lose their position when these rise."""
+    """Serial port that leaves DTR and RTS off.
+
+    Some boards reset and lose their position when these signals turn on.
+    """
 
     def __init__(self, port: str, baud: int) -> None:
         try:
@@ -79,14 +88,17 @@ class GrblSerialTransport:
             ) from error
 
     def read(self) -> bytes:
-        """Return the bytes received so far."""
+        """Return the bytes that were received since the last call."""
         try:
             return bytes(self._port.read(4096))
         except (OSError, TypeError) as error:  # pyserial raises TypeError when the device disappears.
             raise TransportLostError(str(error)) from error
 
     def write(self, data: bytes) -> None:
-        """Write all bytes to the buffer of the computer, which is larger than that of the controller."""
+        """Write all bytes to the output buffer of this computer.
+
+        This buffer is larger than the buffer of the controller.
+        """
         try:
             if self._port.write(data) != len(data):
                 raise TransportLostError("the serial port does not accept any more bytes")
@@ -94,12 +106,12 @@ class GrblSerialTransport:
             raise TransportLostError(str(error)) from error
 
     def close(self) -> None:
-        """Close the port."""
+        """Close the serial port."""
         self._port.close()
 
 
 class GrblTcpTransport:
-    """TCP connection with a socket that does not block."""
+    """TCP connection with a non-blocking socket."""
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -112,7 +124,7 @@ class GrblTcpTransport:
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
     def read(self) -> bytes:
-        """Return the bytes received so far."""
+        """Return the bytes that were received since the last call."""
         try:
             data = self._socket.recv(4096)
         except BlockingIOError:
@@ -124,7 +136,7 @@ class GrblTcpTransport:
         return data
 
     def write(self, data: bytes) -> None:
-        """Write all bytes."""
+        """Write all bytes to the socket without waiting."""
         try:
             if self._socket.send(data) != len(data):
                 raise TransportLostError("the connection does not accept any more bytes")
@@ -132,7 +144,9 @@ class GrblTcpTransport:
             raise TransportLostError(str(error)) from error
 
     def close(self) -> None:
-        """Close the connection after receiving the remaining bytes; otherwise a simulator would fail."""
+        """Close the connection after receiving the remaining bytes, because a simulator would fail
+        otherwise.
+        """
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)
             self._socket.settimeout(_CLOSING)
@@ -152,7 +166,10 @@ _MAX_LINE_BYTES = 256  # bytes of a line
 
 @dataclass(slots=True)
 class SentLine:
-    """Line that was sent, with the lines received before its ``ok``; ``error`` 0 means no error."""
+    """Line that was sent to the controller, and the lines that were received before its reply.
+
+    ``error_code`` is 0 if the reply is ``ok``.
+    """
 
     line: str
     lines: list[str] = field(default_factory=list)
@@ -163,12 +180,12 @@ class SentLine:
 
     @property
     def size_bytes(self) -> int:
-        """The number of bytes of the line with its line end."""
+        """Return the number of bytes of the line, including the line end."""
         return len(self.line) + 1
 
 
 class LineSender:
-    """Sender of lines in order; a line is sent only if it fits into the controller's buffer."""
+    """Sender of lines in order, which sends a line only if it fits into the buffer of the controller."""
 
     def __init__(self, write: Callable[[bytes], None]) -> None:
         self._write = write
@@ -183,7 +200,7 @@ class LineSender:
 
     @property
     def is_quiet(self) -> bool:
-        """Whether all lines are sent and acknowledged."""
+        """Return whether all lines have been sent and acknowledged."""
         return not self.waiting_lines and not self.unacknowledged_lines
 
     def can_send(self, line: str) -> bool:
@@ -191,7 +208,7 @@ class LineSender:
         return not self.waiting_lines and self._used() + len(line) + 1 <= self.free_bytes
 
     def send_line(self, line: str, now: float, ticket: int = 0) -> SentLine:
-        """Send a line, or queue it until it fits."""
+        """Send a line, or queue the line until it fits into the buffer of the controller."""
         assert line.isascii(), line
         assert len(line) < _MAX_LINE_BYTES, line
         ask = SentLine(line, sent_time_s=now, ticket=ticket)
@@ -200,7 +217,7 @@ class LineSender:
         return ask
 
     def send_waiting(self, now: float) -> None:
-        """Send the queued lines that fit now."""
+        """Send the queued lines that now fit into the buffer of the controller."""
         while self.waiting_lines and (
             not self.unacknowledged_lines
             or self._used() + self.waiting_lines[0].size_bytes <= self.free_bytes
@@ -211,7 +228,10 @@ class LineSender:
             self._write(ask.line.encode("ascii") + b"\n")
 
     def handle_reply(self, error: int) -> SentLine | None:
-        """Handle ``ok`` (0) or an error code and return its line, or None if no line is pending."""
+        """Assign a reply to its line and return the line, or None if no line is pending.
+
+        ``error`` is the error code of the reply, or 0 for ``ok``.
+        """
         if not self.unacknowledged_lines:
             return None
         ask = self.unacknowledged_lines.popleft()
@@ -219,12 +239,12 @@ class LineSender:
         return ask
 
     def add_message(self, line: str) -> None:
-        """Add a received message to the line that is acknowledged next."""
+        """Add a received message to the line that the controller will acknowledge next."""
         if self.unacknowledged_lines:
             self.unacknowledged_lines[0].lines.append(line)
 
     def discard_lines(self) -> None:
-        """Discard all lines; replies are ignored until ``$G`` is reported."""
+        """Discard all lines, and ignore replies until the reply to ``$G`` arrives."""
         self.waiting_lines.clear()
         self.unacknowledged_lines.clear()
         self.has_stale_replies = True
@@ -241,14 +261,14 @@ Script = Generator[ScriptStep, None, None]
 
 
 class ScriptError(DriverError):
-    """Failure of a script, whose text and code become the fault."""
+    """Failure of a script; its text and code become the fault of the controller."""
 
     def __init__(self, text: str, code: FaultCode = "controller-refuses", **values: object) -> None:
         super().__init__(text, code, reason="", **values)
 
 
 class ScriptRunner:
-    """Runner of one script at a time, advanced by its caller."""
+    """Runner of one script at a time, which advances when its owner calls ``advance``."""
 
     def __init__(self) -> None:
         self.purpose = ""  # Purpose of the present script.
@@ -259,23 +279,23 @@ class ScriptRunner:
 
     @property
     def is_busy(self) -> bool:
-        """Whether a script is running."""
+        """Return whether a script is running."""
         return self._script is not None
 
     def start_script(self, script: Script, purpose: str, now: float) -> None:
-        """Start a script; a script that is running is canceled."""
+        """Start a script, and cancel the script that is running."""
         self.cancel_script()
         self._script, self.purpose = script, purpose
         self._step, self._until = (lambda: True, 0.0, ""), now
 
     def cancel_script(self) -> None:
-        """Cancel the script; a script that is within a step ends with this step."""
+        """Cancel the script; if a step of the script is being executed, the script ends after this step."""
         if self._script is not None and not self._inside:
             self._script.close()
         self._script = None
 
     def advance(self, now: float) -> str:
-        """Advance the script as far as possible; return the reason for a failure, or an empty text."""
+        """Advance the script as far as possible, and return the reason if it fails, or an empty text."""
         while self._script is not None:
             until, _, why = self._step
             if not until():

@@ -1,1 +1,1 @@
-"""Driver for LinuxCNC's HAL, with setpoints, spindle and terminals on any hardware that HAL supports."""
+"""The driver for LinuxCNC's HAL, with setpoints, spindle and terminals on any hardware that HAL supports."""

@@ -1,4 +1,4 @@
-"""Axes on HAL: the setpoint queue is here, and the bridge and HAL play it."""
+"""The axes on HAL, whose setpoint queue is here; the bridge and HAL play it."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _NAN = float("nan")
 
 
 class HalQueue(GearedQueue):
-    """Geared setpoint queue for which the bridge decides when a cam has ended."""
+    """A geared setpoint queue for which the bridge decides when a cam has ended."""
 
     def follow_spindle(self, t: float, turns: float) -> AxisMotion | None:
         """Return the setpoint for one sample of the spindle, or None without an active cam."""
         return None if self._gearing is None else self._gearing.play_setpoint(t, t, turns)
 
     def end_cam(self, t: float) -> None:
-        """End the cam at time ``t``; the tail that follows by time has started."""
+        """End the cam at time ``t``, when the tail that continues by time has started."""
         if self._gearing is not None:
             self._leave_gearing(t, self._gearing)
 
@@ -50,7 +50,10 @@ class HalQueue(GearedQueue):
 
 
 class HalAxes:
-    """``core.ports.AxisSink`` and ``Gear`` of HAL, used only by the thread that owns the bridge."""
+    """The ``core.ports.AxisSink`` and ``SpindleGear`` of HAL.
+
+    Only the thread that owns the bridge may use it.
+    """
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
         self.config = config
@@ -147,7 +150,7 @@ class HalAxes:
         )
 
     def _estimate_speed(self, t: float, turns: float) -> None:
-        """Calculate the speed in rev/s from the last samples, if HAL does not provide a velocity."""
+        """Calculate the spindle speed in rev/s from the last samples, if HAL does not provide a velocity."""
         turned = self._turned
         turned.append((t, turns))
         while turned[0][0] < t - _SPEED_WINDOW_S:
@@ -156,7 +159,10 @@ class HalAxes:
         self.spindle_rev_per_s = (turns - turned[0][1]) / since if since > 0.0 else self.spindle_rev_per_s
 
     def _to_machine_position(self, raw: Sequence[float], t: float) -> tuple[float, ...]:
-        """Convert HAL positions into those of the control; an axis without pins is at its queued position."""
+        """Return HAL positions converted to positions of the control.
+
+        An axis without pins is at its queued position.
+        """
         place = list(self.queue.commanded_state_at(t)[0])
         for value, index in zip(raw, self._driven, strict=True):
             if index != self._lent:
@@ -164,7 +170,10 @@ class HalAxes:
         return tuple(place)
 
     def run_cycle(self) -> None:
-        """Supervise and home, without raising errors; errors become the fault."""
+        """Monitor the machine and continue the homing.
+
+        The method raises no errors; errors become the fault.
+        """
         self.process_samples()
         told = self._link.last_report
         trouble = self._link.failure_reason or parse_bridge_fault(told)
@@ -178,7 +187,7 @@ class HalAxes:
         self.queue.discard_before(self._now() - _HISTORY_S)
 
     def _process_bridge_state(self) -> None:
-        """Update the queue after the bridge has ended a cam or braked."""
+        """Update the queue after the bridge has ended a cam or has braked."""
         told = self._link.last_report
         if self.queue.is_engaged and told.get("geared") is False and "left" in told:
             left = told["left"]
@@ -192,7 +201,7 @@ class HalAxes:
             self.queue.replace_by_braking(pieces[0].start_time_s, pieces)
 
     def _handle_power_loss(self) -> None:
-        """Handle a loss of power by E-stop or a drive fault.
+        """Handle a loss of power after an E-stop or a drive fault.
 
         Axes without an absolute encoder lose their home.
         """
@@ -211,15 +220,18 @@ class HalAxes:
         return self._now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue, or the present time if it is empty."""
+        """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
         return self.queue.queue_end(self._now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the queued positions and velocities at time ``t``."""
+        """Return the queued positions and velocities at ``time_s``."""
         return self.queue.commanded_state_at(time_s)
 
     def splice(self, segments: Segments) -> None:
-        """Splice setpoints into the queue. Raises DriverError if they are invalid or exceed axis limits."""
+        """Splice setpoints into the queue.
+
+        Raises DriverError if the setpoints are invalid or exceed axis limits.
+        """
         self._need_power()
         require_no_homing(self.active_homing.name if self.active_homing is not None else "")
         self._check(segments)
@@ -253,7 +265,7 @@ class HalAxes:
         return self.queue.read_gear_state()
 
     def sample(self) -> AxisSample:
-        """Return the state of the axes from HAL's last sample."""
+        """Return the state of the axes according to HAL's last sample."""
         t, actual, powered = self._t, self._actual, self._powered
         demand = self._command if powered and self.active_homing is None else actual
         velocity = self.queue.commanded_state_at(t)[1]
@@ -272,7 +284,10 @@ class HalAxes:
         )
 
     def enable(self, on: bool) -> None:
-        """Switch the power on or off and wait. Raises DriverError if the E-stop chain does not close."""
+        """Switch the power on or off, and wait until it has changed.
+
+        Raises DriverError if the E-stop chain does not close.
+        """
         if not on:
             self._forget()
             if not self._link.failure:
@@ -294,7 +309,7 @@ class HalAxes:
         self._on = True
 
     def stop(self, mode: StopMode) -> None:
-        """Brake on the path within a few milliseconds, or switch off at once with ``StopMode.OFF``."""
+        """Brake on the path within a few milliseconds, or switch off immediately with ``StopMode.OFF``."""
         if self._link.failure:
             self._forget()
             return
@@ -307,7 +322,10 @@ class HalAxes:
         self._link.send_command("off" if mode is StopMode.OFF else "ramp-off")
 
     def home(self, axis: str) -> None:
-        """Start to home an axis; ``sample().homed`` becomes True when it is done. Raises DriverError."""
+        """Start homing an axis.
+
+        ``sample().homed`` becomes True when homing is done. Raises DriverError if homing cannot start.
+        """
         require_axis(axis, self.axes)
         index = self.axes.index(axis)
         figures = self.config.axes[index]
@@ -319,10 +337,11 @@ class HalAxes:
         self.active_homing = HalHoming(figures, index, self)
 
     def clear_fault(self) -> None:
-        """Clear the fault; the drives remain off. Raises DriverError.
+        """Clear the fault without switching on the drives.
 
         HAL is loaded again if the bridge has ended, the servo thread has stopped or the board is not
-        reachable. hm2_eth reconnects to a card only when it is loaded.
+        reachable. hm2_eth reconnects to a card only when it is loaded. Raises DriverError if the fault
+        cannot be cleared.
         """
         if self._link.last_report.get("stands") is True or self._link.are_inputs_stale:
             self._link.end_session()
@@ -339,9 +358,10 @@ class HalAxes:
     # --- for C on the spindle drive ------------------------------------------------------------------------
 
     def transfer_c(self, axis_index: int | None, hal_position: float = 0.0, count: float = 0.0) -> None:
-        """Release C to the spindle with an unchanged count, or engage C if ``axis`` is None.
+        """Release the axis ``axis_index`` to the spindle, or engage C if ``axis_index`` is None.
 
-        When C is engaged, ``raw`` is its position in HAL and ``count`` is its position in the control.
+        The count does not change when C is released. When C is engaged, ``hal_position`` is its position in
+        HAL and ``count`` is its position in the control.
         """
         held, self._lent = self._lent, axis_index
         # HAL continues to play this setpoint, independent of the feedback.
@@ -358,11 +378,11 @@ class HalAxes:
     # --- for homing ---------------------------------------------------------------------------------------
 
     def read_bit(self, name: str) -> bool:
-        """Return a bit of the bridge by its pin, such as ``X.index``."""
+        """Return a bit of the bridge by the name of its pin, such as ``X.index``."""
         return self._link.read_bit(name)
 
     def read_number(self, name: str) -> float:
-        """Return a number of the bridge by its pin, such as ``X.index-at``."""
+        """Return a number of the bridge by the name of its pin, such as ``X.index-at``."""
         return self._link.read_number(name)
 
     def request_index(self, pin: str, enabled: bool) -> None:
@@ -370,24 +390,30 @@ class HalAxes:
         self._link.send_command("index", pin=pin, on=enabled)
 
     def ignore_limit_switch(self, axis: str, ignored: bool) -> None:
-        """Select whether the limit switch of an axis is ignored, as needed for homing on it."""
+        """Select whether the limit switch of an axis is ignored.
+
+        It must be ignored while the axis homes on this switch.
+        """
         self._link.send_command("homing", axis=axis, on=ignored)
 
     def splice_homing(self, segments: Segments) -> None:
-        """Splice the setpoints of a homing. Raises DriverError."""
+        """Splice the setpoints of a homing move into the queue.
+
+        Raises DriverError if the bridge does not accept them.
+        """
         self.queue.splice(segments, self._now())
         self._send("splice", convert_segments(segments, len(self.axes)))
 
     def brake(self) -> None:
-        """Brake as soon as possible."""
+        """Brake all axes to rest as soon as possible."""
         self._link.send_command("brake")
 
     def read_hal_position(self, index: int) -> float:
-        """Return the position of an axis in HAL's count."""
+        """Return the position of an axis as HAL counts it."""
         return self._actual[index] + self.home_positions[index]
 
     def set_home(self, index: int, hal_position: float) -> None:
-        """Set the home position of an axis to ``zero`` in HAL's count."""
+        """Set the home position of an axis to ``hal_position``, as HAL counts it."""
         leap = self.home_positions[index] - hal_position
         self.home_positions[index] = hal_position
         self._homed[index] = True
@@ -406,7 +432,7 @@ class HalAxes:
 
     @property
     def _is_axis_rolling(self) -> bool:
-        """Whether an axis has moved recently, according to its feedback."""
+        """Return whether an axis has moved recently, according to its feedback."""
         return self._t - self._moved < _STANDSTILL_TIME_S
 
     @property
@@ -460,9 +486,9 @@ class HalAxes:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the queue is empty and no axis moves."""
+        """Return whether the queue is empty and no axis moves."""
         return is_queue_finished(self.queue.queue_end(self._now()), self._now()) and not self._is_axis_rolling
 
 
 def _discard_sample(*_figures: float) -> None:
-    """Ignore a sample."""
+    """Ignore a sample, as the default handler does."""

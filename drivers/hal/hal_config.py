@@ -1,4 +1,4 @@
-"""Configuration of a machine on HAL, which the app fills from the machine file."""
+"""The configuration of a machine on HAL, which the app fills from the machine file."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from drivers.setpoint_queue import AxisProperties
 
 @dataclass(frozen=True, slots=True)
 class HalAxis(AxisProperties):
-    """One axis; without ``pins`` it only counts."""
+    """One axis of the machine; without ``pins``, the axis only counts."""
 
     pins: HalAxisPins | None = None
     home_method: int = 0
@@ -23,7 +23,7 @@ class HalAxis(AxisProperties):
 
     @property
     def switch(self) -> str:
-        """The key of the pin that homing searches for, or an empty text."""
+        """Return the key of the switch pin that homing searches for, or an empty text."""
         needs = (
             HOMING_METHOD_PINS.get(self.home_method, ())
             if not self.absolute and self.pins is not None
@@ -34,8 +34,9 @@ class HalAxis(AxisProperties):
 
 @dataclass(frozen=True, slots=True)
 class HalSpindleConfig:
-    """Spindle in rpm and rpm/s; ``is_driven_by_hal`` is True if HAL drives the spindle, False for an
-    inverter.
+    """The configuration of the spindle, in rpm and rpm/s.
+
+    ``is_driven_by_hal`` is True if HAL drives the spindle, and False if an inverter drives it.
     """
 
     pins: HalSpindlePins
@@ -48,10 +49,10 @@ class HalSpindleConfig:
 
 @dataclass(frozen=True, slots=True)
 class HalOutput:
-    """Output with its pin and safe state; None leaves the output unchanged.
+    """An output with its pin and its safe state; None leaves the output unchanged.
 
-    ``is_lamp`` marks a lamp of the signal tower. It indicates an open E-stop chain, so an open chain does not
-    switch it to its safe state. Only a silent bridge does.
+    ``is_lamp`` marks a lamp of the signal tower. Such a lamp indicates an open E-stop chain, so an open
+    chain does not switch it to its safe state. Only a silent bridge does.
     """
 
     pin: str
@@ -61,7 +62,7 @@ class HalOutput:
 
 @dataclass(frozen=True, slots=True)
 class HalInput:
-    """Input with its pin."""
+    """An input with its pin."""
 
     pin: str
     active_low: bool = False
@@ -69,7 +70,10 @@ class HalInput:
 
 @dataclass(frozen=True, slots=True)
 class HalPot:
-    """Pot with its pin (0…1), or a handwheel that counts; ``switch`` names its input."""
+    """A pot with its pin (0…1), or a handwheel that counts.
+
+    ``switch_input`` is the name of the input of its switch.
+    """
 
     pin: str
     low_value: float = 0.0
@@ -79,7 +83,10 @@ class HalPot:
 
 @dataclass(frozen=True, slots=True)
 class HalConfig:
-    """Configuration of the complete machine; times in seconds, ``hal_file`` is the path of the HAL file."""
+    """The configuration of the complete machine.
+
+    Times are in seconds, and ``hal_file`` is the path of the HAL file.
+    """
 
     table: HalTable
     hal_file: Path
@@ -92,10 +99,10 @@ class HalConfig:
 
     @property
     def probe_input(self) -> HalInput | None:
-        """The input of a probe or tool setter, which is sampled with the axes, or None."""
+        """Return the input of a probe or tool setter, which is sampled with the axes, or None."""
         return self.inputs.get(PROBE_INPUT)
 
     @property
     def driven_axes(self) -> tuple[HalAxis, ...]:
-        """The axes that have pins."""
+        """Return the axes that have pins."""
         return tuple(axis for axis in self.axes if axis.pins is not None)

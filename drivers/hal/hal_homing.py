@@ -1,6 +1,7 @@
 """Homing and probing on HAL.
 
-An axis moves to its switch, slowly off the switch again, and then to the index if the method uses one.
+To home, an axis moves to its switch, then slowly off the switch, and then to the index if the homing method
+uses an index.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ _INDEX_TRAVEL = 30.0  # Mm or degrees within which an index must occur.
 
 
 class HomingAxes(Protocol):
-    """Functions of the axes that homing needs; positions are in HAL's count."""
+    """The functions of the axes that homing needs.
+
+    Positions are as HAL counts them.
+    """
 
     def now(self) -> float: ...
     def horizon(self) -> float: ...
@@ -53,10 +57,10 @@ class _Step(Enum):
 
 
 class HalHoming:
-    """Homing of one axis: ``step`` must be called once per tick and ``add_sample`` for each sample, until
-    ``is_done``.
+    """The homing of one axis.
 
-    ``step`` raises DriverError if the homing fails.
+    Call ``advance`` once per tick and ``add_sample`` for each sample, until ``is_done``. ``advance`` raises
+    DriverError if homing fails.
     """
 
     def __init__(self, axis: HalAxis, index: int, axes: HomingAxes) -> None:
@@ -75,17 +79,20 @@ class HalHoming:
 
     @property
     def is_done(self) -> bool:
-        """Whether home is found and the axis is at rest."""
+        """Return whether home has been found and the axis is at rest."""
         return self._step is _Step.DONE
 
     def add_sample(self, hal_position: float, switch_on: bool) -> None:
-        """Add a sample of position and switch; home is the position at which the switch turns off."""
+        """Add a sample of the position and the switch.
+
+        The home position is where the switch turns off.
+        """
         if self._step is _Step.LEAVE and self._on and not switch_on and self._mark is None:
             self._mark = hal_position
         self._on = switch_on
 
     def advance(self, now: float) -> None:
-        """Continue the homing."""
+        """Continue the homing with its next step, if the present step is complete."""
         rests = is_queue_finished(self._slides.horizon(), now)
         acts = {
             _Step.START: self._begin,
@@ -145,7 +152,10 @@ class HalHoming:
         self._slides.request_index(f"{self.name}.index", True)
 
     def _search_index(self, now: float, rests: bool) -> None:
-        """Wait until the bit falls at the index; the compensated jump is then the position of the index."""
+        """Wait until the bit of the index request turns off at the index.
+
+        The compensated jump is then the position of the index.
+        """
         if now > self._since + 0.1 and not self._slides.read_bit(f"{self.name}.index"):
             self._mark = self._slides.read_number(f"{self.name}.index-at")
             self._slides.brake()
@@ -195,7 +205,7 @@ class HalHoming:
 
 
 class HalTouch(FirstTouchInput):
-    """Touch input that is based on HAL's samples."""
+    """A touch input that evaluates HAL's samples."""
 
     def __init__(self, period: float, *, active_low: bool) -> None:
         super().__init__()

@@ -1,4 +1,7 @@
-"""Connection to the bridge, with its last report; a silent or ended bridge is a fault."""
+"""The connection to the bridge, with its last report.
+
+A bridge that is silent or has ended is a fault.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,10 @@ _POLL_INTERVAL_S = 0.002  # Seconds between two checks during a wait.
 
 
 class HalLink:
-    """Connection to the bridge, used by one thread; ``open_link`` starts HAL and its bridge."""
+    """The connection to the bridge, used by one thread.
+
+    ``open_link`` starts HAL and its bridge.
+    """
 
     def __init__(
         self,
@@ -48,7 +54,10 @@ class HalLink:
         self.max_bridge_delay_s = 0.0  # Maximum wake-up delay of the bridge in s.
 
     def connect(self) -> None:
-        """Start HAL and wait for the first report. Raises DriverError."""
+        """Start HAL, and wait for the first report of the bridge.
+
+        Raises DriverError if HAL does not start.
+        """
         if self._link is not None and not self._wait_for_shutdown(self._link):
             raise DriverError("HAL is still shutting down; press Reset again in a few seconds", "hal-bridge")
         self.close()
@@ -65,7 +74,7 @@ class HalLink:
         self.wait_until(lambda: not self.are_inputs_stale, _START_TIMEOUT_S)
 
     def _wait_for_shutdown(self, link: BridgeLink) -> bool:
-        """Return whether HAL has shut down after its bridge has ended, within 4 s."""
+        """Wait up to 4 s until HAL has shut down after the end of its bridge, and return whether it has."""
         end = self._clock.now() + _SHUTDOWN_TIMEOUT_S
         while not link.has_shut_down and self._clock.now() < end:
             if self._idle is not None:
@@ -74,13 +83,16 @@ class HalLink:
         return link.has_shut_down
 
     def end_session(self) -> None:
-        """End the bridge and HAL, for example after the servo thread has stopped."""
+        """End the bridge and HAL, for example because the servo thread has stopped."""
         if self._link is not None and not self.failure:
             self._link.stop_bridge()
             self.failure = Fault("HAL was shut down", "hal-thread")
 
     def process_packets(self) -> None:
-        """Process received packets, without raising errors; a failure is stored in ``failure``."""
+        """Process the received packets.
+
+        The method raises no errors; a failure is stored in ``failure``.
+        """
         if self._link is None or self.failure:
             return
         self._silent, self._looked = self.report_age_s, self._clock.now()
@@ -100,7 +112,7 @@ class HalLink:
 
     @property
     def failure_reason(self) -> Fault | str:
-        """The reason why the state of the machine is unknown, or an empty text."""
+        """Return the reason why the state of the machine is unknown, or an empty text."""
         silent = self.report_age_s
         if self.failure or silent <= _BRIDGE_TIMEOUT_S:
             return self.failure
@@ -110,22 +122,28 @@ class HalLink:
 
     @property
     def is_state_unknown(self) -> bool:
-        """Whether the state of the machine is unknown because bridge, servo thread or board are silent."""
+        """Return whether the state of the machine is unknown.
+
+        It is unknown while the bridge, the servo thread or the board is silent.
+        """
         return bool(self.failure_reason) or self.last_report.get("stands") is True or self.are_inputs_stale
 
     @property
     def are_inputs_stale(self) -> bool:
-        """Whether HAL's inputs are old because the board is not reachable."""
+        """Return whether HAL's inputs are old because the board is not reachable."""
         return self.last_report.get("stale") is True
 
     @property
     def input_age_s(self) -> float:
-        """The age of the inputs in seconds, or inf while the board is not reachable."""
+        """Return the age of the inputs in seconds, or inf while the board is not reachable."""
         return float("inf") if self.are_inputs_stale else self.report_age_s
 
     @property
     def report_age_s(self) -> float:
-        """The seconds without a report while this side was listening, or inf after a loss."""
+        """Return the time without a report in seconds, or inf after a loss.
+
+        Only the time during which this side was listening is counted.
+        """
         return (
             float("inf")
             if self.failure
@@ -134,23 +152,29 @@ class HalLink:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """The warnings of the present HAL session."""
+        """Return the warnings of the present HAL session."""
         return self._link.warnings if self._link is not None else ()
 
     def send_heartbeat(self) -> None:
-        """Send a sign of life, unless the bridge is silent."""
+        """Send a heartbeat, unless the bridge is silent."""
         if not self.failure_reason:
             with suppress(DriverError):  # The loss is reported separately.
                 self.send_command("beat")
 
     def send_command(self, command: str, **values: object) -> int:
-        """Send a command and return its number, which the bridge later reports. Raises DriverError."""
+        """Send a command, and return the number that the bridge reports after executing it.
+
+        Raises DriverError if the bridge does not accept the command.
+        """
         self._sent += 1
         self._send(pack_packet({"do": command, "n": self._sent, **values}))
         return self._sent
 
     def send_pieces(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
-        """Send a command with setpoints. Raises DriverError."""
+        """Send a command with setpoints.
+
+        Raises DriverError if the bridge does not accept the command.
+        """
         self._sent += 1
         for data in build_packets({"do": what, "n": self._sent, **values}, pieces, self._axes):
             self._send(data)
@@ -160,8 +184,9 @@ class HalLink:
         return number(self.last_report, "n") >= command_number
 
     def wait_until(self, is_ready: Callable[[], bool], timeout_s: float) -> bool:
-        """Process packets until ``is_ready`` returns True; return False after ``timeout_s`` seconds or a
-        loss.
+        """Process packets until ``is_ready`` returns True, and return whether it did.
+
+        The result is False after ``timeout_s`` seconds or a loss of the connection.
         """
         end = self._clock.now() + timeout_s
         while not self.failure and self._clock.now() < end:
@@ -174,12 +199,12 @@ class HalLink:
         return False
 
     def read_bit(self, name: str) -> bool:
-        """Return a bit of the bridge by its pin; False for an unknown pin."""
+        """Return a bit of the bridge by the name of its pin, or False for an unknown pin."""
         told, at = self.last_report.get("bits"), self._bits.get(name)
         return isinstance(told, list) and at is not None and told[at] is True
 
     def read_number(self, name: str) -> float:
-        """Return a number of the bridge by its pin; 0 for an unknown pin."""
+        """Return a number of the bridge by the name of its pin, or 0 for an unknown pin."""
         told, at = self.last_report.get("figures"), self._figures.get(name)
         return float(told[at]) if isinstance(told, list) and at is not None else 0.0
 
@@ -189,7 +214,7 @@ class HalLink:
         yield from rows
 
     def close(self) -> None:
-        """Close the connection, upon which the bridge stops the machine and ends HAL."""
+        """Close the connection, after which the bridge stops the machine and ends HAL."""
         if self._link is not None:
             self._link.close()
         self._link = None

@@ -1,4 +1,4 @@
-"""Machine on HAL, driven by the one loop that owns its bridge.
+"""A machine on HAL, driven by the only loop that owns its bridge.
 
 Inputs, outputs, pots and the operator station are HAL pins with the names of the machine file.
 """
@@ -26,7 +26,7 @@ from drivers.port_checks import LOG_ROWS, SampleLog, find_output, require_output
 
 
 class HalTerminals:
-    """``core.ports.DigitalIO`` and ``Station`` on HAL pins."""
+    """The ``core.ports.DigitalIO`` and ``Station`` on HAL pins."""
 
     def __init__(self, config: HalConfig, link: HalLink, now: Callable[[], float]) -> None:
         self._config = config
@@ -35,7 +35,7 @@ class HalTerminals:
         self._written: dict[str, tuple[bool, int]] = {}  # Commands that the bridge has not executed yet.
 
     def inputs(self) -> Mapping[str, bool]:
-        """Return all inputs by name; True is active."""
+        """Return all inputs by name, with True for an active input."""
         told = self._link.last_report.get("in")
         raw = told if isinstance(told, list) else [False] * len(self._config.inputs)
         wired = zip(self._config.inputs.items(), raw, strict=True)
@@ -79,7 +79,7 @@ class HalTerminals:
         self._written[name] = on, self._link.send_command("out", name=name, on=on)
 
     def read_state(self) -> StationState:
-        """Return the state of the operator station; its age is that of the inputs."""
+        """Return the state of the operator station, whose age is that of the inputs."""
         return build_station_state(
             self.inputs(),
             self._config.pots,
@@ -89,7 +89,10 @@ class HalTerminals:
         )
 
     def _read_analog(self, name: str) -> float:
-        """Return the value of an analog pin: 1 is the end of a pot's range, 0 if it is not wired."""
+        """Return the value of an analog pin, in which 1 is the end of a pot's range.
+
+        The result is 0 if the pin is not connected.
+        """
         told, names = self._link.last_report.get("analog"), list(self._config.pots)
         if not isinstance(told, list) or name not in names:
             return 0.0
@@ -97,7 +100,7 @@ class HalTerminals:
 
 
 class HalSamples:
-    """``core.ports.SampleSource`` with each period of the servo thread."""
+    """The ``core.ports.SampleSource`` of HAL, with one sample for each period of the servo thread."""
 
     def __init__(self, axes: HalAxes, period: float) -> None:
         self.sample_rate_hz = 1.0 / period
@@ -110,9 +113,9 @@ class HalSamples:
 
 
 class HalMachine:
-    """Machine on HAL, connected by its constructor.
+    """A machine on HAL, to which the constructor connects.
 
-    The constructor raises DriverError that names the first pin which does not match the machine file.
+    The constructor raises DriverError, which names the first pin that does not match the machine file.
     """
 
     def __init__(
@@ -143,7 +146,10 @@ class HalMachine:
 
     @property
     def ports(self) -> MachinePorts:
-        """The ports for the executor; the terminals are also the operator station."""
+        """Return the ports for the executor.
+
+        The terminals are also the operator station.
+        """
         follows = self.config.spindle.has_encoder and bool(self.config.spindle.pins.position)
         return MachinePorts(
             clock=self.clock,
@@ -161,13 +167,16 @@ class HalMachine:
         )
 
     def find_unknown_items(self) -> frozenset[UnknownPart]:
-        """Return the unknown states: all of them if bridge, HAL or board do not respond."""
+        """Return the parts of the machine state that are unknown.
+
+        All parts are unknown if the bridge, HAL or the board does not respond.
+        """
         return ALL_UNKNOWN_PARTS if self.bridge_link.is_state_unknown else frozenset()
 
     def run_cycle(self) -> None:
-        """Run one cycle: receive, supervise and send a sign of life.
+        """Run one cycle: receive packets, monitor the machine and send a heartbeat.
 
-        It must be called every few milliseconds.
+        Call this method every few milliseconds.
         """
         self.bridge_link.process_packets()
         self.axes.run_cycle()
@@ -179,7 +188,7 @@ class HalMachine:
         self.bridge_link.send_heartbeat()
 
     def close(self) -> None:
-        """Close the connection; the bridge brakes and switches off, and HAL is shut down."""
+        """Close the connection, after which the bridge brakes and switches off, and HAL is shut down."""
         self.bridge_link.close()
 
 

@@ -28,9 +28,9 @@ _LOADRT = re.compile(r"^\s*loadrt\s+(\S+)\s*(.*?)\s*(?:#.*)?$")
 
 @dataclass(frozen=True, slots=True)
 class MachineLink:
-    """Pin or signal of the machine's HAL file, with TurnDesk's signals that are connected to it.
+    """A pin or signal of the machine's HAL file, with TurnDesk's signals that are connected to it.
 
-    ``path`` is its key in the machine file. ``drives`` is True if TurnDesk is the source.
+    ``path`` is its key in the machine file. ``is_driven`` is True if TurnDesk is the source.
     """
 
     path: str
@@ -42,7 +42,7 @@ class MachineLink:
 
 @dataclass(frozen=True, slots=True)
 class BridgePin:
-    """Pin of the bridge itself, with the direction in, out or io."""
+    """A pin of the bridge itself, with the direction in, out or io."""
 
     name: str
     hal_type: str
@@ -51,7 +51,7 @@ class BridgePin:
 
 @dataclass(slots=True)
 class HalSection:
-    """Contents of the section: components, order of calls, parameter values and connections."""
+    """The contents of the section: components, order of calls, parameter values and connections."""
 
     module_instances: dict[str, list[str]] = field(default_factory=dict)  # Instances by component.
     loadrt_lines: list[str] = field(
@@ -65,9 +65,9 @@ class HalSection:
     sample_columns: str = ""  # Column types of the sampler.
 
     def add_component(self, component: str, name: str, **pins: str) -> None:
-        """Add a component instance with its pins on signals.
+        """Add a component instance, and connect its pins to signals.
 
-        In the name of a pin, ``_`` represents ``-``; a trailing ``_`` is removed.
+        In the name of a pin, each underscore represents a hyphen; a trailing underscore is removed.
         """
         self.module_instances.setdefault(component, []).append(name)
         self.function_calls.append(name)
@@ -79,7 +79,7 @@ class HalSection:
         self.nets.setdefault(signal, []).extend(pins)
 
     def add_bridge_pin(self, name: str, hal_type: str, direction: str, signal: str = "") -> str:
-        """Add a pin of the bridge, connect it to a signal and return its name."""
+        """Add a pin of the bridge, connect it to a signal, and return its name."""
         self.bridge_pins.append(BridgePin(name, hal_type, direction))
         if signal:
             self.connect(signal, f"{BRIDGE_COMPONENT}.{name}")
@@ -101,7 +101,7 @@ class HalSection:
 
 
 def build_section(config: HalConfig) -> HalSection:
-    """Build the section with its calls in the order of the servo thread."""
+    """Return the section, with its calls in the order of the servo thread."""
     border = HalSection()
     _streams(border, config)
     _chain(border, config)
@@ -123,7 +123,10 @@ def build_section(config: HalConfig) -> HalSection:
 
 
 def count_columns(config: HalConfig) -> int:
-    """Return the columns of one stream: the row number, and for each axis position and travel per rev."""
+    """Return the number of columns of one stream.
+
+    The columns are the row number and, for each axis, the position and the travel per revolution.
+    """
     return 1 + 2 * len(config.driven_axes)
 
 
@@ -201,12 +204,12 @@ def _chain(border: HalSection, config: HalConfig) -> None:
 
 
 def _watchdog_delay(config: HalConfig) -> float:
-    """Return the seconds in which the slowest axis has braked."""
+    """Return the time in seconds that the slowest axis needs to brake, with a reserve."""
     return _BRAKING_RESERVE_S + max(axis.vmax / axis.amax for axis in config.driven_axes)
 
 
 def _add_estop(border: HalSection, config: HalConfig) -> None:
-    """Derive ``td-estop-ok`` from the E-stop input, for either polarity."""
+    """Add the signal ``td-estop-ok``, which is derived from the E-stop input with either polarity."""
     wired = config.inputs["estop"]
     raw = "td-in-estop"
     border.add_bridge_pin("in.estop", BIT, "in", raw)
@@ -218,7 +221,10 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
 
 
 def _reached_signal(border: HalSection, config: HalConfig) -> str:
-    """Return the signal of a released E-stop with a current input; a frozen input counts as pressed."""
+    """Return the signal that is on while the E-stop is released and its input is current.
+
+    An E-stop input that is frozen counts as pressed.
+    """
     if not config.table.link_fault:
         return "td-estop-ok"
     border.add_bridge_pin("link-fault", BIT, "in", "td-link-fault")
@@ -229,7 +235,7 @@ def _reached_signal(border: HalSection, config: HalConfig) -> str:
 
 
 def _add_or(border: HalSection, name: str, signals: list[str]) -> str:
-    """Return a signal that is on when any of these signals is on."""
+    """Return a signal that is on when any of the given signals is on."""
     so_far = signals[0]
     for index, signal in enumerate(signals[1:]):
         both = f"{name}-{index}"
@@ -286,8 +292,8 @@ def _slide(border: HalSection, axis: HalAxis) -> None:
 def _add_smooth_start(border: HalSection, signal: str, path: str, pin: str, own_signal: str) -> None:
     """Create a feedback signal that continues to count where the encoder resets to 0 at its index.
 
-    The signal with the suffix ``shift`` is the compensated jump, and after the reset also the position of the
-    index. ``own`` is the bridge pin that requests the index.
+    The signal with the suffix "shift" is the compensated jump and, after the reset, also the position of
+    the index. ``own_signal`` is the bridge pin that requests the index.
     """
     name, index = signal.replace("td-", "td.", 1), f"{signal}-index"
     border.add_bridge_pin(own_signal, BIT, "io", index)
@@ -334,7 +340,10 @@ def _spindle(border: HalSection, config: HalConfig) -> None:
 
 
 def _add_spindle_turns(border: HalSection, config: HalConfig) -> None:
-    """Connect the commands that turn, orient or position the spindle; an open chain disables all of them."""
+    """Connect the commands that run, orient or position the spindle.
+
+    An open chain disables all of these commands.
+    """
     pins, path = config.spindle.pins, "hal.spindle"
     border.add_bridge_pin("spindle.speed", FLOAT, "out", "td-wanted-rpm")
     border.add_component("mux2", "td.spindle", in1="td-wanted-rpm", sel="td-ok", out="td-rpm")
@@ -393,8 +402,9 @@ def _terminals(border: HalSection, config: HalConfig) -> None:
 def insert_section(machine_text: str, section: HalSection, thread: str, source: str) -> str:
     """Return the machine's HAL file with TurnDesk's section inserted.
 
-    A component can be loaded only once. If both parts use a component, their instances are loaded together at
-    the first place. ``source`` names the file. Raises DriverError if the mark is missing.
+    A component can be loaded only once. If both parts use a component, their instances are loaded together
+    at the first load line. ``source`` is the name of the file. Raises DriverError if the line ``#turndesk``
+    is missing.
     """
     lines = machine_text.splitlines()
     place = next((n for n, line in enumerate(lines) if line.strip().lower().startswith(TURNDESK_MARK)), None)
@@ -414,7 +424,7 @@ def insert_section(machine_text: str, section: HalSection, thread: str, source: 
 
 
 def _parse_instances(line: str) -> tuple[str, list[str]]:
-    """Return the component that a line loads and its instances, or an empty name for other lines."""
+    """Return the component that a line loads, with its instances, or an empty name for other lines."""
     found = _LOADRT.match(line)
     if found is None:
         return "", []
@@ -425,7 +435,7 @@ def _parse_instances(line: str) -> tuple[str, list[str]]:
 
 
 def _merge_instances(line: str, modules: dict[str, list[str]]) -> str:
-    """Return the line with TurnDesk's instances added, and remove them from ``modules``."""
+    """Return the line with TurnDesk's instances added, and remove these instances from ``modules``."""
     component, theirs = _parse_instances(line)
     if component not in modules:
         return line
@@ -433,7 +443,7 @@ def _merge_instances(line: str, modules: dict[str, list[str]]) -> str:
 
 
 def _comment_out_load(line: str, modules: dict[str, list[str]]) -> str:
-    """Return the line as a comment if its instances are loaded earlier."""
+    """Return the line as a comment if its instances are already loaded by an earlier line."""
     component, theirs = _parse_instances(line)
     if component not in modules:
         return line
@@ -442,7 +452,10 @@ def _comment_out_load(line: str, modules: dict[str, list[str]]) -> str:
 
 
 def _section_lines(border: HalSection, thread: str, modules: Mapping[str, list[str]]) -> Iterator[str]:
-    """Yield the lines that load, call, set and connect the section, without the bridge's own pins."""
+    """Yield the lines that load, call, set and connect the components of the section.
+
+    The bridge's own pins are not included.
+    """
     yield from border.loadrt_lines
     yield from (f"loadrt {component} names={','.join(names)}" for component, names in modules.items())
     yield from (f"addf {call} {thread}" for call in border.function_calls)
@@ -454,7 +467,7 @@ def _section_lines(border: HalSection, thread: str, modules: Mapping[str, list[s
 
 
 def list_bridge_nets(border: HalSection) -> Iterator[tuple[str, list[str]]]:
-    """Yield the bridge's own pins by signal."""
+    """Yield each signal with the bridge's own pins that are connected to it."""
     for signal, pins in border.nets.items():
         own = [pin for pin in pins if pin.startswith(Message("{what}.", what=BRIDGE_COMPONENT))]
         if own:

@@ -1,7 +1,8 @@
-"""Session of HAL: halrun with the machine's file and TurnDesk's section, and a socket to the bridge.
+"""A session of HAL: halrun with the machine's file and TurnDesk's section, and a socket to the bridge.
 
-The owner of a session locks its folder, so a folder without a lock belongs to a control that was killed. The
-bridge of such a session detects the loss and shuts the machine down. A new session can begin only after that.
+The owner of a session locks its folder, so a folder without a lock belongs to a control that was killed.
+The bridge of such a session detects the loss and shuts down the machine. A new session can begin only after
+that.
 """
 
 from __future__ import annotations
@@ -52,7 +53,10 @@ _LOCK_NAME = "session.lock"
 
 
 def create_session_folder() -> tuple[Path, int]:
-    """Create a session folder and return it with its lock; closing the lock releases the folder."""
+    """Create a session folder, and return it with its lock.
+
+    Closing the lock releases the folder.
+    """
     folder = Path(tempfile.mkdtemp(prefix=FOLDER_PREFIX))
     lock = os.open(folder / _LOCK_NAME, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o600)
     fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -83,8 +87,8 @@ def _deserted() -> Iterator[Path]:
 def _is_locked(folder: Path) -> bool:
     """Return whether a session folder is locked.
 
-    Raises OSError for a folder without a lock file, which is just being created or does not belong to
-    TurnDesk.
+    Raises OSError for a folder without a lock file. Such a folder is just being created or does not belong
+    to TurnDesk.
     """
     lock = os.open(folder / _LOCK_NAME, os.O_RDWR | os.O_NOFOLLOW | os.O_CLOEXEC)
     try:
@@ -137,7 +141,7 @@ _ENDED, _MUTE = "HAL bridge process has ended", "no error message"
 
 
 class PinVerdict(NamedTuple):
-    """Result of the check of one pin: its key in the machine file, its name, and its error."""
+    """The result of the check of one pin, with its key in the machine file, its name and its error."""
 
     path: str
     pin: str
@@ -145,12 +149,15 @@ class PinVerdict(NamedTuple):
 
 
 class BridgeLink(Protocol):
-    """Packet connection to a bridge, whose methods never wait."""
+    """A packet connection to a bridge, whose methods never wait."""
 
     warnings: tuple[str, ...]
 
     def send(self, data: bytes) -> None:
-        """Send a packet. Raises DriverError if the bridge does not accept it."""
+        """Send a packet.
+
+        Raises DriverError if the bridge does not accept the packet.
+        """
         ...
 
     def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
@@ -159,15 +166,15 @@ class BridgeLink(Protocol):
 
     @property
     def has_shut_down(self) -> bool:
-        """Whether HAL has ended after its bridge, so that it can be started again."""
+        """Return whether HAL has ended after its bridge, so that it can be started again."""
         ...
 
     def stop_bridge(self) -> None:
-        """Make the bridge brake and switch the power off, and stop communicating."""
+        """Make the bridge brake and switch off the power, and end the communication."""
         ...
 
     def close(self) -> None:
-        """Close the connection, upon which the bridge ends."""
+        """Close the connection, after which the bridge ends."""
         ...
 
 
@@ -199,7 +206,7 @@ def create_bridge_config(config: HalConfig) -> BridgeConfig:
 
 
 class HalSession:
-    """HAL session that its constructor starts.
+    """A HAL session that the constructor starts.
 
     The constructor raises DriverError if halrun is missing or fails.
     """
@@ -311,7 +318,10 @@ class HalSession:
                 return
 
     def _read_first_packet(self, deadline: float) -> PacketHead:
-        """Return the next packet during startup. Raises DriverError with the output of halrun."""
+        """Return the next packet during startup.
+
+        Raises DriverError with the output of halrun if no packet is received.
+        """
         assert self._socket is not None
         assert self._halrun is not None
         while time.monotonic() < deadline:
@@ -378,7 +388,7 @@ class HalSession:
             raise DriverError(": ".join(filter(None, (_ENDED, self._read_output()))), "hal-bridge")
 
     def stop_bridge(self) -> None:
-        """Make the bridge brake at once and end."""
+        """Make the bridge brake immediately and end."""
         assert self._socket is not None
         with suppress(OSError):
             self._socket.send(pack_packet({"do": "ramp-off"}))
@@ -386,11 +396,11 @@ class HalSession:
 
     @property
     def has_shut_down(self) -> bool:
-        """Whether HAL has been shut down after its bridge has ended."""
+        """Return whether HAL has been shut down after the end of its bridge."""
         return self._halrun is None or self._halrun.poll() is not None
 
     def close(self) -> None:
-        """End the bridge, which brakes the axes, and wait until halrun has shut HAL down."""
+        """End the bridge, which brakes the axes, and wait until halrun has shut down HAL."""
         if self._socket is not None:
             with suppress(OSError):
                 self._socket.send(pack_packet({"do": "end"}))
@@ -412,7 +422,7 @@ class HalSession:
 
 
 def _remove_leftovers() -> None:
-    """Wait until the HAL of a killed control has been shut down."""
+    """Wait until the HAL session of a killed control has been shut down, and remove its folder."""
     deadline = time.monotonic() + _END_TIMEOUT_S
 
     def goes_on() -> bool:
@@ -433,7 +443,7 @@ def _require_halrun() -> None:
 def _bridge_settings(
     config: HalConfig, section: HalSection, folder: Path, fd: int, zero: float, *, only_check: bool
 ) -> dict[str, object]:
-    """Return the contents of the configuration file for the bridge's process."""
+    """Return the contents of the configuration file for the process of the bridge."""
     return {
         "fd": fd,
         "zero": zero,

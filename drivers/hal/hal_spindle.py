@@ -1,11 +1,12 @@
-"""Spindle on HAL: speed, index, orientation, and C on the spindle drive.
+"""The spindle on HAL: speed, index, orientation, and C on the spindle drive.
 
 An angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file alone defines how the spindle
-turns there and when ``is_oriented`` turns on.
+turns to this angle and when ``is_oriented`` turns on.
 
 The drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests C, and
-``in_position_mode`` reports it if that pin is named. While C is released, its count does not change. While it
-is engaged, it is one more axis, whose feedback is the spindle encoder with 360 per revolution.
+``in_position_mode`` reports C if the machine file names this pin. While C is released, its count does not
+change. While C is engaged, it is an additional axis, whose feedback is the spindle encoder with 360 per
+revolution.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ _STANDSTILL_RPM = 2.0  # rpm
 
 
 class HalOrientation:
-    """``core.ports.OrientingSpindle`` on HAL; ``update`` is called once per cycle."""
+    """The ``core.ports.OrientingSpindle`` on HAL.
+
+    ``update`` is called once per cycle.
+    """
 
     def __init__(self, axes: HalAxes, spindle: HalSpindle, link: HalLink) -> None:
         self._axes, self._spindle, self._link = axes, spindle, link
@@ -35,7 +39,10 @@ class HalOrientation:
         self._since: float | None = None  # Time when HAL was first detected to orient.
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
-        """Turn the spindle to an angle. Raises DriverError while it turns, with a fault or an open chain."""
+        """Orient the spindle to an angle in degrees.
+
+        Raises DriverError while the spindle turns, and with a fault or an open chain.
+        """
         self._spindle.require_ready()
         if self._order is None and _is_turning(self._spindle):
             raise DriverError(
@@ -45,20 +52,20 @@ class HalOrientation:
         self._order = self._link.send_command("orient", on=True, angle=angle, mode=_MODES[direction])
 
     def release_spindle(self) -> None:
-        """Cancel the orientation."""
+        """Cancel the orientation of the spindle."""
         self._order = self._since = None
         if not self._link.failure:
             self._link.send_command("orient", on=False)
 
     def is_oriented(self) -> bool:
-        """Return whether HAL reports the angle that was commanded last as reached."""
+        """Return whether HAL reports that the spindle has reached the last commanded angle."""
         since = self._since
         if since is None or self._axes.now() < since + _ANGLE_SETTLING_S:
             return False
         return self._link.read_bit("spindle.is_oriented")
 
     def update(self) -> None:
-        """Detect when HAL starts to orient, and when the orientation has been canceled."""
+        """Detect when HAL starts to orient the spindle, and when the orientation has been canceled."""
         if self._order is None or not self._link.is_executed(self._order):
             return
         goes = self._link.last_report.get("orients") is True
@@ -72,7 +79,7 @@ class HalOrientation:
 
 
 class HalSpindle:
-    """``core.ports.Spindle`` on HAL; after an E-stop, it does not restart automatically."""
+    """The ``core.ports.Spindle`` on HAL, which does not restart automatically after an E-stop."""
 
     def __init__(self, config: HalConfig, link: HalLink, axes: HalAxes) -> None:
         self._config = config.spindle
@@ -90,7 +97,7 @@ class HalSpindle:
         self.spindle_index.update()
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops it.
+        """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
         Raises DriverError with a fault or an open chain if the speed is not 0.
         """
@@ -102,7 +109,7 @@ class HalSpindle:
             self._link.send_command("spindle", rpm=self.commanded_rpm, on=bool(self.commanded_rpm))
 
     def require_ready(self) -> None:
-        """Raise DriverError with a fault or an open chain."""
+        """Raise DriverError if the spindle has a fault or the chain is open."""
         require_spindle_ready(self.read_fault() or self._axes.fault)
         if self._link.last_report.get("ok") is not True:
             raise DriverError(
@@ -110,28 +117,32 @@ class HalSpindle:
             )
 
     def coast(self) -> None:
-        """Command speed 0 and switch off; the drive determines how the spindle stops."""
+        """Command speed 0 and switch off the spindle.
+
+        The drive determines how the spindle stops.
+        """
         self.run_at(0.0)
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, signed, or 0 while the drive is C.
+        """Return the measured speed in rpm, with its sign, or 0 while the drive is used as C.
 
-        Without position or velocity feedback, it is the commanded speed as soon as the spindle is at speed.
+        Without position or velocity feedback, the result is the commanded speed as soon as the spindle is
+        at speed.
         """
         return 0.0 if self.is_used_as_c else self.encoder_rpm()
 
     def encoder_rpm(self) -> float:
-        """Return the same speed, independent of the use as C."""
+        """Return the measured speed in rpm, with its sign, even while the drive is used as C."""
         pins = self._config.pins
         if pins.position or pins.velocity:
             return 60.0 * self._axes.spindle_rev_per_s
         return self.commanded_rpm if self._link.read_bit("spindle.at_speed") else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair of the encoder, or None without an encoder.
+        """Return the time and the revolutions of the spindle encoder, or None without an encoder.
 
         With an index, whole revolutions are at the index. Before the index is known, an old reading is
-        returned, so that a thread waits for a new one.
+        returned, so that a thread waits for a new reading.
         """
         if not self._config.has_encoder or self._axes.spindle_sample is None:
             return None
@@ -153,7 +164,7 @@ class HalSpindle:
 
 
 def _is_turning(spindle: HalSpindle) -> bool:
-    """Return whether the spindle is commanded to turn, or turns by its measured speed."""
+    """Return whether the spindle is commanded to turn, or turns according to its measured speed."""
     return bool(spindle.commanded_rpm) or abs(spindle.encoder_rpm()) >= _STANDSTILL_RPM
 
 
@@ -167,14 +178,17 @@ _SETTLING_TIME_S = 0.02  # Seconds until the compensated jump is also reported.
 
 
 class SpindleIndex:
-    """Index of the spindle; ``is_known`` becomes True when it has passed, or at once without an index."""
+    """The index of the spindle.
+
+    ``is_known`` becomes True when the index has passed, or immediately without an index.
+    """
 
     def __init__(self, axes: HalAxes, link: HalLink, *, wired: bool) -> None:
         self._axes, self._link, self._wired = axes, link, wired
         self.discard()
 
     def discard(self) -> None:
-        """Discard the index after HAL was loaded again."""
+        """Discard the index position, because HAL has been loaded again."""
         self.is_known = not self._wired
         self.failure: Fault | str = ""
         self._order: int | None = None
@@ -188,7 +202,10 @@ class SpindleIndex:
             self.discard()
 
     def update(self) -> None:
-        """Request the index when the spindle turns, and evaluate it; called once per cycle."""
+        """Request the index when the spindle turns, and evaluate its position.
+
+        This method is called once per cycle.
+        """
         reading = self._axes.spindle_sample
         if self.is_known or self.failure or self._link.is_state_unknown or reading is None:
             return
@@ -225,7 +242,7 @@ _STOP_TIME_S = 0.05  # Seconds after a motion until it counts as complete.
 
 
 class HalSpindleCStep(Enum):
-    """Steps of the change between spindle and C."""
+    """The steps of the change between spindle and C."""
 
     SPINDLE_MODE = "the drive is running as the spindle drive"
     FIND_INDEX = "searching for the encoder index"
@@ -236,14 +253,18 @@ class HalSpindleCStep(Enum):
 
 
 class HalSpindleCAxis:
-    """``core.ports.SpindleCAxis`` of the spindle drive; ``update`` is called once per cycle."""
+    """The ``core.ports.SpindleCAxis`` of the spindle drive.
+
+    ``update`` is called once per cycle.
+    """
 
     def __init__(
         self, axes: HalAxes, spindle: HalSpindle, link: HalLink, axis: int, position_mode_pin: str
     ) -> None:
         """Create the C axis.
 
-        The last argument is the bridge bit that reports position mode, or an empty text without such a pin.
+        ``position_mode_pin`` is the bridge bit that reports position mode, or an empty text without such a
+        pin.
         """
         self._axes, self._spindle, self._link = axes, spindle, link
         self._axis, self._told = axis, position_mode_pin
@@ -255,7 +276,10 @@ class HalSpindleCAxis:
     # --- the port -----------------------------------------------------------------------------------------
 
     def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
-        """Engage the drive as C, or release it. Raises DriverError if C cannot be engaged now."""
+        """Engage the spindle drive as C, or release it.
+
+        Raises DriverError if C cannot be engaged now.
+        """
         if not enabled:
             self._let_go()
             return
@@ -270,13 +294,13 @@ class HalSpindleCAxis:
             self._change()
 
     def is_c_ready(self) -> bool:
-        """Return whether C is engaged and may move."""
+        """Return whether the C axis is engaged and may move."""
         return self.step is HalSpindleCStep.ENGAGED
 
     # --- each cycle ---------------------------------------------------------------------------------------
 
     def update(self) -> None:
-        """Continue the change that is in progress."""
+        """Continue the change between spindle and C that is in progress."""
         if self.step is HalSpindleCStep.SPINDLE_MODE:
             return
         if self._link.is_state_unknown or not self._axes.sample().enabled:
@@ -309,7 +333,7 @@ class HalSpindleCAxis:
         self._enter(HalSpindleCStep.CHANGE_MODE)
 
     def _engage_c(self) -> None:
-        """Engage C when HAL plays its setpoint at the position of the spindle and the drive follows it."""
+        """Engage C when HAL plays its setpoint at the spindle position and the drive follows it."""
         told = self._link.last_report.get("c_at") if self._link.is_executed(self._order) else None
         if isinstance(told, float | int) and (not self._told or self._link.read_bit(self._told)):
             self._hold_at(float(told))

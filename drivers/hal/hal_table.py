@@ -1,8 +1,8 @@
-"""Table [hal] of the machine file: LinuxCNC's HAL file, and the pins that TurnDesk uses.
+"""The table [hal] of the machine file: LinuxCNC's HAL file, and the pins that TurnDesk uses.
 
-The HAL file alone defines the hardware at these pins (step and direction, ±10 V with a pid, EtherCAT, a
-parallel port). The pins of inputs, outputs and pots are the values ``at`` of [io.in], [io.out] and
-[io.analog].
+The HAL file alone defines the hardware at these pins (step and direction, ±10 V with a pid component,
+EtherCAT, a parallel port). The pins of inputs, outputs and pots are the values ``at`` of [io.in], [io.out]
+and [io.analog].
 """
 
 from __future__ import annotations
@@ -50,13 +50,16 @@ _OFF_SWITCH = {
 
 
 def _optional_key(*, meaning: str) -> Any:
-    """Declare an optional pin."""
+    """Return the declaration of an optional pin."""
     return declare_key(default="", meaning=meaning)
 
 
 @make_key_table
 class HalAxisPins:
-    """Pins of one axis, in mm (X as a radius) or degrees; an empty name means that the pin does not exist."""
+    """The pins of one axis, in mm (X as a radius) or degrees.
+
+    An empty name means that the pin does not exist.
+    """
 
     command: str = declare_key(meaning="Float in: commanded position.")
     feedback: str = declare_key(meaning="Float out: measured position.")
@@ -76,7 +79,10 @@ class HalAxisPins:
 
 @make_key_table
 class HalSpindlePins:
-    """Pins of the spindle; an empty name means that the pin does not exist."""
+    """The pins of the spindle.
+
+    An empty name means that the pin does not exist.
+    """
 
     speed: str = _optional_key(meaning="Float in: commanded speed in rpm, negative with M04.")
     speed_abs: str = _optional_key(
@@ -110,7 +116,7 @@ class HalSpindlePins:
 
 @make_key_table
 class HalTable:
-    """Settings of a machine on LinuxCNC's HAL; times are in seconds.
+    """The settings of a machine on LinuxCNC's HAL, with times in seconds.
 
     ``ahead`` is the duration of the setpoints that HAL buffers.
     """
@@ -187,7 +193,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _iterate_pins(file: MachineFileReading) -> Iterator[tuple[str, str]]:
-    """Yield every pin that the file names, with its path."""
+    """Yield every pin that the machine file names, with its path."""
     values = file.values
     places = ["hal.machine_on", "hal.charge_pump", "hal.link_fault"]
     places += [
@@ -227,7 +233,10 @@ def _check_names(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_shared_inputs(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Reject an input of [io.in] that is also a pin of an axis or the spindle: homing could start a cycle."""
+    """Yield findings about inputs of [io.in] that are also pins of an axis or of the spindle.
+
+    With a shared input, homing could start a cycle.
+    """
     axes = (
         (path, pin)
         for path, pin in _iterate_pins(file)
@@ -246,7 +255,10 @@ _CABLE_PIN_PATTERN = re.compile(r"(hm2_|lcec\.).*")
 
 
 def _check_link(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Require hal.link_fault if an input comes over a cable, because its value freezes without the cable."""
+    """Yield a finding if hal.link_fault is missing although an input is connected over a cable.
+
+    The value of such an input freezes if the cable is disconnected.
+    """
     if not file.values.has_values("hal.link_fault") or file.values.text("hal.link_fault"):
         return
     read = (
@@ -401,7 +413,7 @@ def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _axis_with_same_switch(file: MachineFileReading, axis: str) -> str:
-    """Return the key of another axis whose home switch is on the same input; empty for none."""
+    """Return the key of another axis with its home switch on the same input, or an empty text."""
     values = file.values
     homes = {each: f"{_AXES}.{each}.home" for each in file.list_table_keys(_AXES)}
     pins = {each: values.text(path) for each, path in homes.items() if values.has_values(path)}
@@ -410,7 +422,7 @@ def _axis_with_same_switch(file: MachineFileReading, axis: str) -> str:
 
 
 def _read_pin(file: MachineFileReading, text: str) -> object:
-    """Return a pin name unchanged, without surrounding spaces."""
+    """Return a pin name without surrounding spaces, or None if the backend is not HAL."""
     return text.strip() if file.values.has_text("machine.backend", "hal") else None
 
 

@@ -1,1 +1,1 @@
-"""Driver for spindle inverters on a serial line (RS-485)."""
+"""The driver for spindle inverters on a serial line (RS-485)."""

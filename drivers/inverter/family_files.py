@@ -1,7 +1,7 @@
-"""Reader and checker of TOML files that describe inverter families.
+"""A reader and checker of TOML files that describe inverter families.
 
-The folder ``families`` contains the families that are shipped. The machine file may name another file,
-relative to its own folder.
+The folder ``families`` contains the families that are shipped with TurnDesk. The machine file may name
+another file, relative to its own folder.
 """
 
 from __future__ import annotations
@@ -62,17 +62,18 @@ _MODBUS_TABLES = ("frequency", "command", "read", "report", "faults")
 
 
 def load_family(name: str, folder: Path) -> FamilyTable:
-    """Return a shipped family by its name, or that of a file in ``folder``.
+    """Return a shipped family by its name, or the family in a file in ``folder``.
 
-    Raises DriverError as ``read_family_file`` does.
+    Raises DriverError in the same cases as ``read_family_file``.
     """
     return read_family_file(FAMILY_FOLDER / f"{name}.toml" if name in FAMILY_NAMES else folder / name)
 
 
 def read_family_file(path: Path) -> FamilyTable:
-    """Return the family of a TOML file.
+    """Return the family that a TOML file describes.
 
-    Raises DriverError, reason ``bad-family``, with file, line, key and remedy for each finding.
+    Raises DriverError with the reason ``bad-family``. Its message contains the file, line, key and remedy
+    of each finding.
     """
     try:
         text = read_input_text(path, BYTES_PER_MB)
@@ -110,7 +111,7 @@ _LAST_PART_PATTERN = re.compile(r"(\.?[^.\[\]]+|\[\d+\])$")
 
 
 def _index_lines(text: str) -> dict[str, int]:
-    """Return the line of each table and key by its path, such as ``read[2].count``."""
+    """Return the line number of each table and key, by its path, such as ``read[2].count``."""
     lines: dict[str, int] = {}
     times = Counter[str]()
     table = ""
@@ -127,7 +128,7 @@ def _index_lines(text: str) -> dict[str, int]:
 
 
 def _find_line(lines: Mapping[str, int], path: str) -> int:
-    """Return the line of a key, or of the innermost enclosing table that exists."""
+    """Return the line number of a key, or of the innermost enclosing table that exists."""
     while path and path not in lines:
         path = _LAST_PART_PATTERN.sub("", path)
     return lines.get(path, 1)
@@ -137,7 +138,7 @@ def _find_line(lines: Mapping[str, int], path: str) -> int:
 
 
 class _FamilyReader:
-    """Reader of one file that collects the findings about its keys and values."""
+    """A reader of one file, which collects the findings about its keys and values."""
 
     def __init__(self, data: Mapping[str, Any]) -> None:
         self._data = data
@@ -183,7 +184,10 @@ class _FamilyReader:
             self.findings += read_table(raw, keys, path, self._values, children)
 
     def _read_rows(self, path: str, keys: type, raw: object = None, *, is_required: bool = False) -> None:
-        """Read a list of tables; with ``is_required``, the list must have at least one entry."""
+        """Read a list of tables.
+
+        If ``is_required`` is True, the list must have at least one entry.
+        """
         raw = (self._data.get(path) if raw is None else raw) or []
         if not isinstance(raw, list) or (is_required and not raw):
             text = "expected a list of tables, such as [{ register = 0x2000, value = 1 }]"
@@ -211,7 +215,10 @@ class _FamilyReader:
                 self._faults[code] = text
 
     def build_family(self) -> FamilyTable:
-        """Return the family, if its keys have no findings."""
+        """Return the family.
+
+        Call this method only if the keys have no findings.
+        """
         return FamilyTable(
             name=self._values.text("name"),
             protocol=self._values.text("protocol"),

@@ -1,4 +1,7 @@
-"""Rules between the keys of an inverter family: each address is read once, and each value is reported."""
+"""Rules between the keys of an inverter family.
+
+Each address must be read only once, and every reported value must be in an address that is read.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ RegisterAddress = tuple[str, int]  # "register" or "coil", and its number
 
 
 def check_family(table: FamilyTable) -> Iterator[FileFinding]:
-    """Yield the findings about a table whose keys all have values of the right type."""
+    """Yield the findings about a family table in which all values have the right type."""
     said = table.line.parity.split()
     if not said or not set(said) <= _PARITIES:
         yield _finding("line.parity", 'expected one or more of "N", "E" and "O"')

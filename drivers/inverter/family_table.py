@@ -1,4 +1,4 @@
-"""Inverter family as a table: line, registers, commands, reported values, fault codes and parameters.
+"""An inverter family as a table: line, registers, commands, reported values, fault codes and parameters.
 
 ``family_files.py`` reads these tables from TOML files, whose keys are declared here.
 """
@@ -19,7 +19,7 @@ ABSENT_REGISTER = -1  # Used for an address or value that is not in the file.
 
 @make_key_table
 class FamilyKeys:
-    """Name of the inverter and the protocol of its frames."""
+    """The name of the inverter and the protocol of its frames."""
 
     name: str = declare_key(meaning="Name of the inverter, for messages.")
     manual: str = declare_key(meaning="Manual from which the registers come, with its number or date.")
@@ -30,7 +30,7 @@ class FamilyKeys:
 
 @make_key_table
 class LineKeys:
-    """Serial line settings that the inverter supports."""
+    """The serial line settings that the inverter supports."""
 
     baud: Pair = declare_key(KeyRange(110, 1_000_000), meaning="Lowest and highest bit rate.")
     parity: Words = declare_key(meaning="Parities: `N`, `E` and `O`.")
@@ -41,7 +41,7 @@ class LineKeys:
 
 @make_key_table
 class FrequencyKeys:
-    """Frequency in one or two registers."""
+    """A frequency in one or two registers."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register in the frame.")
     counts_per_hz: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 Hz.")
@@ -52,17 +52,23 @@ class FrequencyKeys:
 
     @property
     def max_hz(self) -> float:
-        """The highest frequency in Hz that the registers can contain."""
+        """Return the highest frequency in Hz that the registers can contain."""
         bits = 16 * self.words - self.signed
         return float((1 << bits) - 1) / self.counts_per_hz
 
     def encode_hz(self, hz: float) -> tuple[int, ...]:
-        """Return the register values for a frequency in Hz; without ``signed``, the sign is ignored."""
+        """Return the register values for a frequency in Hz.
+
+        The sign is ignored unless ``signed`` is True.
+        """
         counts = round((hz if self.signed else abs(hz)) * self.counts_per_hz)
         return tuple(counts >> 16 * place & 0xFFFF for place in reversed(range(self.words)))
 
     def decode_hz(self, words: Mapping[int, int]) -> float:
-        """Return the frequency in Hz, never negative, from register values by address."""
+        """Return the frequency in Hz from register values by address.
+
+        The result is never negative.
+        """
         counts = 0
         for address in range(self.register, self.register + self.words):
             counts = counts << 16 | words[address]
@@ -73,7 +79,7 @@ class FrequencyKeys:
 
 @make_key_table
 class CurrentKeys:
-    """Register that contains the output current."""
+    """The register that contains the output current."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
     counts_per_a: float = declare_key(_COUNT_RANGE, meaning="Register value for 1 A.")
@@ -81,7 +87,7 @@ class CurrentKeys:
 
 @make_key_table
 class StateKeys:
-    """State of the inverter: a coil that is on, or a register with one of several values."""
+    """A state of the inverter: a coil that is on, or a register that has one of several values."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
     coil: int = declare_key(
@@ -93,7 +99,7 @@ class StateKeys:
     )
 
     def is_active(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> bool:
-        """Return whether the state is on, from register values and coils by address."""
+        """Return whether the state is active, according to register values and coils by address."""
         if self.coil != ABSENT_REGISTER:
             return coils[self.coil]
         return words[self.register] & self.mask in self.values
@@ -101,7 +107,7 @@ class StateKeys:
 
 @make_key_table
 class CodeKeys:
-    """Register that contains the fault code; 0 means no fault."""
+    """The register that contains the fault code; 0 means no fault."""
 
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
     mask: int = declare_key(_ADDRESS, default=0xFFFF, meaning="Bits of the register that matter.")
@@ -113,7 +119,7 @@ class CodeKeys:
 
 @make_key_table
 class ReadKeys:
-    """Read request of each poll."""
+    """A read request of each poll."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the first register.")
     coil: int = declare_key(
@@ -124,7 +130,7 @@ class ReadKeys:
 
 @make_key_table
 class WriteKeys:
-    """Write request of a command."""
+    """A write request of a command."""
 
     register: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Address of the register.")
     value: int = declare_key(_ADDRESS, default=ABSENT_REGISTER, meaning="Value for the register.")
@@ -136,7 +142,7 @@ class WriteKeys:
 
 @make_key_table
 class CommandKeys:
-    """Settings for sending commands."""
+    """The settings for sending commands."""
 
     repeat: bool = declare_key(
         default=True,
@@ -155,7 +161,7 @@ class CommandKeys:
 
 @make_key_table
 class ParameterKeys:
-    """Parameter that TurnDesk checks at each connection."""
+    """A parameter that TurnDesk checks at each connection."""
 
     name: str = declare_key(meaning="Number of the parameter at the keypad.")
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
@@ -173,7 +179,7 @@ class ParameterKeys:
 
 @make_key_table
 class TopKeys:
-    """Parameter that limits the output frequency."""
+    """The parameter that limits the output frequency."""
 
     name: str = declare_key(meaning="Number of the parameter at the keypad.")
     register: int = declare_key(_ADDRESS, meaning="Address of the register.")
@@ -182,7 +188,7 @@ class TopKeys:
 
 @make_key_table
 class LimitKeys:
-    """Limits of the inverter that are independent of its parameters."""
+    """The limits of the inverter that are independent of its parameters."""
 
     max_hz: float = declare_key(
         KeyRange(1.0, 5000.0), default=0.0, meaning="Highest output frequency. Default: that of the register."
@@ -275,7 +281,7 @@ FAMILY_TABLES = (
 
 @dataclass(frozen=True, slots=True)
 class RegisterTable:
-    """Registers and coils of an inverter on Modbus, with commands by name and fault texts by code."""
+    """The registers and coils of an inverter on Modbus, with commands by name and fault texts by code."""
 
     frequency: FrequencyKeys
     command_settings: CommandKeys
@@ -290,7 +296,10 @@ class RegisterTable:
 
     @property
     def code_is_polled(self) -> bool:
-        """Whether a poll contains the fault code; otherwise the code is read only after a trip."""
+        """Return whether a poll contains the fault code.
+
+        Otherwise, the code is read only after a trip.
+        """
         return any(
             each.register <= self.fault_code.register < each.register + each.count
             for each in self.reads
@@ -300,7 +309,10 @@ class RegisterTable:
 
 @dataclass(frozen=True, slots=True)
 class FamilyTable:
-    """Inverter family; ``registers`` is None for a family that does not use Modbus."""
+    """An inverter family.
+
+    ``registers`` is None for a family that does not use Modbus.
+    """
 
     name: str
     protocol: str
@@ -312,13 +324,13 @@ class FamilyTable:
 
     @property
     def max_hz(self) -> float:
-        """The highest output frequency in Hz that can be commanded."""
+        """Return the highest output frequency in Hz that can be commanded."""
         own = self.registers.frequency.max_hz if self.registers else 0xFFFF / 100.0
         return min(own, self.limits.max_hz or own)
 
     @property
     def setpoint_step_hz(self) -> float:
-        """The resolution of the reported setpoint in Hz."""
+        """Return the resolution of the reported setpoint in Hz."""
         if self.registers is None:
             return 0.01
         return 1.0 / min(self.registers.frequency.counts_per_hz, self.registers.setpoint.counts_per_hz)

@@ -1,9 +1,9 @@
 """Huanyang HY inverters, which use their own frames with the CRC of Modbus.
 
-The protocol follows LinuxCNC's hy_vfd and the list of Bouni. A frame consists of unit, function, length, data
-and CRC. Functions 1 and 2 read and write a parameter PDnnn, 3 controls and returns the state, 4 reads a
-value, and 5 sets the frequency. A response names the requested parameter or value, so an old response is
-detected.
+The protocol follows LinuxCNC's hy_vfd and the list of Bouni. A frame consists of unit, function, length,
+data and CRC. Functions 1 and 2 read and write a parameter PDnnn, function 3 controls the inverter and
+returns its state, function 4 reads a value, and function 5 sets the frequency. A response names the
+requested parameter or value, so an old response is detected.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ _MAX_TRIES = 2
 
 
 class HuanyangInverter:
-    """Huanyang HY inverter, which reports its state only in the response to a command.
+    """A Huanyang HY inverter, which reports its state only in the response to a command.
 
     Each poll therefore repeats the present command.
     """
@@ -55,28 +55,32 @@ class HuanyangInverter:
         return self._good
 
     def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
-        """Check the parameters, which are never written; the inverter has no communication timeout.
+        """Check the parameters, and return the messages for the operator.
 
-        Return the messages for the operator.
+        Parameters are never written. The inverter has no communication timeout.
         """
         return write_and_check(self._table, comm_timeout_s, max_hz, self._parameter, _reject_write)
 
     def stop(self) -> None:
-        """Stop by the inverter's ramp, which requires PD026 = 0."""
+        """Stop the motor by the inverter's ramp, which requires PD026 = 0."""
         self._word = _HALT
         self._control()
 
     def command_hz(self, hz: float) -> None:
-        """Send the frequency in Hz, then the run command; a negative frequency turns in reverse."""
+        """Send the frequency in Hz, and then the run command.
+
+        A negative frequency runs the motor in reverse.
+        """
         value = struct.pack(">H", round(abs(hz) * 100.0))
         self._send_request(_FREQUENCY, value, value)
         self._word = _RUN_BACK if hz < 0.0 else _RUN
         self._control()
 
     def poll_steps(self) -> Iterator[InverterState | None]:
-        """Poll the inverter request by request; yield None between requests and the state at the end.
+        """Poll the inverter request by request.
 
-        State bits: 0 run command, 2 reverse command, 3 running, 5 running in reverse.
+        The iterator yields None between requests and the state at the end. The bits of the state are: 0 run
+        command, 2 reverse command, 3 running, 5 running in reverse.
         """
         state = self._control()
         yield None
@@ -115,9 +119,9 @@ class HuanyangInverter:
         return int.from_bytes(self._send_request(_READ, head + b"\0\0", head)[1:], "big")
 
     def _send_request(self, function: int, data: bytes, begins: bytes) -> bytes:
-        """Return the data of the response, which begins with ``begins``.
+        """Send a request, and return the data of the response, which begins with ``begins``.
 
-        Raises NoAnswerError without a valid response.
+        Raises NoResponseError without a valid response.
         """
         for left in reversed(range(_MAX_TRIES)):
             answer = self._once(function, data, begins)

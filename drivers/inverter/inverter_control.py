@@ -1,7 +1,7 @@
-"""Control of an inverter on its line: commands, polling and detection of an inverter that does not obey.
+"""The control of an inverter on its line: commands, polling, and detection of ignored commands.
 
-``InverterControl.run_exchange`` is one exchange. ``InverterThread`` repeats it; tests call it directly. A
-stop has priority over everything and waits at most for the response in progress.
+``InverterControl.run_exchange`` is one exchange. ``InverterThread`` repeats it, and tests call it directly.
+A stop has priority over all other requests and waits at most for the response in progress.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ PRESS_ESTOP_TEXT = "PRESS E-STOP"
 
 
 def add_estop_request(reason: str) -> str:
-    """Return the fault text with the request to press the E-stop."""
+    """Return the fault text with the request to press the E-stop appended."""
     return Message("{why}: {press}", why=reason, press=PRESS_ESTOP_TEXT)
 
 
 class CommandMonitor:
-    """Check whether an inverter follows its commands; ``command`` notes a command, ``check_poll`` checks a
-    poll.
+    """A monitor that checks whether an inverter follows its commands.
 
-    On a slow line, a poll is as old as its exchange is long. The permitted second therefore starts after the
-    exchange, and a falling speed is compared with the first poll after the command. ``setpoint_step_hz`` is
-    the resolution of the reported setpoint in Hz.
+    ``note_command`` records a command, and ``check_poll`` checks a poll. On a slow line, a poll is as old
+    as its exchange is long. The permitted second therefore starts after the exchange, and a decreasing
+    speed is compared with the first poll after the command. ``setpoint_step_hz`` is the resolution of the
+    reported setpoint in Hz.
     """
 
     def __init__(self, setpoint_step_hz: float = 0.01) -> None:
@@ -49,7 +49,10 @@ class CommandMonitor:
         self._asked = 0.0
 
     def note_command(self, now: float, commanded_hz: float, last_state: InverterState | None) -> None:
-        """Note a command in Hz, signed; a new setpoint in the same direction does not restart the limit."""
+        """Record a command in Hz, with its sign.
+
+        A new setpoint in the same direction does not restart the time limit.
+        """
         if commanded_hz == self._asked:
             return
         if last_state is not None and (
@@ -62,10 +65,10 @@ class CommandMonitor:
             self._since = now
 
     def check_poll(self, now: float, state: InverterState, exchange_s: float = 0.0) -> str:
-        """Return the reason why the inverter has not obeyed for one second plus ``exchange_s``.
+        """Return the reason why the inverter has not followed its command for too long.
 
-        ``exchange_s`` is the duration of one exchange in seconds. The result is empty while the inverter may
-        still obey.
+        The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds. The
+        result is empty while the inverter may still follow the command.
         """
         if self._unseen:  # The motor may still have accelerated when the command was sent.
             self._lowest, self._unseen = max(self._lowest, state.output_hz), False
@@ -100,7 +103,10 @@ class CommandMonitor:
         )
 
     def _describe_setpoint_error(self, state: InverterState) -> str:
-        """Return the difference between the command and the reported setpoint, run state and direction."""
+        """Return a description of a setpoint, run state or direction that differs from the command.
+
+        The compared values are those that the inverter reports.
+        """
         asked = abs(self._asked)
         if abs(state.setpoint_hz - asked) > self._within:
             return Message(
@@ -119,7 +125,10 @@ class CommandMonitor:
         )
 
     def _describe_rotation_error(self, state: InverterState) -> str:
-        """Return a wrong output: the speed must fall toward a lower setpoint or before a reversal."""
+        """Return a description of a wrong output, or an empty text.
+
+        The speed must decrease toward a lower setpoint or before a reversal.
+        """
         back = state.is_reverse != (self._asked < 0.0) and state.output_hz > STANDSTILL_HZ
         if back and not self._is_decelerating(state):
             return "the inverter runs in the direction opposite to its command"
@@ -151,7 +160,10 @@ _SLACK_RPM = 30.0  # rpm
 
 
 class SpeedComparison:
-    """Comparison of encoder and inverter speed; ``max_difference`` is the permitted relative difference."""
+    """A comparison of the speeds of the encoder and the inverter.
+
+    ``max_difference`` is the permitted relative difference.
+    """
 
     def __init__(self, max_difference: float) -> None:
         self._fraction = max_difference
@@ -160,9 +172,10 @@ class SpeedComparison:
         self._off_since: float | None = None
 
     def compare_speeds(self, measured_rpm: float, reported_rpm: float, now: float) -> str:
-        """Return the fault when the speeds have differed for 1 s, or an empty text.
+        """Return a fault if the speeds have differed for 1 s, or an empty text.
 
-        Both speeds are in rpm, signed. They are compared only at a constant inverter output other than 0.
+        Both speeds are in rpm, with their signs. They are compared only at a constant inverter output other
+        than 0.
         """
         if abs(reported_rpm - self._given) > _EVEN_RPM + _EVEN * abs(reported_rpm):
             self._given, self._even_since = reported_rpm, now
@@ -198,9 +211,10 @@ _RESTART_TIME_S = 3.0  # Seconds in which an inverter may be silent after a rese
 
 @dataclass(frozen=True, slots=True)
 class PolledState:
-    """Last poll and its time.
+    """The state from the last poll, with its time.
 
-    ``asked`` is a time before which all commands were sent when the poll began.
+    ``commands_sent_before_s`` is a time in seconds. All commands before this time had been sent when the
+    poll began.
     """
 
     time_s: float
@@ -209,12 +223,11 @@ class PolledState:
 
 
 class InverterControl:
-    """Owner of the inverter's line.
+    """The owner of the inverter's line.
 
-    Any thread may set ``commanded_hz``; all else belongs to the thread of ``run_exchange``.
-
-    ``open_line`` opens the line and returns the inverter; it raises DriverError. ``setpoint_step_hz`` is the
-    resolution of the reported setpoint in Hz.
+    Any thread may set ``commanded_hz``; everything else may be used only by the thread of ``run_exchange``.
+    ``open_line`` opens the line and returns the inverter, or raises DriverError. ``setpoint_step_hz`` is
+    the resolution of the reported setpoint in Hz.
     """
 
     def __init__(
@@ -244,7 +257,10 @@ class InverterControl:
 
     @property
     def commanded_hz(self) -> float:
-        """The commanded frequency in Hz, signed; a fault sets it permanently to 0."""
+        """Return the commanded frequency in Hz, with its sign.
+
+        A fault sets it permanently to 0.
+        """
         return 0.0 if self.failure else self._want
 
     @commanded_hz.setter
@@ -255,7 +271,7 @@ class InverterControl:
 
     @property
     def is_trusted(self) -> bool:
-        """Whether the inverter has sent enough valid responses to be trusted."""
+        """Return whether the inverter has sent enough valid responses to be trusted."""
         return (
             self._family is not None
             and self._family.valid_response_count >= self._family.required_response_count
@@ -263,12 +279,15 @@ class InverterControl:
 
     @property
     def is_state_unknown(self) -> bool:
-        """Whether the state is unknown, because the port is closed or the inverter is silent."""
+        """Return whether the state is unknown because the port is closed or the inverter is silent."""
         return self._family is None or self.last_poll is None or self.silence_s > SILENCE_TIMEOUT_S
 
     @property
     def silence_s(self) -> float:
-        """The seconds since the last poll or partial response; 0 while silence is permitted."""
+        """Return the time in seconds since the last poll or partial response.
+
+        The result is 0 while silence is permitted.
+        """
         seen, now = self.last_poll, self._clock.now()
         if seen is None or now <= self.silence_allowed_until:
             return 0.0
@@ -276,12 +295,18 @@ class InverterControl:
 
     @property
     def line_delay_s(self) -> float:
-        """The seconds by which the line delays a command and the poll that shows its effect."""
+        """Return the delay in seconds from a command to the poll that shows its effect.
+
+        The delay is caused by the line.
+        """
         seen = self.last_poll
         return self._clock.now() - seen.commands_sent_before_s if seen is not None else 0.0
 
     def open_and_check(self) -> None:
-        """Open the line, stop the inverter, check it, and poll until it is trusted. Raises DriverError."""
+        """Open the line, stop the inverter, check it, and poll until it is trusted.
+
+        Raises DriverError if one of these steps fails.
+        """
         self._prepare()
         for _ in range(_MAX_POLLS):
             self._look()
@@ -294,7 +319,10 @@ class InverterControl:
         )
 
     def run_exchange(self) -> None:
-        """Perform one exchange; errors become the fault and are never raised."""
+        """Perform one exchange with the inverter.
+
+        Errors become the fault and are never raised.
+        """
         try:
             if self._family is None:
                 self._reopen()
@@ -310,13 +338,19 @@ class InverterControl:
         self._supervise()
 
     def clear_fault(self) -> None:
-        """Clear the fault, reset a trip and discard the commanded frequency; callable from any thread."""
+        """Clear the fault, reset a trip and discard the commanded frequency.
+
+        Any thread may call this method.
+        """
         self._want = 0.0
         self._reset = True
         self.failure = ""
 
     def discard_state(self) -> None:
-        """Discard the known state; the next poll may take a few seconds."""
+        """Discard the known state of the inverter.
+
+        The next poll may take a few seconds.
+        """
         self.clear_fault()
         self._told, self.last_poll, self.silence_allowed_until = (
             None,
@@ -354,7 +388,11 @@ class InverterControl:
         return self._stops != self._stopped
 
     def _stop_now(self) -> None:
-        """Stop the inverter; the stop counts when the inverter has confirmed it. Raises DriverError."""
+        """Stop the inverter.
+
+        The stop is complete when the inverter has confirmed it. Raises DriverError if the inverter does not
+        respond.
+        """
         stops, self._told = self._stops, None
         self._familiar.stop()
         self._told, self._stopped = 0.0, stops
@@ -376,7 +414,10 @@ class InverterControl:
             self._look()
 
     def _perform_clear(self) -> None:
-        """Stop and reset a trip; a trip that remains is reported by the next poll."""
+        """Stop the inverter and reset a trip.
+
+        If the trip remains, the next poll reports it.
+        """
         self._stop_now()
         self._obedience = CommandMonitor(self._step)
         tripped = self.last_poll is None or bool(self.last_poll.state.trip_text)
@@ -449,7 +490,10 @@ _CLOSE_TIMEOUT_S = 3.0  # Seconds for the longest exchange with its retries.
 
 
 class InverterThread:
-    """Thread that repeats the exchanges without a pause; the line limits the rate of requests."""
+    """A thread that repeats the exchanges without a pause.
+
+    The line limits the rate of requests.
+    """
 
     def __init__(self, control: InverterControl) -> None:
         self._attendant = control
@@ -457,11 +501,17 @@ class InverterThread:
         self.thread = self._made()
 
     def start(self) -> None:
-        """Start the thread; must be called only once."""
+        """Start the thread.
+
+        This method must be called only once.
+        """
         self.thread.start()
 
     def restart(self) -> None:
-        """Start a new thread if the last one has failed; its first command is a stop."""
+        """Start a new thread if the last thread has failed.
+
+        The first command of the new thread is a stop.
+        """
         if not self.is_alive and not self._ended.is_set():
             self._attendant.discard_state()
             self.thread = self._made()
@@ -469,7 +519,7 @@ class InverterThread:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the thread is running."""
+        """Return whether the thread is running."""
         return self.thread.is_alive()
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""Interface of all inverter families, the polled state of an inverter, and its parameters."""
+"""The interface of all inverter families, the polled state of an inverter, and its parameters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ from drivers.inverter.modbus_rtu import NoResponseError, RequestRejectedError
 
 @dataclass(frozen=True, slots=True)
 class InverterState:
-    """Polled state of an inverter; frequencies are in Hz and never negative."""
+    """The polled state of an inverter.
+
+    Frequencies are in Hz and never negative.
+    """
 
     output_hz: float
     setpoint_hz: float  # As the inverter has received it.
@@ -25,16 +28,17 @@ class InverterState:
 
     @property
     def signed_output_hz(self) -> float:
-        """The output frequency in Hz, positive as M03 and negative as M04."""
+        """Return the output frequency in Hz, positive for M03 and negative for M04."""
         return -self.output_hz if self.is_reverse else self.output_hz
 
 
 class InverterFamily(Protocol):
-    """Inverter on its line. Methods that communicate raise NoAnswerError, RefusedError or WireError.
+    """An inverter on its line.
 
-    ``is_stop_pending`` returns whether a stop is pending. It is called between requests, so that other
-    requests are canceled. It is also called directly before each frame that can turn the motor; the frame is
-    then not sent and HeldBackError is raised.
+    Methods that communicate raise NoResponseError, RequestRejectedError or WireError. ``is_stop_pending``
+    returns whether a stop is pending. It is called between requests, so that other requests are canceled.
+    It is also called directly before each frame that can start the motor. If a stop is pending, the frame
+    is not sent and RequestWithheldError is raised.
     """
 
     required_response_count: int  # Consecutive valid responses before the inverter is trusted.
@@ -42,33 +46,37 @@ class InverterFamily(Protocol):
 
     @property
     def valid_response_count(self) -> int:
-        """The number of consecutive valid responses."""
+        """Return the number of consecutive valid responses."""
         ...
 
     def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
-        """Check the communication timeout (``comm_loss``, seconds) and the settings, once per connection.
+        """Check the communication timeout and the settings, once per connection.
 
-        ``highest`` is the required frequency in Hz. Return the messages for the operator.
+        ``comm_timeout_s`` is the required timeout in seconds, and ``max_hz`` is the required frequency in
+        Hz. Returns the messages for the operator.
         """
         ...
 
     def stop(self) -> None:
-        """Stop by the inverter's ramp."""
+        """Stop the motor by the inverter's ramp."""
         ...
 
     def command_hz(self, hz: float) -> None:
-        """Turn at a frequency in Hz, negative against M03. Raises HeldBackError if a stop is pending."""
+        """Run the motor at a frequency in Hz, which is positive for M03 and negative for M04.
+
+        Raises RequestWithheldError if a stop is pending.
+        """
         ...
 
     def poll_steps(self) -> Iterator[InverterState | None]:
-        """Poll the inverter; yield None between requests and the state at the end.
+        """Poll the inverter, yielding None between requests and the state at the end.
 
-        Raises HeldBackError if a stop is pending.
+        Raises RequestWithheldError if a stop is pending.
         """
         ...
 
     def reset_trip(self) -> None:
-        """Reset a trip once."""
+        """Reset a trip of the inverter once."""
         ...
 
     def close(self) -> None:
@@ -84,7 +92,7 @@ WriteParameter = Callable[[int, int], None]
 
 
 class RequiredParameter(NamedTuple):
-    """Required parameter value: register, value, name at the keypad, and purpose."""
+    """A required parameter value, with its register, its name at the keypad and its purpose."""
 
     register: int
     value: int
@@ -92,7 +100,10 @@ class RequiredParameter(NamedTuple):
     purpose: str
 
     def describe_difference(self, read_value: ReadParameter) -> str:
-        """Return a message if the inverter has another value, or an empty text; nothing is written."""
+        """Return a message if the inverter has a different value, or an empty text.
+
+        The parameter is not written.
+        """
         try:
             there = read_value(self.register)
         except RequestRejectedError as error:
@@ -121,9 +132,9 @@ def write_and_check(
     read_parameter: ReadParameter,
     write_parameter: WriteParameter,
 ) -> list[str]:
-    """Write the parameters that may be written and return a message for each wrong parameter.
+    """Write the parameters that may be written, and return a message for each wrong parameter.
 
-    ``comm_loss`` is in seconds, ``highest`` in Hz. Raises NoAnswerError or WireError.
+    ``comm_timeout_s`` is in seconds, and ``max_hz`` is in Hz. Raises NoResponseError or WireError.
     """
     known = (
         [] if any(each.counts_per_s for each in table.parameters) else [_no_timeout(table, comm_timeout_s)]
@@ -157,7 +168,7 @@ def _apply_setting(
 ) -> list[str]:
     """Write the values that differ, read them back, and return a message for each wrong value.
 
-    Equal values are not written, because the memory wears out.
+    Equal values are not written, because each write wears the inverter's memory.
     """
     required = list(required)
     for setting in required:

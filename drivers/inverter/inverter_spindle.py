@@ -1,4 +1,4 @@
-"""Spindle with an inverter, whose methods never wait for the serial line."""
+"""A spindle with an inverter, whose methods never wait for the serial line."""
 
 from __future__ import annotations
 
@@ -27,23 +27,24 @@ from drivers.serial_line import SerialTransport
 
 
 class SpindleEncoder(Protocol):
-    """Encoder that measures the spindle independently of the inverter."""
+    """An encoder that measures the spindle independently of the inverter."""
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, signed."""
+        """Return the measured speed in rpm, with its sign."""
         ...
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair, or None."""
+        """Return the time and the revolutions of the encoder, or None."""
         ...
 
 
 class InverterSpindle:
-    """``core.ports.Spindle`` of an inverter. Without an encoder, its speed is the inverter's output.
+    """The ``core.ports.Spindle`` of an inverter.
 
-    ``is_thread_alive`` returns whether the inverter is still monitored, and ``restart_thread`` restarts the
-    monitoring. ``is_estop_pressed`` returns whether the E-stop is pressed. ``get_encoder_fault`` returns the
-    reason why the encoder is invalid, which is a fault while the spindle turns or must turn.
+    Without an encoder, its speed is the inverter's output. ``is_thread_alive`` returns whether the inverter
+    is still monitored, and ``restart_thread`` restarts the monitoring. ``is_estop_pressed`` returns whether
+    the E-stop is pressed. ``get_encoder_fault`` returns the reason why the encoder is invalid, which is a
+    fault while the spindle turns or must turn.
     """
 
     def __init__(
@@ -70,9 +71,9 @@ class InverterSpindle:
         self._unmeasured = ""  # Reason for an invalid measurement, latched until ``clear_fault``.
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops it.
+        """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
-        Raises DriverError if the speed is not 0 in E-stop, with a fault, or before a stopped inverter has
+        If the speed is not 0, raises DriverError in E-stop, with a fault, or before a stopped inverter has
         sent enough valid responses.
         """
         if rpm:
@@ -91,7 +92,10 @@ class InverterSpindle:
         self._attendant.commanded_hz = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
     def coast(self) -> None:
-        """Stop by the inverter's ramp, because coasting is possible only by its STO input."""
+        """Stop the spindle by the inverter's ramp.
+
+        Coasting is possible only through the STO input of the inverter.
+        """
         self._attendant.commanded_hz = 0.0
 
     def clear_fault(self) -> None:
@@ -102,10 +106,10 @@ class InverterSpindle:
         self._unmeasured = ""
 
     def speed(self) -> float:
-        """Return the speed in rpm, signed, measured by the encoder or reported by the inverter.
+        """Return the speed in rpm, with its sign, as measured by the encoder or reported by the inverter.
 
-        The inverter's value is used while the encoder is invalid. If both disagree, the higher value is
-        returned.
+        The inverter's value is used while the encoder is invalid. If the values disagree, the higher value
+        is returned.
         """
         if self._encoder is None or self._lost():
             return self.reported_rpm
@@ -115,24 +119,27 @@ class InverterSpindle:
 
     @property
     def reported_rpm(self) -> float:
-        """The speed in rpm, signed, by the last poll of the inverter."""
+        """Return the speed in rpm, with its sign, according to the last poll of the inverter."""
         seen = self._attendant.last_poll
         return seen.state.signed_output_hz / self._config.hz_per_rpm if seen else 0.0
 
     def get_line_delay(self) -> float:
-        """Return the seconds by which the line delays a command and the speed that shows its effect."""
+        """Return the delay in seconds from a command to the speed that shows its effect.
+
+        The delay is caused by the line.
+        """
         return self._attendant.line_delay_s
 
     @property
     def load_percent(self) -> float:
-        """The output current in percent of the motor's rated current, or nan if unknown."""
+        """Return the output current in percent of the motor's rated current, or NaN if it is unknown."""
         seen, rated = self._attendant.last_poll, self._config.rated
         if not rated or seen is None or self._attendant.is_state_unknown:
             return math.nan
         return 100.0 * seen.state.current_a / rated
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, revolutions) pair of the encoder, or None without a valid encoder."""
+        """Return the time and the revolutions of the encoder, or None without a valid encoder."""
         if self._encoder is None or self._unmeasured or self._lost():
             return None
         return self._encoder.read_angle()
@@ -140,7 +147,7 @@ class InverterSpindle:
     def read_fault(self) -> str:
         """Return the fault with the instruction for the operator, or an empty text.
 
-        The method is called continuously, so an E-stop also cancels the commanded speed.
+        This method is called continuously, so an E-stop also cancels the commanded speed.
         """
         attendant = self._attendant
         if self._estop():
@@ -164,7 +171,7 @@ class InverterSpindle:
         return ""
 
     def _is_encoder_wrong(self, encoder: SpindleEncoder) -> bool:
-        """Return whether the spindle turns or must turn without a valid measurement."""
+        """Return whether the spindle turns, or must turn, without a valid measurement."""
         needed = self._attendant.commanded_hz != 0.0 or self.reported_rpm != 0.0
         if needed and not self._unmeasured:
             now = self._clock.now()
@@ -175,13 +182,16 @@ class InverterSpindle:
 
     @property
     def is_state_unknown(self) -> bool:
-        """Whether it is unknown if the spindle turns, because encoder and inverter are both unavailable."""
+        """Return whether the rotation of the spindle is unknown.
+
+        This is the case if the encoder and the inverter are both unavailable.
+        """
         if self._encoder is not None and not (self._unmeasured or self._lost()):
             return False
         return not self._alive() or self._attendant.is_state_unknown
 
     def describe_status(self) -> str:
-        """Return one line about the state of the inverter for a check."""
+        """Return one line of text about the state of the inverter, for a check."""
         seen = self._attendant.last_poll
         if seen is None:
             return "no response yet"
@@ -205,10 +215,11 @@ def create_inverter_control(
     clock: Clock,
     family_folder: Path = Path(),
 ) -> InverterControl:
-    """Create the control of an inverter without opening its line; ``open_wire`` raises WireError.
+    """Create the control of an inverter without opening its line.
 
-    ``family_folder`` contains the file of a family that is not shipped. Raises DriverError if the family
-    cannot be read or does not fit the machine.
+    ``open_wire`` opens the line and raises WireError. ``family_folder`` contains the file of a family that
+    is not shipped with TurnDesk. Raises DriverError if the family cannot be read or does not fit the
+    machine.
     """
     table = load_family(config.family, family_folder)
     highest = config.rpm_max * config.hz_per_rpm
@@ -255,7 +266,7 @@ def _check_limits(table: FamilyTable, config: InverterTable, max_hz: float) -> N
 def _create_family(
     table: FamilyTable, config: InverterTable, wire: SerialTransport, clock: Clock
 ) -> InverterFamily:
-    """Create the inverter on an open line."""
+    """Create the inverter of the given family on an open line."""
     if table.registers is None:
         return HuanyangInverter(table, wire, clock, config.unit, config.line_settings.character_s)
     line = ModbusMaster(wire, clock, config.unit, config.line_settings.character_s)

@@ -1,4 +1,4 @@
-"""Table [spindle.vfd] of the machine file: the spindle inverter and its serial line."""
+"""The table [spindle.vfd] of the machine file: the spindle inverter and its serial line."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _TABLE_PATH = "spindle.vfd"
 
 @make_key_table
 class InverterTable:
-    """Settings of an inverter and its serial line.
+    """The settings of an inverter and its serial line.
 
     ``hz_per_rpm`` refers to the spindle, including the belt. ``comm_loss`` is the inverter's communication
     timeout in seconds.
@@ -76,14 +76,14 @@ class InverterTable:
 
     @property
     def line_settings(self) -> LineSettings:
-        """The settings of the serial line with eight data bits."""
+        """Return the settings of the serial line, which has eight data bits."""
         from drivers.serial_line import LineSettings  # noqa: PLC0415  few machines have one
 
         return LineSettings(self.port, self.baud, parity=self.parity, stop=self.stop)
 
 
 def _check_family(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for a family that is neither shipped nor the name of a TOML file.
+    """Yield a finding if the family is neither a shipped family nor the name of a TOML file.
 
     A file is read only when the line is opened.
     """

@@ -1,4 +1,4 @@
-"""Modbus RTU master with one request at a time, retries, and resynchronization after an error."""
+"""A Modbus RTU master with one request at a time, retries, and resynchronization after an error."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _MIN_FRAME_BYTES = 5
 
 
 def crc16(data: bytes) -> int:
-    """Return the CRC-16 with the reflected polynomial x¹⁶+x¹⁵+x²+1 (A001) and initial value FFFF."""
+    """Return the CRC-16 of Modbus.
+
+    The reflected polynomial is x¹⁶+x¹⁵+x²+1 (A001), and the initial value is FFFF.
+    """
     crc = 0xFFFF
     for byte in data:
         crc ^= byte
@@ -28,7 +31,7 @@ def crc16(data: bytes) -> int:
 
 
 def append_crc(body: bytes) -> bytes:
-    """Return a frame with its CRC appended."""
+    """Return a frame that consists of ``body`` and its CRC."""
     return body + struct.pack("<H", crc16(body))
 
 
@@ -38,33 +41,33 @@ def has_valid_crc(frame: bytes) -> bool:
 
 
 def encode_read(function: int, address: int, count: int) -> bytes:
-    """Return function and data of a read request."""
+    """Return the function code and the data of a read request."""
     return struct.pack(">BHH", function, address, count)
 
 
 def encode_write_coil(address: int, on: bool) -> bytes:
-    """Return function and data of a request to write one coil (05)."""
+    """Return the function code and the data of a request to write one coil (05)."""
     return struct.pack(">BHH", WRITE_COIL, address, 0xFF00 if on else 0)
 
 
 def encode_write_register(address: int, value: int) -> bytes:
-    """Return function and data of a request to write one register (06)."""
+    """Return the function code and the data of a request to write one register (06)."""
     return struct.pack(">BHH", WRITE_REGISTER, address, value)
 
 
 def encode_write_registers(address: int, values: Sequence[int]) -> bytes:
-    """Return function and data of a request to write several registers (10 hex)."""
+    """Return the function code and the data of a request to write several registers (10 hex)."""
     head = struct.pack(">BHHB", WRITE_REGISTERS, address, len(values), 2 * len(values))
     return head + struct.pack(f">{len(values)}H", *values)
 
 
 def encode_loopback(value: int) -> bytes:
-    """Return function and data of an echo request (08, sub-function 0)."""
+    """Return the function code and the data of an echo request (08, subfunction 0)."""
     return struct.pack(">BHH", LOOPBACK, 0, value)
 
 
 def find_response(buffer: bytes, unit: int, function: int) -> bytes | None:
-    """Return the first complete response to ``function`` in the buffer, or None if it is incomplete.
+    """Return the first complete response to ``function`` in the buffer, or None.
 
     Noise before and after the response is ignored.
     """
@@ -87,15 +90,15 @@ def _length(frame: bytes) -> int:
 
 
 class NoResponseError(DriverError):
-    """Failure to receive a readable response from the device."""
+    """Error raised if no readable response is received from the device."""
 
 
 class RequestRejectedError(DriverError):
-    """Rejection of a request by the device."""
+    """Error raised if the device rejects a request."""
 
 
 class RequestWithheldError(Exception):
-    """Request that was not sent because a stop is pending."""
+    """Error raised if a request is not sent because a stop is pending."""
 
 
 REQUEST_INTERVAL_S = (
@@ -119,10 +122,10 @@ def return_false() -> bool:
 
 
 class ModbusMaster:
-    """Modbus RTU master; ``is_stop_pending`` returns whether a stop is pending, which ends the retries of a
-    read.
+    """A Modbus RTU master.
 
-    A write with ``gives_way`` is then not sent or repeated, and raises HeldBackError.
+    ``is_stop_pending`` returns whether a stop is pending, which ends the retries of a read. A write with
+    ``yields_to_stop`` is then not sent or repeated, and raises RequestWithheldError.
     """
 
     def __init__(
@@ -143,12 +146,15 @@ class ModbusMaster:
         self.failure_count = 0  # Failures since the start.
 
     def read_registers(self, address: int, count: int = 1) -> list[int]:
-        """Read holding registers (03). Raises NoAnswerError, RefusedError or WireError, as all methods do."""
+        """Read holding registers (03).
+
+        Raises NoResponseError, RequestRejectedError or WireError, as all methods do.
+        """
         frame = self._send_read(encode_read(READ_REGISTERS, address, count), 2 * count)
         return [word for (word,) in struct.iter_unpack(">H", frame[3:-2])]
 
     def read_coils(self, address: int, count: int = 1) -> list[bool]:
-        """Read coils (01)."""
+        """Read coils (01), and return their states."""
         packed = self._send_read(encode_read(READ_COILS, address, count), (count + 7) // 8)[3:-2]
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
@@ -161,7 +167,10 @@ class ModbusMaster:
     def write_register(
         self, address: int, value: int, max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
     ) -> None:
-        """Write one register (06); ``tries`` 1 prevents a repeated command."""
+        """Write one register (06).
+
+        With ``max_tries`` = 1, the command is not repeated.
+        """
         self._send_write(encode_write_register(address, value), max_tries, yields_to_stop)
 
     def write_registers(
@@ -171,9 +180,9 @@ class ModbusMaster:
         self._send_write(encode_write_registers(address, values), max_tries, yields_to_stop)
 
     def _send_read(self, pdu: bytes, size: int) -> bytes:
-        """Send a read request and return its response.
+        """Send a read request, and return its response.
 
-        A response does not identify its request, so an echo is exchanged first after an error.
+        A response does not identify its request. After an error, an echo is therefore exchanged first.
         """
         for left in reversed(range(MAX_TRIES)):
             try:
@@ -189,7 +198,10 @@ class ModbusMaster:
         raise NoResponseError("the inverter's responses do not match the requests")
 
     def _send_write(self, pdu: bytes, tries: int, yields_to_stop: bool) -> None:
-        """Send a write request, whose response must repeat the address and the value or count."""
+        """Send a write request, and check its response.
+
+        The response must repeat the address and the value or count of the request.
+        """
         for left in reversed(range(tries)):
             try:
                 if self._once(pdu, yields_to_stop)[1:6] == pdu[:5]:

@@ -1,4 +1,4 @@
-"""Inverter on Modbus that is controlled by the register table of its family."""
+"""An inverter on Modbus that is controlled by the register table of its family."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from drivers.inverter.modbus_rtu import MAX_TRIES, ModbusMaster
 
 
 class RegisterInverter:
-    """``Family`` with a register table and the exclusive use of its line."""
+    """An ``InverterFamily`` with a register table and exclusive use of its line."""
 
     required_response_count = 1
 
@@ -24,7 +24,7 @@ class RegisterInverter:
 
     @property
     def is_stop_pending(self) -> Callable[[], bool]:
-        """The function that returns whether a stop is pending."""
+        """Return the function that returns whether a stop is pending."""
         return self._line.is_stop_pending
 
     @is_stop_pending.setter
@@ -34,11 +34,14 @@ class RegisterInverter:
 
     @property
     def valid_response_count(self) -> int:
-        """The number of consecutive valid responses."""
+        """Return the number of consecutive valid responses."""
         return self._line.valid_response_count
 
     def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
-        """Check the parameters of the table; ``comm_timeout_s`` in seconds, ``max_hz`` in Hz."""
+        """Check the parameters of the table, and return the messages for the operator.
+
+        ``comm_timeout_s`` is in seconds, and ``max_hz`` is in Hz.
+        """
         self._said = ()
         return write_and_check(
             self._table,
@@ -49,13 +52,16 @@ class RegisterInverter:
         )
 
     def stop(self) -> None:
-        """Stop by the inverter's ramp."""
+        """Stop the motor by the inverter's ramp."""
         self._said = ()
         for each in self._registers.commands["stop"]:
             self._send(each)
 
     def command_hz(self, hz: float) -> None:
-        """Send the frequency first, so that the inverter never starts with an old frequency."""
+        """Send the frequency, and then the run command.
+
+        The frequency is sent first, so that the inverter never starts with an old frequency.
+        """
         frequency = self._registers.frequency
         words = frequency.encode_hz(hz)
         if len(words) > 1:
@@ -71,7 +77,10 @@ class RegisterInverter:
         self._said = writes
 
     def poll_steps(self) -> Iterator[InverterState | None]:
-        """Poll the inverter read by read; yield None between requests and the state at the end."""
+        """Poll the inverter read request by read request.
+
+        The iterator yields None between requests and the state at the end.
+        """
         words: dict[int, int] = {}
         coils: dict[int, bool] = {}
         for each in self._registers.reads:
@@ -83,7 +92,10 @@ class RegisterInverter:
         yield self._look(words, coils)
 
     def reset_trip(self) -> None:
-        """Reset a trip; the next command is then sent completely."""
+        """Reset a trip of the inverter.
+
+        The next command is then sent completely.
+        """
         self._said = ()
         sending = self._registers.command_settings
         for each in self._registers.commands["reset"]:
@@ -121,7 +133,10 @@ class RegisterInverter:
         )
 
     def _describe_trip(self, words: Mapping[int, int]) -> str:
-        """Return the text of the fault code; without a fault state, code 0 means no fault."""
+        """Return the text of the fault code.
+
+        In a family without a fault state, code 0 means no fault, and the text is empty.
+        """
         table = self._registers
         register = table.fault_code.register
         code = words[register] if table.code_is_polled else self._line.read_registers(register)[0]

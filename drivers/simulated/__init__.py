@@ -1,1 +1,1 @@
-"""Backend that connects the ports to the simulated machine."""
+"""The backend that connects the ports to the simulated machine."""

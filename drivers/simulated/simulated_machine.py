@@ -31,14 +31,14 @@ from drivers.simulators.plant_controls import FaultSchedule, PlantControls
 
 
 class _PlantPort:
-    """Base class of the ports of a plant."""
+    """The base class of the ports of a simulated plant."""
 
     def __init__(self, plant: SimulatedPlant) -> None:
         self._plant = plant
 
 
 class SimAxes(_PlantPort):
-    """``core.ports.AxisSink`` of the simulated machine."""
+    """The ``core.ports.AxisSink`` of the simulated machine."""
 
     def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
@@ -50,25 +50,25 @@ class SimAxes(_PlantPort):
         return self._plant.clock.now()
 
     def horizon(self) -> float:
-        """Return the end time of the setpoint queue, or the present time if it is empty."""
+        """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
         with self._plant.lock:
             return self._plant.queue.queue_end(self._plant.clock.now())
 
     def splice(self, segments: Segments) -> None:
         """Splice setpoints into the queue.
 
-        Raises DriverError if they are invalid or the drives cannot follow.
+        Raises DriverError if the setpoints are invalid or the drives cannot follow them.
         """
         self._plant.splice(segments)
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the queued positions and velocities at time ``t``."""
+        """Return the queued positions and velocities at ``time_s``."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.queue.commanded_state_at(time_s)
 
     def sample(self) -> AxisSample:
-        """Return the state of the axes at the last grid point of the model."""
+        """Return the state of the axes at the last time step of the model."""
         plant = self._plant
         with plant.lock:
             plant.advance()
@@ -90,7 +90,7 @@ class SimAxes(_PlantPort):
     def enable(self, on: bool) -> None:
         """Switch the drives on or off.
 
-        Raises DriverError when switching on in E-stop or with a fault; switching off is always possible.
+        Raises DriverError when switching on in E-stop or with a fault. Switching off is always possible.
         """
         self._plant.set_power(on)
 
@@ -99,18 +99,21 @@ class SimAxes(_PlantPort):
         self._plant.stop(mode)
 
     def home(self, axis: str) -> None:
-        """Start to home an axis; ``sample().homed`` becomes True when it is done."""
+        """Start homing an axis.
+
+        ``sample().homed`` becomes True when homing is done.
+        """
         require_axis(axis, self.axes)
         self._plant.home_axis(axis)
 
     def clear_fault(self) -> None:
-        """Clear the fault; the drives remain off."""
+        """Clear the fault without switching on the drives."""
         with self._plant.lock:
             self._plant.clear_fault()
 
 
 class SimGear(_PlantPort):
-    """``core.ports.SpindleGear`` of the simulated machine."""
+    """The ``core.ports.SpindleGear`` of the simulated machine."""
 
     def mesh(self, cam: Cam) -> None:
         """Make the axes follow the spindle. Raises DriverError if the cam is invalid or too fast."""
@@ -124,7 +127,10 @@ class SimGear(_PlantPort):
 
 
 class SimSamples(_PlantPort):
-    """``core.ports.SampleSource`` of the simulated machine; sampling starts with the first request."""
+    """The ``core.ports.SampleSource`` of the simulated machine.
+
+    Sampling starts with the first request.
+    """
 
     def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant)
@@ -140,12 +146,12 @@ class SimSamples(_PlantPort):
 
 
 class SimSpindlePort(_PlantPort):
-    """``core.ports.Spindle`` of the simulated machine."""
+    """The ``core.ports.Spindle`` of the simulated machine."""
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed; 0 stops it.
+        """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
-        Raises DriverError in E-stop or with an inverter fault if the speed is not 0.
+        If the speed is not 0, raises DriverError in E-stop or with an inverter fault.
         """
         plant = self._plant
         with plant.lock:
@@ -160,13 +166,13 @@ class SimSpindlePort(_PlantPort):
             self._plant.spindle.command_speed(self._plant.advance(), 0.0, coast=True)
 
     def speed(self) -> float:
-        """Return the measured speed in rpm, signed."""
+        """Return the measured speed in rpm, with its sign."""
         with self._plant.lock:
             self._plant.advance()
             return self._plant.spindle.speed
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return a (time, counted revolutions) pair, or None without an encoder.
+        """Return the time and the counted revolutions of the encoder, or None without an encoder.
 
         The resolution is a quarter of a pulse.
         """
@@ -182,16 +188,19 @@ class SimSpindlePort(_PlantPort):
 
 
 def _require_spindle(plant: SimulatedPlant) -> None:
-    """Raise DriverError in E-stop or with an inverter fault."""
+    """Raise DriverError if the E-stop is pressed or the inverter has a fault."""
     require_estop_released(plant.station_panel.estop)
     require_spindle_ready(plant.spindle.faults.fault_text)
 
 
 class SimOrientation(_PlantPort):
-    """``core.ports.OrientingSpindle`` of the simulated machine."""
+    """The ``core.ports.OrientingSpindle`` of the simulated machine."""
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
-        """Turn the spindle to an angle in degrees. Raises DriverError in E-stop or with an inverter fault."""
+        """Orient the spindle to an angle in degrees.
+
+        Raises DriverError in E-stop or with an inverter fault.
+        """
         plant = self._plant
         with plant.lock:
             now = plant.advance()
@@ -199,7 +208,7 @@ class SimOrientation(_PlantPort):
             plant.spindle.orient_spindle(now, angle, direction)
 
     def release_spindle(self) -> None:
-        """Cancel the orientation."""
+        """Cancel the orientation of the spindle."""
         with self._plant.lock:
             self._plant.advance()
             self._plant.spindle.cancel_orientation()
@@ -212,10 +221,10 @@ class SimOrientation(_PlantPort):
 
 
 class SimIO(_PlantPort):
-    """``core.ports.DigitalIO`` of the simulated machine."""
+    """The ``core.ports.DigitalIO`` of the simulated machine."""
 
     def inputs(self) -> Mapping[str, bool]:
-        """Return all inputs by name; True is active."""
+        """Return all inputs by name, with True for an active input."""
         with self._plant.lock:
             return self._plant.terminals.read_inputs(self._plant.advance())
 
@@ -236,10 +245,10 @@ class SimIO(_PlantPort):
 
 
 class SimTouch(_PlantPort):
-    """``core.ports.TouchInput`` of the simulated machine, at the resolution of the model's grid."""
+    """The ``core.ports.TouchInput`` of the simulated machine, with the time resolution of the model."""
 
     def arm_latch(self) -> None:
-        """Clear the latched touch."""
+        """Clear the latched touch, so that the next touch is latched."""
         with self._plant.lock:
             self._plant.advance()
             if self._plant.terminals.setter is not None:
@@ -255,7 +264,7 @@ class SimTouch(_PlantPort):
 
 
 class SimStation(_PlantPort):
-    """``core.ports.Station`` of the simulated machine."""
+    """The ``core.ports.Station`` of the simulated machine."""
 
     def read_state(self) -> StationState:
         """Return the present state of the operator station."""
@@ -267,14 +276,14 @@ class SimStation(_PlantPort):
 
 
 class Simulation(NamedTuple):
-    """Ports for the executor, and the controls by which a test or operator acts on the machine."""
+    """The ports for the executor, and the controls that a test or the operator uses to act on the machine."""
 
     ports: MachinePorts
     machine: PlantControls
 
 
 def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
-    """Create a simulated machine on ``clock`` and return its ports and its controls."""
+    """Create a simulated machine that uses ``clock``, and return its ports and its controls."""
     plant = SimulatedPlant(config, clock)
     ports = MachinePorts(
         clock=clock,

@@ -1,4 +1,4 @@
-"""Table [sim] of the machine file: pace, random seed and scheduled faults of the simulated machine."""
+"""The table [sim] of the machine file: pace, random seed and scheduled faults of the simulated machine."""
 
 from __future__ import annotations
 
@@ -42,7 +42,10 @@ _AXIS_FAULTS = frozenset(
 
 @make_key_table
 class PlannedFault:
-    """Scheduled fault that starts at ``at`` and lasts ``seconds``; 0 makes it permanent."""
+    """A scheduled fault that starts at ``at`` and lasts ``seconds``.
+
+    A duration of 0 makes the fault permanent.
+    """
 
     at: float = declare_key(
         KeyRange(0.0, 1e6, FileUnit.SECONDS), meaning="Time after the start at which the fault occurs."
@@ -67,7 +70,7 @@ class PlannedFault:
 
 
 class _TipPosition:
-    """Axis positions in mm at which a tool tip is at part zero."""
+    """The axis positions in mm at which a tool tip is at part zero."""
 
     x: float = declare_key(
         KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
@@ -81,7 +84,7 @@ class _TipPosition:
 
 @make_key_table
 class SimulatedTable:
-    """Settings of the simulated machine."""
+    """The settings of the simulated machine."""
 
     seed: int = declare_key(
         KeyRange(0, 2**31),
@@ -107,7 +110,7 @@ def _read(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _list_paths(file: MachineFileReading, name: str = "sim.faults") -> list[str]:
-    """Return the paths of the entries of a list, counted from 1."""
+    """Return the paths of the entries of a list, numbered from 1."""
     entries = file.raw(name)
     return [f"{name}.{n}" for n in range(1, len(entries) + 1)] if isinstance(entries, list) else []
 
@@ -134,7 +137,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _read_faults(file: MachineFileReading) -> dict[str, object]:
-    """Return the entries of the lists ``faults`` and ``tips``."""
+    """Return the entries of the lists ``faults`` and ``tips`` of the table."""
     values = file.values
     tips = (
         (values.read_number(f"{path}.x"), values.read_number(f"{path}.z"))

@@ -1,4 +1,4 @@
-"""Simulated CiA 402 drive of an axis: power states, modes of operation, PVT queue and faults."""
+"""Simulated CiA 402 drive of an axis, with power states, modes of operation, PVT queue and faults."""
 
 from __future__ import annotations
 
@@ -40,7 +40,10 @@ _POWERED_STATES = frozenset(
 
 
 class PowerStateMachine:
-    """Power state machine of a CiA 402 drive; ``is_sto_active`` is the state of the hardware input STO."""
+    """Power state machine of a CiA 402 drive.
+
+    ``is_sto_active`` is the state of the hardware input STO (safe torque off).
+    """
 
     def __init__(self, powered_up: Callable[[], None]) -> None:
         self.state = DriveState.SWITCH_ON_DISABLED
@@ -51,17 +54,17 @@ class PowerStateMachine:
 
     @property
     def is_powered(self) -> bool:
-        """Whether the motor has current."""
+        """Return whether the motor has current."""
         return self.state in _POWERED_STATES
 
     @property
     def is_braking(self) -> bool:
-        """Whether the drive is braking to standstill after a quick stop or a fault."""
+        """Return whether the drive is braking to standstill after a quick stop or a fault."""
         return self.state in {DriveState.QUICK_STOP_ACTIVE, DriveState.FAULT_REACTION_ACTIVE}
 
     @property
     def status_word(self) -> int:
-        """The bits of the status word for the present state."""
+        """Return the bits of the status word for the present state."""
         return _STATUS_BITS[self.state] | _VOLTAGE | _REMOTE
 
     def apply_control_word(self, word: int) -> None:
@@ -83,23 +86,23 @@ class PowerStateMachine:
             self._step(word)
 
     def quick_stop(self) -> None:
-        """Brake if the motor has power; otherwise switch off."""
+        """Brake if the motor has power; otherwise switch the drive off."""
         if self.state is DriveState.OPERATION_ENABLED:
             self.state = DriveState.QUICK_STOP_ACTIVE
         elif not self.is_powered and self.state is not DriveState.FAULT:
             self.state = DriveState.SWITCH_ON_DISABLED
 
     def switch_off(self) -> None:
-        """Switch off without braking, except in a fault state."""
+        """Switch the power off without braking, unless the drive is in a fault state."""
         if self.state not in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE}:
             self.state = DriveState.SWITCH_ON_DISABLED
 
     def trip(self) -> None:
-        """Enter the fault state, after braking if the motor has power."""
+        """Enter the fault state; if the motor has power, brake first."""
         self.state = DriveState.FAULT_REACTION_ACTIVE if self.is_powered else DriveState.FAULT
 
     def end_braking(self) -> None:
-        """End braking at standstill: in the fault state after a fault, otherwise off."""
+        """End the braking at standstill, and enter the fault state after a fault, or switch off otherwise."""
         self.state = (
             DriveState.FAULT
             if self.state is DriveState.FAULT_REACTION_ACTIVE
@@ -126,7 +129,7 @@ _HOME_SETTLE = 0.1  # s
 
 
 class AxisDrive:
-    """Simulated axis drive; ``step`` is called once per millisecond of the plant."""
+    """Simulated axis drive; ``step`` must be called for each millisecond of the plant."""
 
     def __init__(
         self,
@@ -172,7 +175,10 @@ class AxisDrive:
     # --- objects ------------------------------------------------------------------------------------------
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the drive calculates, or None if the stored value applies."""
+        """Return the value of an object that the drive calculates.
+
+        Return None if the stored value of the object applies.
+        """
         reader = self._readers.get(index)
         if reader is not None:
             return reader()
@@ -181,7 +187,7 @@ class AxisDrive:
         return None
 
     def _following_error(self) -> int:
-        """Return setpoint minus position in counts; 0 without power."""
+        """Return the setpoint minus the position in counts, or 0 without power."""
         return (
             round((self.setpoint_position - self.servo_axis.reading) / self.servo_axis.axis.count)
             if self.power_states.is_powered
@@ -189,7 +195,7 @@ class AxisDrive:
         )
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Apply an object value that the host has written."""
+        """Apply a value that the host has written to an object."""
         self.values[index, subindex] = value
         if index == od.CONTROL:
             self._control(value)
@@ -203,14 +209,17 @@ class AxisDrive:
             self.queue.clear()
 
     def handle_host_loss(self) -> None:
-        """React to a lost host by the abort connection option: 1 and 2 are a fault, 3 is a quick stop."""
+        """React to the loss of the host as the abort connection option defines.
+
+        The options 1 and 2 cause a fault, and option 3 causes a quick stop.
+        """
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
             self.power_states.quick_stop()
         elif self.values.get((od.ABORT_OPTION, 0), 0) in {1, 2}:
             self.power_states.trip()
 
     def reset(self) -> None:
-        """Clear volatile values, and the reference of an incremental encoder."""
+        """Clear the volatile values, and the reference of an incremental encoder, as a restart does."""
         self.power_states.switch_off()
         self.mode, self.is_playing, self._homing, self._going = 0, False, False, False
         self.is_interpolating = False
@@ -219,7 +228,7 @@ class AxisDrive:
         self.servo_axis.handle_power_loss()
 
     def status_word(self) -> int:
-        """Return the status word, object 0x6041."""
+        """Return the status word (object 6041h)."""
         word = self.power_states.status_word
         if (
             self.is_playing
@@ -236,7 +245,7 @@ class AxisDrive:
 
     @property
     def is_idle(self) -> bool:
-        """Whether further steps change nothing until a frame arrives or the axis is moved externally."""
+        """Return whether the drive stays unchanged until a frame arrives or the axis is moved externally."""
         servo = self.servo_axis
         if servo.v or self.setpoint_velocity:
             return False
@@ -248,7 +257,7 @@ class AxisDrive:
         return not self._steps_to_target or self.setpoint_position == self.target * servo.axis.count
 
     def step(self, seconds: float) -> None:
-        """Advance the drive and its axis by ``dt`` seconds."""
+        """Advance the drive and its axis by ``seconds``."""
         if not self.power_states.is_powered:
             self.is_playing = self._homing = self._going = self.is_interpolating = False
             self.servo_axis.roll(seconds)
@@ -290,7 +299,7 @@ class AxisDrive:
             self._pending = bool(word & NEW)
 
     def _is_cyclic(self) -> bool:
-        """Return whether interpolated mode takes one setpoint per SYNC instead of queued records."""
+        """Return whether the interpolated mode uses one setpoint per SYNC instead of queued records."""
         return self.values.get((od.IP_SUBMODE, 0), 0) == 0
 
     def _setpoint_period(self) -> float:
@@ -302,7 +311,7 @@ class AxisDrive:
         return self.mode == CSP or self.is_interpolating
 
     def _step_to_target(self, dt: float) -> None:
-        """Move linearly to the target within one period, then stay there."""
+        """Move linearly to the target within one setpoint period, and then stay at the target."""
         goal, before = self.target * self.servo_axis.axis.count, self.setpoint_position
         self.setpoint_position += (goal - self.setpoint_position) * min(dt / max(self._left, dt), 1.0)
         self._left = max(self._left - dt, 0.0)
@@ -365,7 +374,7 @@ class AxisDrive:
         self.setpoint_velocity = (self.setpoint_position - before) / dt
 
     def _move_toward(self, goal: float, dt: float) -> None:
-        """Move to ``goal`` in profile position mode, within the profile's speed and acceleration."""
+        """Move to ``goal`` in profile position mode, within the profile speed and acceleration."""
         count = self.servo_axis.axis.count
         accel = max(self.values.get((od.PROFILE_ACCEL, 0), 0), 1) * count
         accel *= self.velocity_scale if self.profile.uses_rpm else 1.0
@@ -409,7 +418,7 @@ class AxisDrive:
             self.power_states.end_braking()
 
     def _hold_position(self) -> None:
-        """Start at the present position with an empty queue after power-up."""
+        """Set the setpoint to the present position and clear the queue after power-up."""
         self.setpoint_position, self.setpoint_velocity = self.servo_axis.reading, 0.0
         self.queue.clear()
 

@@ -29,7 +29,7 @@ _STATION_NAMES = frozenset({"estop", "start", "hold", "spindle_auto"})
 
 
 class SimulatedIoModule:
-    """Simulated CiA 401 module whose inputs, outputs and pots are those of the plant."""
+    """Simulated CiA 401 module that is connected to the inputs, outputs and pots of the plant."""
 
     def __init__(self, name: str, config: CanopenConfig, plant: SimulatedPlant) -> None:
         self._name = name
@@ -51,7 +51,10 @@ class SimulatedIoModule:
                 self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit
 
     def read(self, index: int, subindex: int) -> int | None:
-        """Return the value of an object that the module calculates, or None if the stored value applies."""
+        """Return the value of an object that the module calculates.
+
+        Return None if the stored value of the object applies.
+        """
         if index == od.DEVICE_TYPE:
             return 0x000F0191
         if index == od.DIGITAL_IN and subindex:
@@ -63,20 +66,20 @@ class SimulatedIoModule:
         return None
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Apply an object value that the host has written."""
+        """Apply a value that the host has written to an object."""
         self.values[index, subindex] = value
         if index == od.DIGITAL_OUT:
             self._switch(subindex, value)
 
     def handle_host_loss(self) -> None:
-        """Set every output with an error mode to its error value; the others do not change."""
+        """Set every output that has an error mode to its error value; the other outputs do not change."""
         for sub in range(1, 9):
             mode = self.values.get((od.ERROR_MODE, sub), 0xFF)
             value = self.values.get((od.ERROR_VALUE, sub), 0)
             self._switch(sub, self.output_bytes[sub - 1] & ~mode | value & mode)
 
     def reset(self) -> None:
-        """Switch off the outputs that have an error mode, as a loss of power does.
+        """Switch off all outputs that have an error mode, as after a loss of power.
 
         Bistable outputs, such as the collet valve, do not change.
         """
@@ -129,7 +132,10 @@ ENCODER_TURNS = 4096  # Number of revolutions after which the position wraps.
 
 
 class SimulatedEncoder:
-    """Simulated CiA 406 encoder on the spindle; ``stuck`` is its position when the coupling is off."""
+    """Simulated CiA 406 encoder on the spindle.
+
+    ``stuck`` is the position of the encoder while its coupling is detached, otherwise None.
+    """
 
     def __init__(self, plant: SimulatedPlant, counts: int) -> None:
         self._plant = plant
@@ -146,13 +152,16 @@ class SimulatedEncoder:
         }
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the encoder calculates, or None if the stored value applies."""
+        """Return the value of an object that the encoder calculates.
+
+        Return None if the stored value of the object applies.
+        """
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
     @property
     def position(self) -> int:
-        """The counts since the start of the simulation."""
+        """Return the position in counts since the start of the simulation."""
         return round(self._plant.spindle.revolutions * self.counts) if self.stuck is None else self.stuck
 
     def detach_coupling(self) -> None:
@@ -160,14 +169,14 @@ class SimulatedEncoder:
         self.stuck = self.position
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Store an object value that the host has written."""
+        """Store a value that the host has written to an object."""
         self.values[index, subindex] = value
 
     def handle_host_loss(self) -> None:
         """Do nothing, because an encoder only measures."""
 
     def reset(self) -> None:
-        """Clear the stored values; the absolute position is preserved."""
+        """Clear the stored values; the absolute position does not change."""
         self.values.clear()
 
 
@@ -184,7 +193,9 @@ class CanopenPlant(SimulatedPlant):
         self._at = clock.now()
 
     def advance(self) -> float:
-        """Advance the model to the present time of the clock in steps, and return this time in seconds."""
+        """Advance the model step by step to the present time of the clock, and return this time
+        in seconds.
+        """
         now = self.clock.now()
         with self.lock:
             self._apply_faults(now)
@@ -209,7 +220,7 @@ class CanopenPlant(SimulatedPlant):
             self.spindle.set_cutting(self._at, cutting=self.is_cutting())
 
     def _are_drives_idle(self) -> bool:
-        """Return whether further steps change nothing until a frame arrives or the operator acts."""
+        """Return whether all drives stay unchanged until a frame arrives or the operator acts."""
         if self.spindle.faults.belt_slip_fraction or (
             self.spindle_drive is not None and not self.spindle_drive.is_idle
         ):
@@ -217,13 +228,13 @@ class CanopenPlant(SimulatedPlant):
         return all(drive.is_idle for drive in self.axis_drives.values())
 
     def trip_drives(self, fault: str) -> None:
-        """Trip the drive that is named before the colon, and send its EMCY."""
+        """Trip the drive whose name is before the colon in ``fault``, and send its EMCY frame."""
         name = fault.partition(":")[0]
         self.axis_drives[name].power_states.trip()
         self.axis_drives[name].send_emergency(0x4210)
 
     def press_estop(self) -> None:
-        """Activate STO: the axes brake and lose power, and the spindle coasts."""
+        """Activate STO, so that the axes brake and lose power and the spindle coasts."""
         with self.action_lock:
             now = self.advance()
             self.station_panel.estop = True
@@ -237,7 +248,7 @@ class CanopenPlant(SimulatedPlant):
 
 
 class CanopenDevices:
-    """All simulated devices on one bus; ``process_frames`` must be called from one thread only."""
+    """All simulated devices on one bus; only one thread may call ``process_frames``."""
 
     def __init__(self, config: CanopenConfig, sim: SimConfig, clock: Clock) -> None:
         self.config = config
@@ -256,8 +267,9 @@ class CanopenDevices:
         self._build()
 
     def process_frames(self, timeout_s: float = 0.0) -> None:
-        """Process received frames and advance the devices; ``timeout_s`` limits the seconds to the first
-        frame.
+        """Process received frames and advance the devices.
+
+        The method waits at most ``timeout_s`` seconds for the first frame.
         """
         now = self.plant.advance()
         if self.plant.axis_drives and not self.plant.station_panel.estop:
@@ -283,13 +295,13 @@ class CanopenDevices:
                 node.handle_frame(can_id, data)
 
     def cable(self, *, disconnected: bool) -> None:
-        """Disconnect or connect the bus cable in both directions."""
+        """Disconnect or reconnect the bus cable in both directions."""
         self.is_cable_disconnected = disconnected
         for node in self.nodes.values():
             node.is_silent = disconnected
 
     def close(self) -> None:
-        """Shut down the connection to the bus."""
+        """Close the connection to the bus."""
         if self.network.bus is not None:
             self.network.bus.shutdown()
             self.network.bus = None
@@ -337,9 +349,9 @@ class CanopenDevices:
 
 
 def _simulated_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile]:
-    """Return the object dictionary and the profile of a drive, from its EDS file or its family.
+    """Return the object dictionary and the profile of a drive, from its EDS file or its drive family.
 
-    Numbers without a default value are 0.
+    Numeric objects without a default value are set to 0.
     """
     objects, profile = od.load_drive_dictionary(node)
     for entry in objects.values():

@@ -1,6 +1,6 @@
 """Simulated CANopen node with NMT, PDO, SYNC, heartbeat and EMCY.
 
-The SDO server is that of the canopen library.
+The SDO server is part of the canopen library.
 """
 
 from __future__ import annotations
@@ -24,18 +24,21 @@ _PDO_DISABLED = 1 << 31
 
 
 class NodeDevice(Protocol):
-    """Device that provides the values of a node's objects."""
+    """Device that provides and receives the values of a node's objects."""
 
     def read(self, index: int, subindex: int, /) -> int | None:
-        """Return the value of an object that the device calculates, or None if the stored value applies."""
+        """Return the value of an object that the device calculates.
+
+        Return None if the stored value of the object applies.
+        """
         ...
 
     def write(self, index: int, subindex: int, value: int, /) -> None:
-        """Apply a written value; called after each write by SDO or PDO."""
+        """Apply a value that the host has written to an object by SDO or PDO."""
         ...
 
     def handle_host_loss(self) -> None:
-        """React to the loss of the host's heartbeat, SYNC or PDO."""
+        """React to a missing heartbeat, SYNC or PDO of the host."""
         ...
 
     def reset(self) -> None:
@@ -44,10 +47,13 @@ class NodeDevice(Protocol):
 
 
 class DeviceNetwork(canopen.Network):
-    """CANopen network without a receiving thread or periodic jobs; ``CanopenDevices.pump`` does both."""
+    """CANopen network without a receiving thread and without periodic tasks.
+
+    ``CanopenDevices.process_frames`` receives the frames, and ``DeviceNode.update`` sends the heartbeats.
+    """
 
     def send_message(self, can_id: int, data: bytes, remote: bool = False) -> None:
-        """Send one frame; without a bus the frame is lost."""
+        """Send one frame, or discard the frame if the bus is closed."""
         if self.bus is not None:
             frame = can.Message(
                 arbitration_id=can_id, data=bytes(data), is_extended_id=False, is_remote_frame=remote
@@ -64,10 +70,10 @@ class _NoTask(canopen.network.PeriodicMessageTask):
         """Create a task that sends nothing."""
 
     def stop(self) -> None:
-        """Do nothing, because nothing runs."""
+        """Do nothing, because the task sends nothing."""
 
     def update(self, data: bytes) -> None:
-        """Do nothing, because nothing runs."""
+        """Do nothing, because the task sends nothing."""
 
 
 _Entry = tuple[int, int, int, bool]  # Index, sub-index, number of bytes and sign of a PDO entry.
@@ -75,7 +81,7 @@ _SIGNED = frozenset(datatypes.SIGNED_TYPES)
 
 
 class _ReceivePdo(NamedTuple):
-    """RPDO with its mapped objects."""
+    """RPDO and the objects that are mapped to it."""
 
     number: int
     waits_for_sync: bool  # The RPDO takes effect at the next SYNC.
@@ -83,7 +89,7 @@ class _ReceivePdo(NamedTuple):
 
 
 class _TransmitPdo(NamedTuple):
-    """TPDO that is sent at every ``sync_divisor``-th SYNC."""
+    """TPDO that is sent once per ``sync_divisor`` SYNCs, and its mapped objects."""
 
     cob_id: int
     sync_divisor: int
@@ -91,9 +97,9 @@ class _TransmitPdo(NamedTuple):
 
 
 class _Communication(NamedTuple):
-    """Communication settings of a node, read again after a write to an object of CiA 301.
+    """Communication settings of a node, which are read again after a write to an object of CiA 301.
 
-    Times are in seconds; 0 disables the function.
+    Times are in seconds; a time of 0 disables the function.
     """
 
     heartbeat_s: float
@@ -107,7 +113,10 @@ class _Communication(NamedTuple):
 
 
 class DeviceNode:
-    """One node on the bus. Tests can set ``is_silent`` or call ``boot_up``."""
+    """One simulated node on the bus.
+
+    Tests can set ``is_silent`` or call ``boot_up``.
+    """
 
     def __init__(
         self, network: DeviceNetwork, node_id: int, objects: ObjectDictionary, device: NodeDevice
@@ -145,11 +154,11 @@ class DeviceNode:
 
     @property
     def accepted_ids(self) -> frozenset[int]:
-        """The identifiers of the frames that the node accepts."""
+        """Return the identifiers of the frames that the node accepts."""
         return self._get_communication().accepted_ids
 
     def handle_frame(self, can_id: int, data: bytes) -> None:
-        """Handle one accepted frame."""
+        """Handle one received frame that the node accepts."""
         told = self._get_communication()
         if self.is_silent:
             return
@@ -163,7 +172,7 @@ class DeviceNode:
             self._process_data(can_id, data, told)
 
     def update(self, now: float) -> None:
-        """Send the heartbeat when it is due, and check the host's heartbeat and setpoints."""
+        """Send the heartbeat when it is due, and check the heartbeat and the setpoints of the host."""
         self.time_s = now
         told = self._get_communication()
         if told.heartbeat_s and now >= self._next_beat and not self.is_silent:
@@ -180,7 +189,7 @@ class DeviceNode:
         self._check_setpoints(now, told)
 
     def _check_setpoints(self, now: float, communication: _Communication) -> None:
-        """Report the host as lost if SYNC or the first RPDO is missing for longer than configured."""
+        """Treat the host as lost if SYNC or the first RPDO is missing for longer than configured."""
         if self.state != _OPERATIONAL:
             self._sync_at = self._told_at = None
         if (
@@ -201,7 +210,7 @@ class DeviceNode:
             self.device.handle_host_loss()
 
     def send_emergency(self, code: int, register: int = 1) -> None:
-        """Send an EMCY unless the node is silent."""
+        """Send an EMCY frame, unless the node is silent."""
         if not self.is_silent:
             self.network.send_message(0x80 + self.node_id, struct.pack("<HB5x", code, register))
 
@@ -241,7 +250,10 @@ class DeviceNode:
                 self.network.send_message(cob, b"".join([self._encode_value(*entry) for entry in entries]))
 
     def _encode_value(self, index: int, sub: int, size: int, _signed: bool) -> bytes:
-        """Return an object value in bytes, faster than the node of the library does."""
+        """Return the value of an object as bytes.
+
+        This method is faster than the node of the canopen library.
+        """
         value = self.device.read(index, sub)
         if value is None:
             stored = self.local_node.data_store.setdefault(index, {})
@@ -251,7 +263,7 @@ class DeviceNode:
         return value.to_bytes(size, "little", signed=value < 0)
 
     def _get_communication(self) -> _Communication:
-        """Return the communication settings, which are read again after a change."""
+        """Return the communication settings, and read them again after a change."""
         if self._communication is None:
             self._communication = self._read()
         return self._communication
@@ -284,7 +296,7 @@ class DeviceNode:
         )
 
     def _read_mapping(self, index: int) -> list[_Entry]:
-        """Return the entries that are mapped into a PDO."""
+        """Return the entries that are mapped to a PDO."""
         entries = [self._stored_value(index, sub) for sub in range(1, self._stored_value(index, 0) + 1)]
         places = [(entry >> 16, entry >> 8 & 0xFF, (entry & 0xFF) // 8) for entry in entries]
         return [(index, sub, size, self._is_signed(index, sub)) for index, sub, size in places]
@@ -294,7 +306,7 @@ class DeviceNode:
         return variable is not None and variable.data_type in _SIGNED
 
     def _stored_value(self, index: int, sub: int) -> int:
-        """Return a stored number such as a communication parameter, or 0 if no value is stored."""
+        """Return a stored number, such as a communication parameter, or 0 if no number is stored."""
         return int.from_bytes(self.local_node.data_store.get(index, {}).get(sub, b""), "little")
 
     def _on_read(self, index: int, subindex: int, **_: object) -> int | None:

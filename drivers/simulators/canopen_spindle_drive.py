@@ -1,4 +1,7 @@
-"""Simulated CiA 402 drive of the spindle: velocity mode, and position modes where the spindle is also C."""
+"""Simulated CiA 402 drive of the spindle, with a velocity mode.
+
+If the spindle is also the C axis, the drive has position modes too.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ _DEGREES_PER_REV = 360.0
 
 
 class SpindleServo(SimulatedServo):
-    """Spindle as an axis in degrees that follows its setpoints exactly and homes on its index."""
+    """Spindle as an axis in degrees, which follows its setpoints exactly and homes on its index."""
 
     def __init__(self, axis: SimAxis, motor: SpindleMotor) -> None:
         super().__init__(axis)
@@ -30,11 +33,11 @@ class SpindleServo(SimulatedServo):
 
     @property
     def place(self) -> float:
-        """The angle in degrees in the count of the drive."""
+        """Return the angle in degrees, as the drive counts it."""
         return self._motor.revolutions * _DEGREES_PER_REV - self._zero
 
     def adopt_motor_angle(self) -> None:
-        """Take over the motor's angle after the spindle has turned."""
+        """Set the axis position to the angle of the motor after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
     def set_switch_position(self, method: int) -> None:
@@ -43,7 +46,10 @@ class SpindleServo(SimulatedServo):
         self.switch = ahead if method in _INDEX else self.p
 
     def follow_setpoint(self, p: float, v: float, _dt: float) -> bool:
-        """Move the spindle exactly to setpoint ``p``, ``v``; never trip."""
+        """Move the spindle exactly to position ``p`` with velocity ``v``, and return False.
+
+        The simulated spindle never trips because of a following error.
+        """
         self.p, self.v = p, v
         self._motor.revolutions = (p + self._zero) / _DEGREES_PER_REV
         return False
@@ -52,13 +58,13 @@ class SpindleServo(SimulatedServo):
         """Do nothing, because the spindle motor advances separately."""
 
     def reference(self) -> None:
-        """Make ``offset`` the count at the present position."""
+        """Set the count at the present position to ``offset`` degrees."""
         self._zero += self.p - self.offset
         self.p = self.offset
 
 
 class SimulatedSpindleDrive:
-    """Simulated spindle drive; ``step`` is called with the time of the plant."""
+    """Simulated spindle drive; ``advance`` must be called with the time of the plant."""
 
     def __init__(
         self,
@@ -98,11 +104,14 @@ class SimulatedSpindleDrive:
 
     @property
     def is_axis_mode(self) -> bool:
-        """Whether the mode of operation is interpolated position or homing."""
+        """Return whether the drive is in interpolated position mode or homing mode."""
         return self.mode in {IP, HM}
 
     def read(self, index: int, _sub: int) -> int | None:
-        """Return the value of an object that the drive calculates, or None if the stored value applies."""
+        """Return the value of an object that the drive calculates.
+
+        Return None if the stored value of the object applies.
+        """
         reader = self._readers.get(index)
         return None if reader is None else reader()
 
@@ -114,7 +123,7 @@ class SimulatedSpindleDrive:
         return REACHED if abs(self.motor.speed - self.target) < 10 else 0
 
     def write(self, index: int, subindex: int, value: int) -> None:
-        """Apply an object value that the host has written."""
+        """Apply a value that the host has written to an object."""
         self.values[index, subindex] = value
         if index == od.MODE:
             self._change_mode(value)
@@ -133,7 +142,9 @@ class SimulatedSpindleDrive:
             self.power_states.apply_control_word(value)
 
     def _change_mode(self, mode: int) -> None:
-        """Change the mode of operation, only at standstill and while no positions are played."""
+        """Change the mode of operation, if the spindle is at standstill and the drive is not executing
+        positions.
+        """
         if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
         self.mode = mode
@@ -143,24 +154,28 @@ class SimulatedSpindleDrive:
             self.axis_drive.setpoint_position, self.axis_drive.setpoint_velocity = self.spindle_servo.p, 0.0
 
     def handle_host_loss(self) -> None:
-        """Quick stop after the loss of the host if the abort connection option is 3."""
+        """Make a quick stop after the loss of the host, if the abort connection option is 3."""
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
             self.power_states.quick_stop()
 
     def reset(self) -> None:
-        """Clear power, mode, target and all stored values."""
+        """Switch the power off, and clear the mode, the target and all stored values."""
         self.axis_drive.reset()
         self.mode = self.target = 0
         self.values.clear()
 
     @property
     def is_idle(self) -> bool:
-        """Whether further steps change nothing until a frame arrives or the motor's speed changes."""
+        """Return whether the drive stays unchanged until a frame arrives or the speed of the
+        motor changes.
+        """
         obeyed = self.power_states.is_powered == (self._ordered is not None)
         return obeyed and not self.is_axis_mode and not self.power_states.is_braking
 
     def advance(self, now: float) -> None:
-        """Command the motor's speed by mode and power state, and end braking at standstill."""
+        """Command the motor speed that the mode and the power state require, and end braking at
+        standstill.
+        """
         dt, self.last_step_s = now - self.last_step_s, now
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:
             self.power_states.trip()

@@ -1,4 +1,4 @@
-"""Connections of the grblHAL simulator to the host: a pseudo terminal or a TCP port."""
+"""Connections of the grblHAL simulator to the host through a pseudo terminal or a TCP port."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _CYCLE_S = 0.002  # s
 
 
 class PtyConnection:
-    """Controller side of a pseudo terminal; the host opens ``device_name`` as a serial device."""
+    """Controller side of a pseudo terminal.
+
+    The host opens ``device_name`` as a serial device.
+    """
 
     def __init__(self) -> None:
         self._ours, self._theirs = os.openpty()
@@ -24,7 +27,7 @@ class PtyConnection:
         self.device_name = os.ttyname(self._theirs)
 
     def transfer_bytes(self, firmware: GrblFirmware, timeout_s: float = 0.0) -> None:
-        """Transfer bytes in both directions; wait up to ``timeout_s`` seconds for input."""
+        """Transfer bytes in both directions, after waiting at most ``timeout_s`` seconds for input."""
         ready, _, _ = select.select([self._ours], [], [], timeout_s)
         if ready:
             firmware.receive_bytes(os.read(self._ours, 4096))
@@ -39,7 +42,10 @@ class PtyConnection:
 
 
 class TcpConnection:
-    """Controller side of a TCP port for one host at a time; the controller continues without a host."""
+    """Controller side of a TCP port that accepts one host at a time.
+
+    The controller continues to run without a host.
+    """
 
     def __init__(self, host: str, port: int) -> None:
         try:
@@ -52,7 +58,7 @@ class TcpConnection:
         self._host: socket.socket | None = None
 
     def transfer_bytes(self, firmware: GrblFirmware, timeout_s: float = 0.0) -> None:
-        """Transfer bytes in both directions; wait up to ``timeout_s`` seconds for input."""
+        """Transfer bytes in both directions, after waiting at most ``timeout_s`` seconds for input."""
         ends = [self._listener] + ([self._host] if self._host else [])
         ready, _, _ = select.select(ends, [], [], timeout_s)
         if self._listener in ready:
@@ -68,7 +74,7 @@ class TcpConnection:
                 self._hang_up()
 
     def close(self) -> None:
-        """Close the connection and the port."""
+        """Close the connection to the host and the port."""
         self._hang_up()
         self._listener.close()
 
@@ -92,7 +98,9 @@ class TcpConnection:
 def run_simulator(
     connection: PtyConnection | TcpConnection, firmware: GrblFirmware, should_continue: Callable[[], bool]
 ) -> None:
-    """Connect the simulator to the host while ``should_continue`` returns True, then close the connection."""
+    """Connect the simulator to the host while ``should_continue`` returns true, and then close the
+    connection.
+    """
     try:
         while should_continue():
             connection.transfer_bytes(firmware, _CYCLE_S)

@@ -1,4 +1,4 @@
-"""Simulated grblHAL controller: buffers, real-time bytes, states, alarms, resets and status reports."""
+"""Simulated grblHAL controller, with buffers, real-time bytes, states, alarms, resets and status reports."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _OVERRIDE_STEPS = {0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
 
 
 def execute_realtime_byte(firmware: GrblFirmware, byte: int) -> None:
-    """Execute a real-time byte immediately."""
+    """Execute a real-time byte, which bypasses the receive buffer, immediately."""
     if byte == 0x18:
         firmware.reset()
     elif byte == 0x19:
@@ -45,7 +45,10 @@ def execute_realtime_byte(firmware: GrblFirmware, byte: int) -> None:
 
 
 def _stop_motion(m: GrblFirmware) -> None:
-    """Stop without deceleration and clear most alarms; while a thread waits for its index, reset instead."""
+    """Stop without deceleration, and clear most alarms.
+
+    While a thread waits for its index, the controller restarts instead.
+    """
     if m.is_reset_required:
         return
     if m.is_waiting_for_index:
@@ -102,7 +105,7 @@ _INDEX_TIMEOUT_S = 5.0  # Seconds that a thread waits for the index.
 
 
 def step_firmware(firmware: GrblFirmware) -> None:
-    """Advance the controller by ``STEP_S``."""
+    """Advance the controller by one step of ``STEP_S`` seconds."""
     if firmware.homing_end is not None:
         _home(firmware, *firmware.homing_end)
         return
@@ -139,9 +142,9 @@ def _home(m: GrblFirmware, until: float, axes: int) -> None:
 
 
 def _waits_for_index(m: GrblFirmware, block: PlannedBlock) -> bool:
-    """Return whether a thread still waits for its start, which is at the second index after the request.
+    """Return whether a thread is waiting for its start, which is at the second index after the request.
 
-    No byte is processed during the wait. A missing index raises alarm 14 after 5 s.
+    The controller processes no bytes during this wait. If the index is missing for 5 s, alarm 14 is raised.
     """
     if not block.is_thread or m.motion.has_started:
         return False
@@ -165,10 +168,11 @@ _BUSY_STATES = frozenset(("Run", "Hold", "Jog", "Home", "Door"))
 
 @dataclass(slots=True)
 class ReportGenerator:
-    """Generator of status reports that decides when offsets and overrides are included.
+    """Generator of status reports, which decides when a report includes offsets and overrides.
 
-    Both are included at intervals and after a change. If both are due, the offsets wait for the next report.
-    A full report has both. Firmware of 2023 delayed the overrides and never put them into a full report.
+    Both are included at intervals and after a change. If both are due, the offsets follow in the next
+    report. A full report includes both. Firmware of 2023 delayed the overrides and never included them in a
+    full report.
     """
 
     reports_until_offsets: int = 0
@@ -178,7 +182,7 @@ class ReportGenerator:
     accessories_due: bool = False
 
     def format_report(self, firmware: GrblFirmware, *, full: bool) -> str:
-        """Return one report without its line end."""
+        """Return the text of one report without its line end."""
         busy = firmware.state.partition(":")[0] in _BUSY_STATES
         overrides = self._overrides(full, busy)
         offsets = self._offsets(full, overrides, busy)
@@ -206,7 +210,7 @@ class ReportGenerator:
 
 
 def _round_to_step(position: float, steps: float) -> float:
-    """Round a position to whole steps."""
+    """Round a position to a whole number of motor steps; ``steps`` is the number of steps per mm."""
     return round(position * steps) / steps
 
 
@@ -249,10 +253,11 @@ _MIN_FREE_BYTES = 100  # With this many free bytes or fewer, the simulator reads
 
 
 class GrblFirmware:
-    """Simulated controller: ``feed`` takes received bytes, ``pop_output`` returns bytes for the host.
+    """Simulated grblHAL controller.
 
-    ``send_buffer`` buffers bytes for the host. ``receive_buffer`` buffers received bytes that are not yet
-    interpreted.
+    ``receive_bytes`` receives bytes from the host, and ``pop_output`` returns bytes for the host.
+    ``send_buffer`` contains bytes for the host, and ``receive_buffer`` contains received bytes that are not
+    interpreted yet.
     """
 
     def __init__(self, clock: Clock, behavior: SimulatorBehavior | None = None) -> None:
@@ -291,14 +296,16 @@ class GrblFirmware:
     # --- the wire -----------------------------------------------------------------------------------------
 
     def receive_bytes(self, data: bytes) -> None:
-        """Receive bytes from the host; real-time bytes take effect immediately, others are buffered."""
+        """Receive bytes from the host; real-time bytes take effect immediately, and other bytes are
+        buffered.
+        """
         self.advance()
         self._wire += data
         self._take_in()
         self.program.execute_lines()
 
     def pop_output(self) -> bytes:
-        """Return the buffered bytes for the host."""
+        """Remove and return the buffered bytes for the host."""
         self.advance()
         data, self.send_buffer = bytes(self.send_buffer), bytearray()
         return b"" if self.behavior.sends_nothing else data
@@ -318,14 +325,17 @@ class GrblFirmware:
             self.spindle.advance_to(self.time_s)
 
     def reset(self) -> None:
-        """Perform the reset 0x18: modes are lost, and also the position if an axis moves."""
+        """Perform the reset of byte 18h.
+
+        The modes are lost, and the position is also lost if an axis is moving.
+        """
         if "E" in self.active_pins:
             return
         moved = self.motion.is_moving or self.homing_end is not None or self.index_wait_start_s is not None
         self.restart(moved)
 
     def power_cycle(self) -> None:
-        """Switch the power off and on: the position becomes 0 and homing is lost."""
+        """Switch the power off and on, so that the position becomes 0 and the axes are no longer homed."""
         self.alarm_number, self.homed_axes = 0, 0
         self.is_door_open = self.is_reset_required = False
         self.motion.position = (0.0, 0.0)
@@ -336,7 +346,7 @@ class GrblFirmware:
 
     @property
     def _is_idle(self) -> bool:
-        """Whether only the spindle changes until the host sends something."""
+        """Return whether only the spindle can change until the host sends bytes."""
         busy = self.motion.block_queue or self.homing_end is not None or not self.program.is_line_complete
         return not (busy or self.receive_buffer or self._wire)
 
@@ -356,7 +366,7 @@ class GrblFirmware:
                 self.receive_buffer.append(byte)
 
     def restart(self, position_lost: bool) -> None:
-        """Restart the controller; with ``position_lost``, the position is lost and alarm 3 is raised."""
+        """Restart the controller; with ``position_lost``, raise alarm 3 because the position is lost."""
         self.abrupt_stop_count += self.motion.is_moving
         self.stop_everything()
         self.is_reset_required = False
@@ -386,12 +396,12 @@ class GrblFirmware:
 
     @property
     def receive_buffer_free(self) -> int:
-        """The free bytes of the receive buffer."""
+        """Return the number of free bytes in the receive buffer."""
         return _BUFFER_SIZE - len(self.receive_buffer)
 
     @property
     def state(self) -> str:
-        """The state as in a status report."""
+        """Return the state with the name that status reports use."""
         if self.alarm_number:
             return f"Alarm:{self.alarm_number}"
         if self.homing_end is not None:
@@ -405,31 +415,34 @@ class GrblFirmware:
         return "Idle"
 
     def format_state(self, full: bool) -> str:
-        """Return the state as it is reported; ``$10`` decides whether an alarm has its number."""
+        """Return the state as it is reported.
+
+        An alarm includes its number in a full report, or if setting ``$10`` requires it.
+        """
         numbered = full or int(self.registers[10]) & 0x400
         return self.state if numbered else self.state.replace(f"Alarm:{self.alarm_number}", "Alarm")
 
     @property
     def is_waiting_for_index(self) -> bool:
-        """Whether a thread waits for its index."""
+        """Return whether a thread is waiting for the spindle index."""
         return self.index_wait_start_s is not None
 
     @property
     def is_reading(self) -> bool:
-        """Whether lines are read now."""
+        """Return whether the controller reads lines at present."""
         held = (self.is_in_hold or self.is_door_open) and not self.alarm_number
         return not (self.is_waiting_for_index or self.homing_end is not None or held)
 
     @property
     def commanded_rpm(self) -> float:
-        """The commanded spindle speed in rpm, signed, after override and limits."""
+        """Return the commanded spindle speed in rpm, signed, with the override and the limits applied."""
         if not self.programmed_rpm or self.is_spindle_paused:
             return 0.0
         rpm = abs(self.programmed_rpm) * self.spindle_percent / 100.0
         return math.copysign(min(max(rpm, self.registers[31]), self.registers[30]), self.programmed_rpm)
 
     def raise_alarm(self, number: int) -> None:
-        """Stop immediately and raise an alarm; the present block stays in the planner."""
+        """Stop immediately and raise an alarm; the present block remains in the planner."""
         self.alarm_number = number
         self.abrupt_stop_count += self.motion.is_moving
         self.motion.speed = 0.0
@@ -440,11 +453,11 @@ class GrblFirmware:
         self.send_text(f"ALARM:{number}\r\n")
 
     def start_homing(self, axes: int) -> None:
-        """Start homing of the axes in a bit mask, which takes 0.5 s in the simulator."""
+        """Start to home the axes in the bit mask ``axes``, which takes 0.5 s in the simulator."""
         self.homing_end = self.time_s + 0.5, axes
 
     def read_next_line(self) -> str | None:
-        """Return the next complete line of the buffer, or None."""
+        """Remove and return the next complete line of the buffer, or None if no line is complete."""
         if b"\n" not in self.receive_buffer:
             return None
         line, _, rest = bytes(self.receive_buffer).partition(b"\n")
@@ -452,7 +465,7 @@ class GrblFirmware:
         return line.decode("ascii", "replace").strip()
 
     def queue_block(self, block: PlannedBlock) -> None:
-        """Append a block to the planner; a block without length is ignored."""
+        """Append a block to the planner; a block of zero length is ignored."""
         if block.length_mm > 0.0:
             self.motion.block_queue.append(block)
             self.is_jogging = block.is_jog
@@ -462,7 +475,7 @@ class GrblFirmware:
         self.send_buffer += text.encode("ascii")
 
     def acknowledge_line(self, error: int = 0) -> None:
-        """Acknowledge a line with ``ok`` or an error code."""
+        """Acknowledge a line with ``ok``, or with an error code if ``error`` is not 0."""
         if not error and self.behavior.garbled_replies:
             self.send_buffer += self.behavior.garbled_replies.pop(0) + b"\r\n"
         else:

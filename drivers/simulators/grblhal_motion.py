@@ -1,6 +1,6 @@
 """Planner and axes of the grblHAL simulator.
 
-The speed on the path always permits a stop at the end of the last block.
+The speed along the path always permits a stop at the end of the last block.
 """
 
 from __future__ import annotations
@@ -24,9 +24,10 @@ _STRAIGHT = 0.999999  # Cosine beyond which a corner counts as straight or as a 
 
 @dataclass(slots=True)
 class PlannedBlock:
-    """Block in the planner, with its path as a function of the distance in mm from its start.
+    """Block in the planner, whose path is a function of the distance in mm from the start of the block.
 
-    With ``is_per_rev``, ``max_speed`` is in mm per revolution. ``is_thread`` waits for the spindle index.
+    If ``is_per_rev`` is true, ``max_speed`` is in mm per revolution. A block with ``is_thread`` waits for
+    the spindle index.
     """
 
     number: int
@@ -40,7 +41,7 @@ class PlannedBlock:
     limits: tuple[float, float] | None = None  # Limits of the axes: mm/s, mm/s².
 
     def get_direction_at(self, distance_mm: float) -> Position:
-        """Return the unit direction of the path at a distance in mm."""
+        """Return the unit direction of the path at ``distance_mm`` from the start of the block."""
         if isinstance(self.path, _Line):
             return self.path.direction
         first = min(max(distance_mm - _HEADING_STEP_MM, 0.0), max(self.length_mm - _HEADING_STEP_MM, 0.0))
@@ -50,7 +51,7 @@ class PlannedBlock:
 
 
 class _Line:
-    """Straight path from ``start`` to ``end`` with a constant ``heading``."""
+    """Straight path from ``start`` to ``end``, which has a constant direction."""
 
     def __init__(self, start: Position, end: Position) -> None:
         self._start, self._dx, self._dz = start, end[0] - start[0], end[1] - start[1]
@@ -63,7 +64,7 @@ class _Line:
 
 
 def make_line_path(start: Position, end: Position) -> Shape:
-    """Return the length in mm and the path of a line."""
+    """Return the length in mm and the path of a straight line."""
     line = _Line(start, end)
     return line.length_mm, line
 
@@ -71,10 +72,10 @@ def make_line_path(start: Position, end: Position) -> Shape:
 def make_arc_path(
     start: Position, end: Position, center: Position, *, counterclockwise: bool
 ) -> Shape | None:
-    """Return the length in mm and the path of an arc in the ZX plane, or None if the end is not on it.
+    """Return the length in mm and the path of an arc in the ZX plane, or None if ``end`` is not on the arc.
 
-    The angle counts from Z to X. A sweep that is zero or has the wrong sign is changed by one revolution, so
-    an arc that rounds to zero becomes a full circle.
+    The angle counts from Z to X. A sweep that is zero or has the wrong sign is changed by one revolution,
+    so an arc whose angle rounds to zero becomes a full circle.
     """
     radius = math.dist(start, center)
     off = abs(math.dist(end, center) - radius)
@@ -99,7 +100,7 @@ def make_arc_path(
 
 
 class GrblMotion:
-    """Planner and axes, advanced in small steps by the firmware."""
+    """Planner and axes, which the firmware advances in small steps."""
 
     def __init__(self, registers: SettingRegisters, capacity: int) -> None:
         self.block_queue: deque[PlannedBlock] = deque()
@@ -114,17 +115,17 @@ class GrblMotion:
 
     @property
     def has_started(self) -> bool:
-        """Whether the first block has started, also while it is in feed hold."""
+        """Return whether the first block has started; a block in feed hold has also started."""
         return self._s > 0.0 or self.speed > 0.0
 
     @property
     def free_blocks(self) -> int:
-        """The number of blocks that the planner can still accept."""
+        """Return the number of additional blocks that the planner can accept."""
         return self.capacity - len(self.block_queue)
 
     @property
     def is_moving(self) -> bool:
-        """Whether the axes move."""
+        """Return whether the axes are moving."""
         return self.speed > 0.0
 
     def discard_blocks(self) -> None:
@@ -133,7 +134,7 @@ class GrblMotion:
         self.speed = self._s = 0.0
 
     def advance(self, dt: float, spindle_rev_per_s: float) -> None:
-        """Advance by ``dt`` seconds at a spindle speed of ``turns_per_s``."""
+        """Advance the axes by ``dt`` seconds at a spindle speed of ``spindle_rev_per_s``."""
         if not self.block_queue:
             self.speed = 0.0
             return
@@ -148,9 +149,9 @@ class GrblMotion:
         self._go(self.speed * dt)
 
     def _limits(self, block: PlannedBlock, at: float) -> tuple[float, float]:
-        """Return the speed and acceleration limits at ``at`` mm from the start of the block.
+        """Return the speed and acceleration limits of a block at a distance of ``at`` mm from its start.
 
-        The limits of a line are constant.
+        The limits of a straight line are constant.
         """
         if block.limits is None or not isinstance(block.path, _Line):
             heading = block.get_direction_at(at)
@@ -161,8 +162,9 @@ class GrblMotion:
         return block.limits
 
     def _target_speed(self, block: PlannedBlock, max_speed: float, turns_per_s: float) -> float:
-        """Return the speed of a block in mm/s, limited to ``max_speed``; no override affects jogs and
-        threads.
+        """Return the speed of a block in mm/s, limited to ``max_speed``.
+
+        Overrides do not affect jogs and threads.
         """
         speed = min(block.max_speed * turns_per_s if block.is_per_rev else block.max_speed, max_speed)
         if block.is_rapid:
@@ -170,7 +172,8 @@ class GrblMotion:
         return speed if block.is_jog or block.is_thread else min(speed * self.feed_override, max_speed)
 
     def _limit_in_direction(self, first: int, heading: Position) -> float:
-        """Return the limit along a direction from the settings of X and Z, as planner.c does.
+        """Return the limit along a direction from the settings of X and Z, as ``planner.c`` of grblHAL
+        does.
 
         ``first`` is the number of the setting for X.
         """
@@ -180,7 +183,8 @@ class GrblMotion:
         return min(along_x, along_z) if x or z else self._registers[first]
 
     def _allowed_speed(self, accel: float, turns_per_s: float) -> float:
-        """Return the highest speed in mm/s that still permits all corners ahead and the stop at the end.
+        """Return the highest speed in mm/s that permits all corners ahead and the stop at the end of the
+        path.
 
         ``accel`` is the acceleration in the present block in mm/s².
         """
@@ -199,7 +203,11 @@ class GrblMotion:
         return min(most, math.sqrt(brakes)) + _MIN_SPEED
 
     def _corner_speed(self, previous: PlannedBlock, block: PlannedBlock) -> float:
-        """Return the speed limit at the corner of two blocks by the deviation ``$11``; a reversal stops."""
+        """Return the speed limit at the corner between two blocks in mm/s, from the junction deviation
+        ``$11``.
+
+        The limit is 0 if the path reverses.
+        """
         (x0, z0), (x1, z1) = previous.get_direction_at(previous.length_mm), block.get_direction_at(0.0)
         cosine = x0 * x1 + z0 * z1
         if abs(cosine) > _STRAIGHT:

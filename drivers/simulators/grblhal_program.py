@@ -1,4 +1,4 @@
-"""Line interpreter of the grblHAL simulator: modes, functions, blocks and ``$`` commands."""
+"""Line interpreter of the grblHAL simulator for modes, functions, blocks and ``$`` commands."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from drivers.simulators.spindle_motor import SimulatedSpindle
 
 
 class ProgramController(Protocol):
-    """Parts of the controller that the line interpreter uses."""
+    """Members of the controller that the line interpreter uses."""
 
     behavior: SimulatorBehavior
     registers: SettingRegisters
@@ -88,7 +88,7 @@ _PLAIN_CODES = frozenset(("G4", "G10", "G49", "G53", "G54", "G92.1"))
 
 @dataclass(slots=True)
 class ModalState:
-    """Modal state with the values after a reset or stop."""
+    """Modal state of the controller; the default values apply after a reset or stop."""
 
     motion: str = "G0"
     plane: str = "G17"
@@ -101,7 +101,7 @@ class ModalState:
     is_hold_disabled: bool = False  # M53 P0
 
     def take(self, code: str, *, lathe: bool) -> int:
-        """Apply a G word and return the error code, or 0 without an error."""
+        """Apply a G word, and return its error code, or 0 without an error."""
         if code in _LATHE_CODES and not lathe:
             return 20
         if code in _MODAL_GROUPS:
@@ -111,7 +111,7 @@ class ModalState:
         return 0
 
     def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, lathe: bool) -> str:
-        """Return the modal state as the report of ``$G``."""
+        """Return the modal state as text, in the format of the reply to ``$G``."""
         spindle = "M5" if not rpm else "M3" if rpm > 0.0 else "M4"
         coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
         radius, speed = (f" {self.radius}", f" {self.speed}") if lathe else ("", "")
@@ -131,7 +131,10 @@ _BLOCKING = frozenset(("$X", "$J", "$H", "$HX", "$HY", "$HZ"))  # Rejected after
 
 
 def format_identity(controller: ProgramController) -> list[str]:
-    """Return the lines of ``$I``; the auxiliary ports appear only if there are any."""
+    """Return the lines of the reply to ``$I``.
+
+    If the controller has no auxiliary ports, the line for them is omitted.
+    """
     quirks = controller.behavior
     lathe = "LATHE," if controller.registers.is_lathe_mode else ""
     home = "HOME," if int(controller.registers[22]) & 1 else ""
@@ -151,9 +154,9 @@ def format_identity(controller: ProgramController) -> list[str]:
 
 
 def execute_system_command(controller: ProgramController, line: str, modes: str) -> int | None:
-    """Execute a ``$`` line and return its error code, or 0 without an error.
+    """Execute a ``$`` line, and return its error code, or 0 without an error.
 
-    Return None if the acknowledgment follows later. ``modes`` is the report of ``$G``.
+    Return None if the line is acknowledged later. ``modes`` is the reply to ``$G``.
     """
     command = line.partition("=")[0]
     if controller.is_reset_required and (command in _BLOCKING):
@@ -213,7 +216,7 @@ __all__ = ["LineInterpreter", "ModalState"]
 
 
 class LineInterpreter:
-    """Executor of the received lines in order, as the planner and required standstills permit."""
+    """Interpreter that executes received lines in order, as the planner and required standstills permit."""
 
     def __init__(self, machine: ProgramController) -> None:
         self._m = machine
@@ -228,7 +231,7 @@ class LineInterpreter:
         self.active_wait: FunctionWait | None = None  # Wait of a function, which is acknowledged at its end.
 
     def format_modes(self) -> str:
-        """Return the report of ``$G``."""
+        """Return the text of the reply to ``$G``."""
         m = self._m
         return self.modes.told(m.programmed_rpm, self._f, m.output_states, lathe=m.registers.is_lathe_mode)
 
@@ -238,7 +241,7 @@ class LineInterpreter:
         self.active_wait = None
 
     def execute_lines(self) -> None:
-        """Execute the received lines until one has to wait."""
+        """Execute received lines until a line must wait."""
         machine = self._m
         if self.active_wait is not None and not self._end_wait(self.active_wait):
             return
@@ -258,11 +261,14 @@ class LineInterpreter:
 
     @property
     def is_line_complete(self) -> bool:
-        """Whether the preceding line is complete."""
+        """Return whether the execution of the previous line is complete."""
         return self._waits is None and not self._cuts and self.active_wait is None
 
     def _end_wait(self, wait: FunctionWait) -> bool:
-        """Acknowledge the function when its wait is over; a speed that is not reached raises alarm 14."""
+        """Acknowledge the function if its wait has ended, and return whether the wait has ended.
+
+        If the spindle has not reached its speed, alarm 14 is raised.
+        """
         if not wait.update_and_check(self._m):
             return False
         self.active_wait = None
@@ -365,7 +371,7 @@ class LineInterpreter:
         return 0
 
     def _apply_spindle(self, code: str, rpm: float) -> None:
-        """Command the spindle; only a start, stop or reversal waits for the speed."""
+        """Command the spindle; the line waits for the speed only after a start, stop or reversal."""
         machine = self._m
         before = math.copysign(1.0, machine.programmed_rpm) if machine.programmed_rpm else 0.0
         way = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
@@ -426,7 +432,10 @@ class LineInterpreter:
 
 
 def _waits_for_rest(line: str) -> bool:
-    """Return whether a line waits for an empty planner: functions, dwells and threads except M64 and M65."""
+    """Return whether a line must wait until the planner is empty.
+
+    This applies to M functions except M64 and M65, and to dwells and threads.
+    """
     words = {(letter, float(value)) for letter, value in _WORD.findall(line) if letter in "GM"}
     return any(
         (letter == "M" and v not in {64, 65}) or (letter == "G" and v in {4, 33}) for letter, v in words

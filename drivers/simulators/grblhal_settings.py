@@ -1,7 +1,7 @@
-"""Settings of the grblHAL simulator, its switchable behavior, and its waits for the spindle and coolant.
+"""Settings of the grblHAL simulator, its adjustable behavior, and its waits for the spindle and coolant.
 
-The waits are those of ``spindle_set_state_wait`` and ``coolant_set_state`` of grblHAL. During a wait, no line
-is read or acknowledged, reports are sent, and a feed hold stops the clock of the wait.
+The waits are those of ``spindle_set_state_wait`` and ``coolant_set_state`` in grblHAL. During a wait, no
+line is read or acknowledged, reports are sent, and a feed hold stops the timer of the wait.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ from drivers.simulators.spindle_motor import SimulatedSpindle
 class SimulatorBehavior:
     """Behavior of the simulator that tests can change.
 
-    The defaults are those of the firmware's simulator, with an encoder, auxiliary ports and the values of a
-    machine file.
+    The default values are those of the simulator that is part of the firmware, but with an encoder,
+    auxiliary ports and the settings of a machine file.
     """
 
     encoder: bool = True
@@ -62,7 +62,7 @@ _DEFAULT_VALUES = {
 
 
 class SettingRegisters:
-    """Setting values of the controller by number."""
+    """Values of the controller settings by setting number."""
 
     def __init__(self, behavior: SimulatorBehavior) -> None:
         self._values = {
@@ -79,15 +79,15 @@ class SettingRegisters:
 
     @property
     def is_lathe_mode(self) -> bool:
-        """Whether the controller is in lathe mode."""
+        """Return whether the controller is in lathe mode."""
         return self._values.get(_MODE, _LATHE) == _LATHE
 
     def format_settings(self) -> list[str]:
-        """Return all settings as lines of ``$$``."""
+        """Return all settings as lines of the reply to ``$$``."""
         return [f"${n}={self._text(n)}" for n in sorted(self._values)]
 
     def store_setting(self, number: int, text: str) -> int:
-        """Store a setting and return the error code, or 0 without an error."""
+        """Store a setting, and return the error code, or 0 without an error."""
         if number not in self._values:
             return 53
         begin = _NUMBER.match(text)  # Text after the number is ignored: 1e3 is 1.
@@ -117,7 +117,7 @@ _STANDSTILL_RPM = 1.0  # rpm
 
 
 class WaitContext(Protocol):
-    """State of the controller that a wait reads."""
+    """Members of the controller that a wait reads."""
 
     registers: SettingRegisters
     spindle: SimulatedSpindle
@@ -130,9 +130,9 @@ class WaitContext(Protocol):
 
 @dataclass(slots=True)
 class FunctionWait:
-    """Wait inside a function: at most ``remaining_s`` seconds, or until the spindle is at speed.
+    """Wait within a function, which ends after ``remaining_s`` seconds or when the spindle is at speed.
 
-    The speed ends the wait only if ``tolerance_percent`` (percent) is above 0.
+    The spindle speed can end the wait only if ``tolerance_percent`` is greater than 0.
     """
 
     remaining_s: float
@@ -142,7 +142,7 @@ class FunctionWait:
     has_failed: bool = False  # The speed was not reached (ALARM:14).
 
     def update_and_check(self, context: WaitContext) -> bool:
-        """Update the wait to the controller's time and return whether it has ended."""
+        """Update the wait to the present time of the controller, and return whether the wait has ended."""
         passed, self.last_update_s = context.time_s - self.last_update_s, context.time_s
         if context.is_in_hold:
             return False
@@ -158,7 +158,7 @@ class FunctionWait:
 
 
 def create_spindle_wait(context: WaitContext, *, spindle_on: bool) -> FunctionWait | None:
-    """Return the wait of M3, M4 or M5, or None if its settings are 0."""
+    """Create the wait of M3, M4 or M5, or return None if its settings are 0."""
     delay, tolerance = (
         context.registers[SPINDLE_ON if spindle_on else SPINDLE_OFF],
         context.registers[TOLERANCE],
@@ -169,6 +169,6 @@ def create_spindle_wait(context: WaitContext, *, spindle_on: bool) -> FunctionWa
 
 
 def create_coolant_wait(context: WaitContext) -> FunctionWait | None:
-    """Return the wait of M7 or M8, or None if its setting is 0."""
+    """Create the wait of M7 or M8, or return None if its setting is 0."""
     delay = context.registers[COOLANT_ON]
     return FunctionWait(delay, 0.0, context.time_s) if delay else None

@@ -1,6 +1,7 @@
-"""LinuxCNC components as far as TurnDesk's part of the HAL file uses them, on cells that replace signals.
+"""Simulated LinuxCNC components that TurnDesk's section of the HAL file uses.
 
-They follow the LinuxCNC sources of 2026. ``limit3`` approaches its limits in a simpler manner.
+The components operate on cells, which replace the HAL signals, and follow the LinuxCNC sources of 2026.
+``limit3`` approaches its limits in a simpler manner.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ _COMPARE_TOLERANCE = 1e-9
 
 
 class RowFifo:
-    """Replacement for ``hal.stream``: a FIFO of rows between a process and the servo thread."""
+    """Replacement for ``hal.stream``, which is a FIFO of rows between a process and the servo thread."""
 
     def __init__(self, depth: int = _DEFAULT_DEPTH) -> None:
         self._rows: deque[tuple[float, ...]] = deque()
@@ -27,21 +28,21 @@ class RowFifo:
 
     @property
     def depth(self) -> int:
-        """The number of rows in the FIFO."""
+        """Return the number of rows in the FIFO."""
         return len(self._rows)
 
     @property
     def writable(self) -> bool:
-        """Whether the FIFO has room for a row."""
+        """Return whether the FIFO has space for another row."""
         return len(self._rows) < self._most
 
     @property
     def readable(self) -> bool:
-        """Whether the FIFO contains a row."""
+        """Return whether the FIFO contains a row."""
         return bool(self._rows)
 
     def write(self, row: tuple[float, ...]) -> None:
-        """Append one row; a row that does not fit is discarded."""
+        """Append one row, or discard the row if the FIFO is full."""
         if self.writable:
             self._rows.append(row)
 
@@ -64,7 +65,7 @@ _FORMULAS = {
 
 
 class ThreadProgram:
-    """Function calls of a thread in their order, compiled into one function on ``cells``."""
+    """Function calls of a HAL thread in order, which are compiled into one function on ``cells``."""
 
     def __init__(self, cells: SignalCells) -> None:
         self._cells = cells
@@ -72,14 +73,17 @@ class ThreadProgram:
         self._lines: list[str] = []
 
     def add_call(self, step: PeriodFunction) -> None:
-        """Append a call."""
+        """Append the call of a function that is called once per period."""
         self._lines.append(f"steps[{len(self._steps)}](period)")
         self._steps.append(step)
 
     def add_component(
         self, component: str, name: str, pin_lookup: PinLookup, get_pin_value: Callable[[str], float]
     ) -> None:
-        """Append the function of one component; ``value`` returns the value set for a pin or parameter."""
+        """Append the function of one component.
+
+        ``get_pin_value`` returns the configured value of a pin or parameter.
+        """
         if component in _FORMULAS:
             self._lines.append(
                 f"cells[{pin_lookup(f'{name}.out')!r}] = "
@@ -89,7 +93,7 @@ class ThreadProgram:
             self.add_call(_COMPONENT_STEPS[component](self._cells, name, pin_lookup, get_pin_value))
 
     def compile_calls(self) -> PeriodFunction:
-        """Compile the calls into one function, which is several times faster than single calls."""
+        """Compile all calls into one function, which is several times faster than separate calls."""
         names: dict[str, Any] = {"cells": self._cells, "steps": self._steps}
         exec("\n    ".join(["def run(period):", *self._lines, "return"]), names)
         run: PeriodFunction = names["run"]
@@ -146,9 +150,9 @@ def _timedelay(cells: SignalCells, name: str, at: PinLookup, value: Callable[[st
 def _create_limit3(
     cells: SignalCells, name: str, at: PinLookup, value: Callable[[str], float]
 ) -> PeriodFunction:
-    """Return the function of ``limit3``.
+    """Return the function of the component ``limit3``.
 
-    Values within the limits pass unchanged. Otherwise the output brakes and catches up.
+    Values within the limits pass unchanged. Otherwise the output brakes and then catches up with the input.
     """
     in_, load, out = (at(f"{name}.{pin}") for pin in ("in", "load", "out"))
     maxv, maxa = value(f"{name}.maxv"), value(f"{name}.maxa")
@@ -185,9 +189,9 @@ _COMPONENT_STEPS = {
 
 
 def create_streamer(cells: SignalCells, fifo: RowFifo, enable: str, pins: list[str]) -> PeriodFunction:
-    """Return a function that writes one row of ``fifo`` to the pins per period while ``enable`` is on.
+    """Return a function that writes one row of ``fifo`` to the pins in each period while ``enable`` is on.
 
-    Without a new row, the pins keep their values.
+    If there is no new row, the pins retain their values.
     """
 
     def step(_period: float) -> None:
@@ -208,7 +212,7 @@ def create_sampler(cells: SignalCells, fifo: RowFifo, pins: list[str]) -> Period
 
 
 def watchdog(cells: SignalCells, input_: str, enable: str, ok_output: str, timeout: float) -> PeriodFunction:
-    """Return a function that clears ``ok_output`` when the input does not change for ``timeout`` seconds.
+    """Return a function that clears ``ok_output`` if the input does not change for ``timeout`` seconds.
 
     The output remains off until ``enable`` is switched off and on again.
     """

@@ -1,7 +1,7 @@
-"""Simulator of the HAL backend: TurnDesk's part of the HAL file and the real bridge on a simulated machine.
+"""Simulator of the HAL backend, which runs the real bridge on a simulated machine.
 
-HAL's servo thread is simulated component by component from the same description that becomes the HAL file. A
-wiring error in the file therefore appears in the simulator.
+The servo thread of HAL is simulated component by component, from the same description that produces the HAL
+file. A wiring error in the file therefore also appears in the simulator.
 """
 
 from __future__ import annotations
@@ -40,7 +40,10 @@ _INDEX_REV = 0.3  # Position of the spindle's index in revolutions.
 
 
 class ServoThread:
-    """TurnDesk's part of the servo thread in its order; ``cells`` are indexed by signal or pin."""
+    """TurnDesk's section of the servo thread, whose functions run in the order of the HAL file.
+
+    ``cells`` contains the values by the name of a signal or pin.
+    """
 
     def __init__(self, border: HalSection) -> None:
         self.cells: SignalCells = {}
@@ -61,7 +64,9 @@ class ServoThread:
         )  # Runs one period of the thread; the argument is its length in s.
 
     def find_cell(self, pin: str) -> str:
-        """Return the cell of one of TurnDesk's pins."""
+        """Return the name of the cell for one of TurnDesk's pins, and create the cell if it does
+        not exist.
+        """
         cell = self._cell.get(pin, pin)
         self.cells.setdefault(cell, 0.0)
         return cell
@@ -85,14 +90,14 @@ class ServoThread:
             program.add_component(component[call], call, self.find_cell, lambda pin: values.get(pin, 0.0))
 
     def _list_pins(self, call: str) -> list[str]:
-        """Return the cells of the numbered pins of a streamer or sampler."""
+        """Return the cells of the numbered pins of a streamer or sampler, in the order of their numbers."""
         numbered = re.compile(rf"{re.escape(call)}\.pin\.(\d+)")
         found = {int(m[1]): cell for pin, cell in self._cell.items() if (m := numbered.fullmatch(pin))}
         return [found[n] for n in range(len(found))]
 
 
 class BridgePins:
-    """Pins of the bridge's HAL component, mapped to the cells of the thread."""
+    """Pins of the bridge's HAL component, mapped to the cells of the servo thread."""
 
     def __init__(self, thread: ServoThread) -> None:
         self._cells = thread.cells
@@ -106,7 +111,7 @@ class BridgePins:
 
 
 class _AxisCells(NamedTuple):
-    """Axis with the cells of its pins; an empty name means that the pin does not exist."""
+    """Axis and the cells of its pins; an empty name means that the pin does not exist."""
 
     name: str
     servo: SimulatedServo
@@ -118,12 +123,14 @@ class _AxisCells(NamedTuple):
 
 
 class HalPlant(SimulatedPlant):
-    """Simulated machine connected to the pins of the thread."""
+    """Simulated machine that is connected to the pins of the servo thread."""
 
     run_periods: Callable[[float], None]
 
     def advance(self) -> float:
-        """Advance the model to the present time of the clock in periods, and return this time in seconds."""
+        """Advance the model period by period to the present time of the clock, and return this time in
+        seconds.
+        """
         now = self.clock.now()
         with self.lock:
             self._apply_faults(now)
@@ -136,7 +143,7 @@ class HalPlant(SimulatedPlant):
     _at = 0.0
 
     def trip_drives(self, fault: str) -> None:
-        """Set the fault pin of the drive that is named before the colon."""
+        """Set the fault pin of the drive whose name is before the colon in ``fault``."""
         self.faulty_axes.add(fault.partition(":")[0])
 
     faulty_axes: set[str]
@@ -150,7 +157,7 @@ class HalPlant(SimulatedPlant):
 
 
 class HalSimulator:
-    """Simulated machine, servo thread and bridge on one clock, which implements ``BridgeLink``."""
+    """Implementation of ``BridgeLink`` with a simulated machine, servo thread and bridge on one clock."""
 
     warnings: tuple[str, ...] = ()
 
@@ -201,7 +208,10 @@ class HalSimulator:
     # --- the link -----------------------------------------------------------------------------------------
 
     def restart_bridge(self) -> HalSimulator:
-        """Restart the bridge if it has ended. Raises DriverError while the cable is disconnected."""
+        """Restart the bridge if it has ended, and return this simulator.
+
+        Raises DriverError while the cable is disconnected.
+        """
         if self.is_cable_disconnected:
             raise DriverError("HAL does not load: hm2_eth: the board does not respond", "hal-setup")
         self.board_error_count = 0
@@ -213,13 +223,19 @@ class HalSimulator:
         return self
 
     def send(self, data: bytes) -> None:
-        """Send a packet to the bridge. Raises DriverError if its process has ended."""
+        """Send a packet to the bridge.
+
+        Raises DriverError if the bridge process has ended.
+        """
         if self.is_bridge_killed:
             raise DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
         self.bridge.queue_packet(*unpack_packet(data))
 
     def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
-        """Yield the packets that the bridge has sent. Raises DriverError if its process has ended."""
+        """Yield the packets that the bridge has sent.
+
+        Raises DriverError if the bridge process has ended.
+        """
         self.plant.advance()
         if self.is_bridge_killed:
             raise DriverError("HAL bridge process has ended", "hal-bridge")
@@ -230,7 +246,7 @@ class HalSimulator:
     has_shut_down = True  # Takes no time in the simulator.
 
     def stop_bridge(self) -> None:
-        """Stop the axes by their ramps and end the bridge."""
+        """Stop the axes with their ramps and end the bridge."""
         self.bridge.queue_packet({"do": "ramp-off"}, ())
         self.bridge.has_driver_ended = True
 
@@ -258,7 +274,10 @@ class HalSimulator:
             self._outbox.append(self.bridge.encode_report())
 
     def _read_board(self, t: float) -> None:
-        """Simulate hm2_read, which skips reading without packets and reports an error after a few periods."""
+        """Simulate the function hm2_read of the board.
+
+        If no packets arrive, the function skips reading and reports an error after a few periods.
+        """
         if not self.is_cable_disconnected:
             self._read_machine(t)
             return
@@ -269,7 +288,7 @@ class HalSimulator:
             self._set(self.config.table.link_fault, True)
 
     def _coast(self, t: float, period: float) -> None:
-        """Simulate the watchdog of the board.
+        """Simulate the reaction of the board's watchdog.
 
         The axes coast, the spindle stops, and the outputs change to their safe states.
         """
@@ -308,7 +327,7 @@ class HalSimulator:
         self._read_station(t)
 
     def _read_station(self, t: float) -> None:
-        """Read inputs and pots if they may have changed."""
+        """Copy the inputs and pots of the operator station to the cells if they may have changed."""
         hands = self.plant.read_station(t)
         if hands is self._hands:
             return
@@ -329,7 +348,7 @@ class HalSimulator:
                 self._set(pot.pin, (getattr(state, name) - pot.low_value) / (pot.high_value - pot.low_value))
 
     def _set_encoder(self, turns: float) -> None:
-        """Simulate the spindle encoder, whose count restarts at the index on request."""
+        """Simulate the spindle encoder, whose count restarts at the index when the thread requests this."""
         pins, last = self.config.spindle.pins, self._turns
         self._turns = turns
         if pins.index_enable and self._get(pins.index_enable):
@@ -340,7 +359,7 @@ class HalSimulator:
         self._set(pins.position, turns - self._index_at)
 
     def _drive_axes(self, t: float, period: float) -> None:
-        """Apply the cells that HAL writes to the machine; axes without power coast.
+        """Apply the cells that HAL writes to the machine; an axis without power coasts.
 
         If the thread is stopped, the boards remove the power.
         """
@@ -366,9 +385,9 @@ class HalSimulator:
                 plant.terminals.write(name, on, t)
 
     def _orient(self, t: float) -> None:
-        """Simulate the component ``orient`` and its drive.
+        """Simulate the component ``orient`` and the spindle drive.
 
-        The angle is read at the rising edge of the pin.
+        The angle is read at the rising edge of the pin ``orient``.
         """
         pins, spindle = self.config.spindle.pins, self.plant.spindle
         wanted = bool(self._get(pins.orient)) and not self.is_thread_stopped

@@ -1,6 +1,6 @@
-"""Simulated lathe that catches up with the clock on each call, so that it needs no thread.
+"""Simulated lathe that advances to the present time of the clock on each call, so that it needs no thread.
 
-The model advances on a grid of fixed times. Its behavior does not depend on the time of the calls.
+The model advances on a grid of fixed times, so its behavior does not depend on the times of the calls.
 """
 
 from __future__ import annotations
@@ -33,7 +33,10 @@ _REST_SAMPLE_INTERVAL_S = 0.1  # Seconds between two samples of a machine at res
 
 
 class SimulatedPlant:
-    """Simulated axes, spindle, terminals and operator station with one lock, callable from any thread."""
+    """Simulated axes, spindle, terminals and operator station with one common lock.
+
+    Any thread may call the methods.
+    """
 
     def __init__(self, config: SimConfig, clock: Clock) -> None:
         self.config = config
@@ -72,7 +75,7 @@ class SimulatedPlant:
 
     @property
     def model_time_s(self) -> float:
-        """The time of the model in seconds, which is the last grid point that was calculated."""
+        """Return the time of the last calculated grid point in seconds."""
         return self._k * self.config.step_s
 
     def advance(self) -> float:
@@ -94,7 +97,7 @@ class SimulatedPlant:
     def read_station(self, t: float) -> tuple[StationState, Mapping[str, bool]]:
         """Return the state of the operator station and the inputs at time ``t`` in seconds.
 
-        They are read again only if they may have changed since the last call.
+        They are calculated again only if they may have changed since the last call.
         """
         changes = self.action_lock.action_count + self.terminals.write_count
         if self._hands is None or changes != self._hands_at:
@@ -108,7 +111,7 @@ class SimulatedPlant:
         return self._hands
 
     def is_settled(self) -> bool:
-        """Return whether the machine changes no more until an operator or a test acts.
+        """Return whether the machine remains unchanged until an operator or a test acts.
 
         A machine with scheduled faults is never settled.
         """
@@ -119,14 +122,20 @@ class SimulatedPlant:
             return not moves and self.terminals.is_settled(now) and self.station_panel.is_settled(now)
 
     def _apply_faults(self, now: float) -> None:
-        """Apply the faults that are due at ``now``. The callback is suspended to prevent recursion."""
+        """Apply the faults that are due at time ``now``.
+
+        The callback is suspended during its call to prevent recursion.
+        """
         due, self.apply_due_faults = self.apply_due_faults, None
         if due is not None:
             due(now)
             self.apply_due_faults = due
 
     def splice(self, segments: Segments) -> None:
-        """Splice setpoints into the queue. Raises DriverError if the drives cannot follow them."""
+        """Splice setpoints into the queue.
+
+        Raises DriverError if the drives cannot follow the setpoints.
+        """
         with self.lock:
             now = self.advance()
             self._need_power()
@@ -134,7 +143,10 @@ class SimulatedPlant:
             self.queue.splice(segments, now)
 
     def engage_cam(self, cam: Cam) -> None:
-        """Make the axes follow the spindle along ``cam``. Raises DriverError if the drives cannot do so."""
+        """Make the axes follow the spindle along ``cam``.
+
+        Raises DriverError if the drives cannot follow the cam.
+        """
         with self.lock:
             now = self.advance()
             self._need_power()
@@ -144,9 +156,10 @@ class SimulatedPlant:
             )
 
     def set_power(self, powered: bool) -> None:
-        """Switch the drives on at the present position, or off.
+        """Switch the drives on at their present positions, or off.
 
-        Raises DriverError when switching on in E-stop or with a fault.
+        Raises DriverError if the drives are to be switched on while the E-stop is pressed or a fault is
+        active.
         """
         with self.lock:
             self.advance()
@@ -163,7 +176,7 @@ class SimulatedPlant:
             self.enabled, self._off_at = True, _NO_TIME
 
     def stop(self, mode: StopMode) -> None:
-        """Stop the axes by the ramps of the drives, independently of the host's path."""
+        """Stop the axes with the ramps of the drives, independently of the queued path."""
         with self.lock:
             now = self.advance()
             self._homing = None
@@ -175,9 +188,9 @@ class SimulatedPlant:
                     self._off_at = ends
 
     def home_axis(self, name: str) -> None:
-        """Start to home one axis; an absolute axis returns at once.
+        """Start to home one axis; nothing happens if the axis has an absolute encoder.
 
-        Raises DriverError without power, while homing or while an axis moves.
+        Raises DriverError without power, during another homing, or while an axis moves.
         """
         with self.lock:
             now = self.advance()
@@ -213,9 +226,9 @@ class SimulatedPlant:
             self.spindle.cut_power(now)
 
     def stop_machine(self) -> None:
-        """Stop the axes and the spindle and set the outputs to their safe states, from any thread.
+        """Stop the axes and the spindle, and set the outputs to their safe states.
 
-        Raises DriverError if the lock is not available within 0.2 s.
+        Any thread may call this method. Raises DriverError if the lock is not available within 0.2 s.
         """
         if not self.lock.acquire(timeout=_LOCK_TIMEOUT_S):
             raise DriverError("no response from the simulated machine")
@@ -227,12 +240,12 @@ class SimulatedPlant:
             self.lock.release()
 
     def trip_drives(self, fault: str) -> None:
-        """Record a drive fault, and brake and switch off all axes."""
+        """Set a drive fault, brake all axes and switch their drives off."""
         self.fault = self.fault or fault
         self.stop(StopMode.RAMP_OFF)
 
     def clear_fault(self) -> None:
-        """Clear the fault; the drives remain off until they are enabled again."""
+        """Clear the fault; the drives remain off until they are switched on again."""
         self.advance()
         self.fault = ""
         for servo in self.servos:
@@ -252,7 +265,10 @@ class SimulatedPlant:
             servo.handle_power_loss()
 
     def _advance_axes(self, last: int) -> None:
-        """Move the axes to grid point ``last``. Axes at rest are not calculated step by step."""
+        """Move the axes to grid point ``last``.
+
+        Axes at rest are not calculated step by step.
+        """
         while self._k < last:
             if self.model_time_s >= self._off_at:
                 self._power_off()
@@ -263,7 +279,7 @@ class SimulatedPlant:
             self._reference()
 
     def _advance_at_rest(self, last: int) -> None:
-        """Advance the time to grid point ``last``, or to the time when the drives switch off."""
+        """Advance the time to grid point ``last``, or only to the time when the drives switch off."""
         self.spindle.is_cutting = False
         if self.spindle.slip_fraction:
             self.spindle.set_cutting(self.model_time_s, cutting=False)
@@ -273,7 +289,7 @@ class SimulatedPlant:
         self._k = until
 
     def _is_undisturbed(self) -> bool:
-        """Return whether the axes only follow setpoints in time and nothing requires single steps."""
+        """Return whether the axes only follow time-based setpoints, so that single steps are not required."""
         ordered = self.enabled and self._off_at == _NO_TIME and self._homing is None and not self.fault
         return (
             ordered
@@ -283,7 +299,7 @@ class SimulatedPlant:
         )
 
     def _advance_predicted(self, last: int) -> bool:
-        """Move along the present setpoint piece, at most to grid point ``last``.
+        """Move the axes along the present setpoint piece, at most to grid point ``last``.
 
         Return False if the piece must be calculated step by step.
         """
@@ -331,7 +347,10 @@ class SimulatedPlant:
         self._advance_spindle()
 
     def _follow_setpoints(self, p: tuple[float, ...], v: tuple[float, ...], dt: float) -> bool:
-        """Advance all axes by one step toward setpoint ``p``, ``v``. Return whether a drive has a fault."""
+        """Advance all axes by one step toward the positions ``p`` and velocities ``v``.
+
+        Return whether a drive has a fault.
+        """
         for servo, position, speed in zip(self.servos, p, v, strict=True):
             if servo.follow_setpoint(position, speed, dt) and not self.fault:
                 self.fault = Fault("{axis}: following error", "following", axis=servo.axis.name)
@@ -342,13 +361,13 @@ class SimulatedPlant:
         return bool(self.fault)
 
     def is_cutting(self) -> bool:
-        """Return whether an axis moves at a cutting feed."""
+        """Return whether an axis is moving at a cutting feed."""
         return any(servo.cuts for servo in self.servos)
 
     def _setpoint(self, t: float) -> AxisMotion:
-        """Return the position sent to the drives, the velocity and the queued position at ``t``.
+        """Return the positions sent to the drives, the velocities and the queued positions at time ``t``.
 
-        With the gear, the position sent to the drives compensates for their following error.
+        If the axes follow the spindle, the positions sent to the drives compensate for the following error.
         """
         if not self.queue.is_engaged:
             p, v = self.queue.commanded_state_at(t)
@@ -361,7 +380,7 @@ class SimulatedPlant:
     # --- samples for the scope ----------------------------------------------------------------------------
 
     def _store_sample(self, t: float, demand: tuple[float, ...] | None) -> None:
-        """Sample the present grid point; without power, the demand is the measured position."""
+        """Store a sample of the present grid point; without power, the demand is the measured position."""
         if self.sample_log is None:
             return
         actual = [servo.reading for servo in self.servos]
@@ -371,8 +390,9 @@ class SimulatedPlant:
         self._changed = True
 
     def _store_turning_samples(self, demand: tuple[float, ...] | None, end_point: int) -> None:
-        """Sample the turning spindle up to grid point ``end_point``, exclusive, while the axes are at
-        rest.
+        """Store samples of the turning spindle while the axes are at rest.
+
+        The last sample is at the grid point before ``end_point``.
         """
         assert self.sample_log is not None
         actual = self._readings()
@@ -384,7 +404,7 @@ class SimulatedPlant:
         self._k, self._changed = end_point, True
 
     def _store_predicted(self, prediction: PredictedMotion, last: int) -> None:
-        """Sample all grid points of a predicted motion up to ``last``, exclusive."""
+        """Store samples of a predicted motion at all grid points before ``last``."""
         assert self.sample_log is not None
         rows = prediction.get_sample_rows(self._k, last)
         self._add_spindle_columns(rows, prediction.get_cutting_flags(self._k + 1, last + 1))
@@ -393,9 +413,9 @@ class SimulatedPlant:
         self._changed = True
 
     def _add_spindle_columns(self, rows: FloatArray, cuts: BoolArray) -> None:
-        """Fill the spindle columns of ``rows``, and turn the spindle to one grid point after the last row.
+        """Fill the spindle columns of ``rows``, and turn the spindle to the grid point after the last row.
 
-        ``cuts`` states for each grid point after the first whether a tool cuts.
+        ``cuts`` specifies for each grid point after the first whether a tool is cutting.
         """
         rows[:, -4:-1] = self._turned
         if self._turned[0] or not self.spindle.is_at_rest:
@@ -404,9 +424,9 @@ class SimulatedPlant:
             self._turned = tuple(following[-1].tolist())
 
     def _store_rest_samples(self, end_point: int) -> None:
-        """Sample the resting axes up to grid point ``end_point``.
+        """Store samples of the axes at rest up to grid point ``end_point``.
 
-        While the spindle is at rest too, the interval between samples is 0.1 s.
+        While the spindle is also at rest, the interval between samples is 0.1 s.
         """
         assert self.sample_log is not None
         demand = self.queue.commanded_state_at(self.model_time_s)[0] if self.enabled else None
@@ -428,7 +448,7 @@ class SimulatedPlant:
             self._advance_spindle()
 
     def _advance_spindle(self) -> None:
-        """Advance the spindle to the present grid point for the samples."""
+        """Advance the spindle to the present grid point, so that its values can be sampled."""
         if self.sample_log is not None and (self._turned[0] or not self.spindle.is_at_rest):
             if self.model_time_s > self.spindle.time_s:
                 self.spindle.advance_to(self.model_time_s)

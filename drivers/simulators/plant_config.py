@@ -1,4 +1,4 @@
-"""Configuration of the simulated machine, which the app fills from the machine file."""
+"""Configuration of the simulated machine, which the application reads from the machine file."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from drivers.simulated.simulated_table import PlannedFault
 
 @dataclass(frozen=True, slots=True)
 class SimAxis(AxisProperties):
-    """Simulated servo axis."""
+    """Configuration of a simulated servo axis."""
 
     power_up_position: float = 0.0  # Position relative to home at power-up.
     bandwidth: float = 40.0  # Bandwidth of the position loop in Hz.
@@ -22,7 +22,10 @@ class SimAxis(AxisProperties):
 
 @dataclass(frozen=True, slots=True)
 class SimSpindle:
-    """Simulated AC spindle with a frequency inverter: speeds in rpm, ramps in rpm/s, times in seconds."""
+    """Configuration of a simulated AC spindle with a frequency inverter.
+
+    Speeds are in rpm, ramps in rpm/s, and times in seconds.
+    """
 
     rpm_max: float = 3500.0
     accel: float = 1500.0
@@ -36,7 +39,10 @@ class SimSpindle:
 
 @dataclass(frozen=True, slots=True)
 class SimOutput:
-    """Simulated output with its state at power-up and its safe state; None leaves the output unchanged."""
+    """Configuration of a simulated output: its state at power-up and its safe state.
+
+    If the safe state is None, the output is not changed when the machine enters the safe state.
+    """
 
     safe_state: bool | None = False
     initial_state: bool = False
@@ -44,7 +50,7 @@ class SimOutput:
 
 @dataclass(frozen=True, slots=True)
 class SimCollet:
-    """Simulated collet with its switch; the output is on while the collet is clamped.
+    """Configuration of a simulated collet and its switch; the output is on while the collet is clamped.
 
     Times are in seconds. ``time_spread`` is the random variation of the times as a fraction.
     """
@@ -58,9 +64,12 @@ class SimCollet:
 
 @dataclass(frozen=True, slots=True)
 class SimToolSetter:
-    """Simulated tool setter: center of its stylus relative to part zero, and its width, in mm.
+    """Configuration of a simulated tool setter.
 
-    ``tip_positions`` has X and Z of the axes when the tip is at part zero, for each tool on the plate.
+    The stylus center relative to part zero and the stylus width are in mm.
+
+    ``tip_positions`` contains, for each tool on the plate, the X and Z positions of the axes when the tool
+    tip is at part zero.
     """
 
     x_mm: float

@@ -1,4 +1,4 @@
-"""Operator actions and faults of the simulated machine, by call or at scheduled times."""
+"""Operator actions and faults of the simulated machine, started by calls or at scheduled times."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from drivers.simulators.servo_axis import SCREW_LEAD_MM, SimulatedServo
 
 
 class PlantControls(StationControls):
-    """Controls of the operator station and faults of the machine, callable from any thread."""
+    """Controls of the operator station and faults of the simulated machine.
+
+    Any thread may call the methods.
+    """
 
     def __init__(self, plant: SimulatedPlant) -> None:
         super().__init__(plant.station_panel, plant.action_lock, plant.clock)
@@ -27,7 +30,7 @@ class PlantControls(StationControls):
             yield self._plant.advance()
 
     def press_estop(self) -> None:
-        """Press the E-stop, which latches."""
+        """Press the E-stop, which latches until it is released."""
         self._plant.press_estop()
 
     def release_estop(self) -> None:
@@ -36,19 +39,22 @@ class PlantControls(StationControls):
             self._plant.station_panel.estop = False
 
     def set_input(self, name: str, on: bool) -> None:
-        """Set an input of the machine file. Raises DriverError for an unknown name."""
+        """Set an input of the machine file.
+
+        Raises DriverError if the input does not exist.
+        """
         with self._plant.action_lock:
             self._plant.terminals.set_input(name, on)
 
     # --- faults -------------------------------------------------------------------------------------------
 
     def jam(self, axis: str, jammed: bool = True) -> None:
-        """Block an axis mechanically, or free it."""
+        """Block an axis mechanically, or free the axis."""
         with self._locked_time():
             self._servo(axis).jammed = jammed
 
     def encoder_stuck(self, axis: str, stuck: bool = True) -> None:
-        """Freeze the encoder reading of an axis, or release it."""
+        """Freeze the encoder reading of an axis, or end this fault."""
         with self._locked_time():
             servo = self._servo(axis)
             servo.stuck = servo.reading if stuck else None
@@ -62,90 +68,97 @@ class PlantControls(StationControls):
             self._servo(axis).runaway = speed
 
     def loose_gib(self, axis: str, play_mm: float) -> None:
-        """Give an axis ``play_mm`` mm of lost motion at each reversal; 0 ends the fault."""
+        """Give an axis a lost motion of ``play_mm`` at each reversal; 0 ends the fault."""
         with self._locked_time():
             servo = self._servo(axis)
             servo.worn.set_gib_play(play_mm, servo.p)
 
     def encoder_ripple(self, axis: str, amplitude_mm: float, period_mm: float = SCREW_LEAD_MM) -> None:
-        """Give an encoder an error of amplitude ``size`` mm that repeats every ``turn`` mm; 0 ends it."""
+        """Give the encoder of an axis a periodic error; an amplitude of 0 ends the fault.
+
+        The error has the amplitude ``amplitude_mm`` and repeats every ``period_mm``.
+        """
         with self._locked_time():
             worn = self._servo(axis).worn
             worn.ripple, worn.turn = amplitude_mm, period_mm
 
     def encoder_missed(self, axis: str, lost_mm: float, period_mm: float = SCREW_LEAD_MM) -> None:
-        """Make an encoder lose ``size`` mm once in every ``turn`` mm; 0 ends the fault."""
+        """Make the encoder of an axis lose ``lost_mm`` once in every ``period_mm``; 0 ends the fault."""
         with self._locked_time():
             worn = self._servo(axis).worn
             worn.missed, worn.turn = lost_mm, period_mm
 
     def belt_slip(self, fraction: float) -> None:
-        """Make the spindle lose up to this fraction of its speed while cutting; 0 ends the fault."""
+        """Make the spindle lose up to ``fraction`` of its speed while a tool is cutting; 0 ends the fault."""
         with self._locked_time() as now:
             self._plant.spindle.faults.belt_slip_fraction = fraction
             self._plant.spindle.set_cutting(now, cutting=False)
 
     def push(self, axis: str, distance: float) -> None:
-        """Displace an axis by hand, with or without power."""
+        """Displace an axis by ``distance`` by hand, with or without power."""
         with self._locked_time():
             self._servo(axis).push(distance)
 
     def switch_output(self, name: str, state: bool) -> None:
-        """Switch an output independently of the control, as a fuse or a manually operated relay does."""
+        """Switch an output independently of the control, as a blown fuse or a manually operated
+        relay does.
+        """
         with self._locked_time() as now:
             self._plant.terminals.write(name, state, now)
 
     def drive_fault(self, axis: str, text: str = "drive fault") -> None:
-        """Trip the drive of an axis."""
+        """Trip the drive of an axis with the fault ``text``."""
         with self._plant.action_lock:
             self._plant.trip_drives(f"{axis}: {text}")
 
     def spindle_bog(self, fraction: float) -> None:
-        """Limit the spindle to this fraction of the commanded speed; 1 ends the fault."""
+        """Limit the spindle to ``fraction`` of the commanded speed; 1 ends the fault."""
         with self._locked_time():
             self._plant.spindle.faults.speed_fraction = fraction
 
     def spindle_wander(self, fraction: float, period: float = 2.0) -> None:
-        """Make the spindle speed oscillate by this fraction, with a period in seconds."""
+        """Make the spindle speed oscillate by ``fraction`` of the speed; ``period`` is in seconds."""
         with self._locked_time():
             self._plant.spindle.faults.oscillation_fraction = fraction
             self._plant.spindle.faults.oscillation_period_s = period
 
     def spindle_ignores_stop(self, ignored: bool = True) -> None:
-        """Make the inverter ignore commands for a lower speed."""
+        """Make the inverter ignore commands for a lower speed, or end this fault."""
         with self._locked_time():
             self._plant.spindle.faults.ignores_stop = ignored
 
     def spindle_fault(self, text: str) -> None:
-        """Trip the inverter so that the spindle coasts; an empty text ends the fault."""
+        """Trip the inverter with the fault ``text``, so that the spindle coasts; an empty text ends the
+        fault.
+        """
         with self._locked_time():
             self._plant.spindle.faults.fault_text = text
 
     def spindle_never_oriented(self, never_oriented: bool = True) -> None:
-        """Prevent the drive from reporting that the spindle is oriented."""
+        """Prevent the drive from reporting that the spindle is oriented, or end this fault."""
         with self._locked_time():
             self._plant.spindle.faults.never_oriented = never_oriented
 
     def collet_sensor_stuck(self, stuck: bool = True) -> None:
-        """Freeze the collet switch in its present state."""
+        """Freeze the collet switch in its present state, or end this fault."""
         with self._locked_time() as now:
             self._plant.terminals.read_inputs(now)
             self._plant.terminals.is_collet_sensor_stuck = stuck
 
     def station_silent(self, silent: bool = True) -> None:
-        """Disconnect the operator station, or connect it again."""
+        """Disconnect the operator station, or connect the station again."""
         with self._plant.action_lock:
             self._plant.station_panel.set_disconnected(silent, self._plant.clock.now())
 
     def pot_noise(self, width: float) -> None:
-        """Add noise of up to ``width`` to both pots, as a worn wiper does."""
+        """Add noise with an amplitude of ``width`` to both pots, as a worn wiper does."""
         with self._plant.action_lock:
             self._plant.station_panel.noise_amplitude = width
 
     # --- true states, known only in a simulation ----------------------------------------------------------
 
     def get_true_position(self) -> tuple[float, ...]:
-        """Return the true positions of the axes, independent of the encoders."""
+        """Return the true positions of the axes, which do not depend on the encoders."""
         with self._plant.lock:
             self._plant.advance()
             return tuple(servo.where for servo in self._plant.servos)
@@ -175,7 +188,10 @@ class PlantControls(StationControls):
 
 
 class FaultSchedule:
-    """Schedule that starts and ends faults; the plant calls it with the time of the clock."""
+    """Schedule that starts and ends faults.
+
+    The plant calls ``apply_due`` with the time of its clock.
+    """
 
     def __init__(self, machine: PlantControls, faults: Sequence[PlannedFault]) -> None:
         self._acts: list[tuple[float, Callable[[], None]]] = []
@@ -187,7 +203,7 @@ class FaultSchedule:
         self._acts.sort(key=lambda act: act[0])
 
     def apply_due(self, now: float) -> None:
-        """Apply all scheduled actions up to ``now`` in order."""
+        """Apply all scheduled actions that are due at time ``now``, in order."""
         while self._acts and self._acts[0][0] <= now:
             self._acts.pop(0)[1]()
 
@@ -195,9 +211,9 @@ class FaultSchedule:
 def _fault_actions(
     machine: PlantControls, fault: PlannedFault
 ) -> tuple[Callable[[], None], Callable[[], None] | None]:
-    """Return the action that starts a fault and the action that ends it.
+    """Return the action that starts a fault and the action that ends the fault.
 
-    The second is None for a drive fault, which remains until it is cleared.
+    For a drive fault, the second action is None, because the fault remains active until it is cleared.
     """
     if fault.what == "estop":
         return machine.press_estop, machine.release_estop

@@ -20,7 +20,9 @@ class SimulatedToolSetter:
         self.kept: tuple[float, tuple[float, ...]] | None = None
 
     def update(self, t: float, x: float, z: float, readings: tuple[float, ...]) -> None:
-        """Update the input from the axis positions ``x``, ``z`` and the encoder readings at time ``t``."""
+        """Update the input at time ``t`` from the axis positions ``x`` and ``z``, and latch the encoder
+        readings.
+        """
         config = self._config
         half = config.width_mm / 2.0
         depths = [
@@ -38,7 +40,11 @@ _GUARD_INPUT = "guard"
 
 
 class SimulatedTerminals:
-    """Simulated terminals: outputs as last written, inputs as wired or as a test sets them."""
+    """Simulated terminals of the machine.
+
+    Outputs have the state that was written last. Inputs have the state of the wired device, or the state
+    that a test sets.
+    """
 
     def __init__(
         self, outputs: Mapping[str, SimOutput], inputs: tuple[str, ...], collet: SimCollet, seed: int
@@ -54,7 +60,10 @@ class SimulatedTerminals:
         self._closed_at = 0.0 if self.outputs.get(collet.output_name, False) else float("inf")
 
     def write(self, name: str, state: bool, now: float) -> None:
-        """Switch an output. Raises DriverError for a name that the machine does not have."""
+        """Switch an output.
+
+        Raises DriverError if the machine does not have the output.
+        """
         find_output(name, self.outputs)
         if name == self._collet.output_name and state != self.outputs[name]:
             self._closed_at = now + self._late(self._collet.close_time_s) if state else float("inf")
@@ -69,7 +78,10 @@ class SimulatedTerminals:
                 self.write(name, model.safe_state, now)
 
     def set_input(self, name: str, state: bool) -> None:
-        """Set an input. Raises DriverError for an unknown name."""
+        """Set an input.
+
+        Raises DriverError if the input does not exist.
+        """
         if name not in self.inputs:
             raise DriverError(
                 "input {name} is not in the machine file; add it under [io.in]", name=f"{name!r}"
@@ -77,7 +89,10 @@ class SimulatedTerminals:
         self.inputs[name] = state
 
     def read_inputs(self, now: float) -> dict[str, bool]:
-        """Return all inputs by name; the collet switch follows the collet unless it is stuck."""
+        """Return the states of all inputs by name.
+
+        The collet switch follows the collet, unless the switch is stuck.
+        """
         name = self._collet.closed_input
         if name in self.inputs and not self.is_collet_sensor_stuck:
             self.inputs[name] = self.is_collet_closed(now)
@@ -90,7 +105,7 @@ class SimulatedTerminals:
         return self._opened_at <= now and (self._closed_at <= now or self._closed_at == float("inf"))
 
     def is_collet_closed(self, now: float) -> bool:
-        """Return whether the collet clamps. Opening and closing take time."""
+        """Return whether the collet is clamped; opening and closing take time."""
         if self.outputs.get(self._collet.output_name, True):
             return now >= self._closed_at
         return now < self._opened_at

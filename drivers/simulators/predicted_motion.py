@@ -1,4 +1,4 @@
-"""Predicted motion of the simulated axes along one setpoint piece without active limits.
+"""Predicted motion of the simulated axes along one setpoint piece on which no limit acts.
 
 One formula per moving axis then replaces the single steps, and the samples for the scope are calculated for
 many grid points at once.
@@ -23,11 +23,11 @@ _MIN_POINTS = 4  # Grid points; fewer are faster to calculate step by step.
 def predict_motion(
     servos: Sequence[SimulatedServo], piece: MotionPiece, end_time: float, first_point: int, step_s: float
 ) -> PredictedMotion | None:
-    """Return the motion from grid point ``first_point`` along ``piece``, which is valid before ``end_time``
-    seconds.
+    """Return the predicted motion from grid point ``first_point`` along ``piece``.
 
-    ``dt`` is the grid interval in seconds. Return None where a fault or a limit may act, for short pieces,
-    and after the last piece, where the axes may settle at any grid point.
+    The piece is valid before ``end_time`` in seconds, and ``step_s`` is the grid interval in seconds.
+    Return None if a fault or a limit may act, if the piece is short, or after the last piece, because the
+    axes may then come to rest at any grid point.
     """
     if end_time == INFINITY:
         return None
@@ -49,7 +49,10 @@ def predict_motion(
 
 
 class PredictedMotion:
-    """Predicted motion of the axes along ``piece`` at the grid points ``points``, created by ``foresee``."""
+    """Predicted motion of the axes along ``piece`` at the grid points ``points``.
+
+    ``predict_motion`` creates this object.
+    """
 
     def __init__(
         self,
@@ -72,9 +75,10 @@ class PredictedMotion:
         self._note(points.start)
 
     def is_valid(self, piece: MotionPiece, end_time: float, point: int) -> bool:
-        """Return whether the prediction is still valid at grid point ``k``.
+        """Return whether the prediction is still valid at grid point ``point``.
 
-        It requires the same setpoints and axes that have not changed since ``move_to``.
+        The setpoints must be the same, and the axes must not have changed since the last call of
+        ``move_to``.
         """
         if (
             piece is not self._piece
@@ -86,7 +90,7 @@ class PredictedMotion:
         return all(servo.p == p and servo.v == v and servo.sound for servo, p, v in self._left)
 
     def move_to(self, point: int) -> None:
-        """Move the axes to their state at grid point ``k``."""
+        """Move the axes to their predicted state at grid point ``point``."""
         steps = point - self._points.start
         for servo, setpoints, response in self._moving:
             servo.follow_response(setpoints, response, steps)
@@ -99,17 +103,17 @@ class PredictedMotion:
     # --- for the scope ------------------------------------------------------------------------------------
 
     def get_sample_rows(self, first_point: int, end_point: int) -> FloatArray:
-        """Return sample rows from grid point ``first_point`` to ``end_point``, exclusive.
+        """Return the sample rows from grid point ``first_point`` to ``end_point``, exclusive.
 
-        The columns are those of ``core.ports.SampleSource``. The caller fills those of the spindle and the
-        queue.
+        The columns are those of ``core.ports.SampleSource``. The caller fills the columns of the spindle
+        and the queue.
         """
         first = self._points.start
         return self._rows[first_point - first : end_point - first]
 
     def get_cutting_flags(self, first_point: int, end_point: int) -> BoolArray:
-        """Return for each grid point from ``first_point`` to ``end_point``, exclusive, whether an axis
-        cuts.
+        """Return whether an axis is cutting at each grid point from ``first_point`` to ``end_point``,
+        exclusive.
         """
         first = self._points.start
         return self._cuts[first_point - first : end_point - first]
@@ -136,7 +140,7 @@ class PredictedMotion:
 
     @cached_property
     def _states(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Positions, velocities and loads at all grid points, including the end point."""
+        """Return the positions, velocities and loads at all grid points, including the end point."""
         k = np.arange(len(self._points) + 1, dtype=np.float64)
         each = [servo.states(setpoints, response, k) for servo, setpoints, response in self._moves]
         places, speeds, loads = (np.column_stack(part) for part in zip(*each, strict=True))

@@ -1,4 +1,4 @@
-"""Simulated servo axis: position loop with feed-forward, drive limits, encoder, wear and faults.
+"""Simulated servo axis with a position loop, feed-forward, drive limits, encoder, wear and faults.
 
 ``SimulatedServo.follow_setpoint`` advances a linear second-order difference equation by one step. While no
 limit of the drive acts, the solution is known: a steady part that follows the setpoint, and two decaying
@@ -22,7 +22,10 @@ _SETTLED_MM = 1e-4  # Mm or degrees; an axis closer than this and almost at rest
 
 
 class SimulatedServo:
-    """Simulated axis with its drive. Positions are in the control's count, from home after homing."""
+    """Simulated axis with its drive.
+
+    Positions are those that the control counts; after homing, they count from the home position.
+    """
 
     def __init__(self, axis: SimAxis, step: float = 0.001) -> None:
         """Create the axis; ``step`` is the grid interval of the model in seconds."""
@@ -44,7 +47,7 @@ class SimulatedServo:
 
     @property
     def reading(self) -> float:
-        """The measured position, in whole encoder counts."""
+        """Return the measured position, rounded to whole encoder counts."""
         if self.stuck is not None:
             return self.stuck
         worn = self.worn
@@ -59,7 +62,7 @@ class SimulatedServo:
 
     @property
     def sound(self) -> bool:
-        """Whether the axis, its drive and its encoder have no fault."""
+        """Return whether the axis, its drive and its encoder are free of faults."""
         worn = self.worn
         return not (
             self.jammed or self.runaway or worn.gib or worn.ripple or worn.missed or self.stuck is not None
@@ -67,33 +70,35 @@ class SimulatedServo:
 
     @property
     def cuts(self) -> bool:
-        """Whether the axis moves at a cutting feed, which is a speed well below its rapid."""
+        """Return whether the axis moves at a cutting feed, which is well below its rapid speed."""
         least, most = self.feeds
         return least < abs(self.v) < most
 
     @property
     def where(self) -> float:
-        """The true position of the axis."""
+        """Return the true position of the axis."""
         return self.worn.slide_position if self.worn.gib else self.p
 
     def push(self, distance: float) -> None:
-        """Displace the axis by a distance."""
+        """Displace the axis by ``distance``."""
         self.p += distance
         self.worn.slide_position += distance
 
     def lead(self, p: float, v: float, a: float) -> float:
-        """Return the setpoint that brings the axis to ``p`` despite its following error.
+        """Return the setpoint that moves the axis to position ``p`` despite its following error.
 
-        The result inverts ``follow_setpoint``: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn²
-        for the acceleration ``a``.
+        The calculation inverts ``follow_setpoint``, where ff is the feed-forward fraction and wn the
+        natural frequency: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn² for the acceleration
+        ``a``.
         """
         return p + (2.0 * (1.0 - self.axis.feed_forward) * v + a / self._wn) / self._wn
 
     def follow_setpoint(self, p: float, v: float, dt: float) -> bool:
-        """Advance the powered drive by ``dt`` toward setpoint ``p``, ``v``. Return True if it trips.
+        """Advance the powered drive by one step of ``dt`` seconds, and return whether the drive trips.
 
-        The drive trips when the following error is outside its window for too long. The model is of second
-        order with damping 1. Without full feed-forward, the axis lags by 2(1 - ff)v/wn.
+        The setpoint is position ``p`` and velocity ``v``. The drive trips if the following error is outside
+        its window for too long. The model is of second order with damping 1. With a feed-forward fraction
+        ff below 1, the axis lags by 2(1 - ff)v/wn, where wn is the natural frequency.
         """
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None and not self.worn.has_encoder_error else self._encoder_reading()
@@ -121,10 +126,10 @@ class SimulatedServo:
         return False
 
     def predict_response(self, setpoints: SetpointPolynomial, point_count: int) -> ServoResponse | None:
-        """Return the response to ``steps`` setpoints, or None where a fault or a limit may act.
+        """Return the response to ``point_count`` setpoints, or None if a fault or a limit may act.
 
-        The limits are those of ``follow_setpoint``. The first force is exact; the other bounds are sums of
-        absolute parts.
+        The limits are those of ``follow_setpoint``. The first force is exact; all other bounds are sums of
+        absolute values.
         """
         loop, axis, dt = self._loop, self.axis, self._step
         if not self.sound or loop is None:
@@ -147,8 +152,9 @@ class SimulatedServo:
     def follow_response(
         self, setpoints: SetpointPolynomial, response: ServoResponse, point_count: int
     ) -> None:
-        """Move as ``steps`` calls of ``follow_setpoint`` do, by the response that ``predict_response``
-        returned.
+        """Move the axis as ``point_count`` calls of ``follow_setpoint`` would do.
+
+        ``response`` is the result of ``predict_response``.
         """
         self.p, self.v, self.load = self.states(setpoints, response, point_count)
         self.over = 0.0
@@ -156,7 +162,9 @@ class SimulatedServo:
     def states(
         self, setpoints: SetpointPolynomial, response: ServoResponse, steps: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return position, velocity and load after ``steps`` grid points, for one number or an array."""
+        """Return the position, velocity and load after ``steps`` grid points, for a single number or an
+        array.
+        """
         assert self._loop is not None
         dt = self._step
         place, moved, bent = self._loop.get_states_at(setpoints, response, steps)
@@ -169,7 +177,7 @@ class SimulatedServo:
         return self.worn.to_encoder_position(self.p) if self.worn.has_encoder_error else self.p
 
     def roll(self, dt: float) -> None:
-        """Advance by one step without power, while friction stops the axis."""
+        """Advance the axis by one step of ``dt`` seconds without power, while friction slows it down."""
         drop = 0.5 * self.axis.amax * dt
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
         self.p += self.v * dt
@@ -178,7 +186,10 @@ class SimulatedServo:
         self.over = self.load = 0.0
 
     def settle_at(self, p: float) -> bool:
-        """Return whether the axis rests at setpoint ``p``; an axis that is close is set exactly to ``p``."""
+        """Return whether the axis is at rest at setpoint ``p``.
+
+        An axis that is very close to the setpoint is moved exactly to ``p``.
+        """
         if self.jammed or self.stuck is not None or self.runaway:
             return False
         if abs(self._encoder_reading() - p) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
@@ -188,13 +199,13 @@ class SimulatedServo:
         return False
 
     def reference(self) -> None:
-        """Make the home switch the zero of the count and mark the axis as homed."""
+        """Set the position count to zero at the home switch, and mark the axis as homed."""
         self.push(-self.switch)
         self.switch = 0.0
         self.homed = True
 
     def handle_power_loss(self) -> None:
-        """Clear the reference of an incremental encoder, as a loss of power does."""
+        """Clear the home reference of an incremental encoder, as a loss of power does."""
         self.load = 0.0
         if not self.axis.absolute and self.homed:
             self.homed = False
@@ -210,7 +221,7 @@ _SLIP_SPEED_FACTOR = 1.1  # Factor of an axis' speed: above it a cam is rejected
 def check_drive_limits(segments: Segments, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check setpoints against the limits of the drives.
 
-    Raises DriverError if a speed or position is out of range, or if C moves while the spindle turns.
+    Raises DriverError if a speed or position is out of range, or if C moves while the spindle is turning.
     """
     axes = [servo.axis for servo in servos]
     check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
@@ -226,7 +237,7 @@ def check_drive_limits(segments: Segments, servos: Sequence[SimulatedServo], rpm
 def check_cam_limits(cam: Cam, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check a cam against the limits of the drives at a spindle speed of ``rpm``.
 
-    Raises DriverError as ``check_drive_limits`` does.
+    Raises DriverError in the same cases as ``check_drive_limits``.
     """
     by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIP_SPEED_FACTOR)
     check_drive_limits(cam.way._replace(v=by_time), servos, rpm)
@@ -245,12 +256,13 @@ SCREW_LEAD_MM = 5.0  # Travel in mm per revolution of the screw.
 class AxisWear:
     """Mechanical wear and encoder errors between the motor and the measured position.
 
-    With a loose gib, the drive controls the motor, but the slide is measured. The slide lags by half of the
-    play in the direction of motion, so that a reversal loses the full play. Below 2 mm/s, it sticks until the
-    screw has wound up another quarter of the play, and then slips.
+    With a loose gib, the drive controls the motor, but the encoder measures the slide. The slide lags by
+    half of the play in the direction of motion, so that a reversal loses the full play. Below 2 mm/s, the
+    slide sticks until the screw has wound up another quarter of the play, and then slips.
 
-    An encoder error also affects the drive. ``ripple`` is the amplitude of an error once per revolution, as
-    of an eccentric disc. ``missed`` is the distance that is not counted at one spot of each revolution.
+    An encoder error also affects the drive. ``ripple`` is the amplitude of an error that repeats once per
+    revolution, as with an eccentric disc. ``missed`` is the distance that the encoder does not count at one
+    spot of each revolution.
     """
 
     def __init__(self) -> None:
@@ -262,11 +274,11 @@ class AxisWear:
 
     @property
     def has_encoder_error(self) -> bool:
-        """Whether the drive measures a position other than that of its motor."""
+        """Return whether the position that the drive measures differs from the motor position."""
         return self.ripple != 0.0 or self.missed != 0.0
 
     def set_gib_play(self, play_mm: float, p: float) -> None:
-        """Set the gib play in mm, with the slide at ``p``; 0 removes the play."""
+        """Set the play of the gib in mm while the slide is at ``p``; 0 removes the play."""
         self.gib, self.slide_position = play_mm, p
 
     def to_encoder_position(self, p: float) -> float:
@@ -275,7 +287,7 @@ class AxisWear:
         return p + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
 
     def move_slide(self, p: float, v: float) -> None:
-        """Move the slide with the motor, which is at ``p`` with velocity ``v``."""
+        """Move the slide with the motor, which is at position ``p`` with velocity ``v``."""
         play = 0.5 * self.gib
         behind = p - self.slide_position
         if abs(behind) > play * (1.0 + 2.0 * _STICK_FRACTION if abs(v) < _STICK_SLIP_SPEED else 1.0):
@@ -289,7 +301,10 @@ FloatOrArray = TypeVar("FloatOrArray", float, FloatArray)
 
 
 class SetpointPolynomial(NamedTuple):
-    """Setpoints of one axis on the grid of the model: ``p + dp * k + ddp * k * k`` at grid point ``k``."""
+    """Setpoints of one axis on the time grid of the model, as a polynomial of second order.
+
+    At grid point k, the setpoint is position + linear_term · k + quadratic_term · k².
+    """
 
     position: float
     linear_term: float
@@ -297,7 +312,11 @@ class SetpointPolynomial(NamedTuple):
 
 
 class ServoResponse(NamedTuple):
-    """Position minus setpoint at grid point ``k``: ``lag + drift * k + slow * slow_mode**k + ...``."""
+    """Difference between position and setpoint of one axis on the time grid of the model.
+
+    At grid point k, the difference is lag + drift · k + slow_amplitude · s^k + fast_amplitude · f^k, where
+    s and f are ``slow_mode`` and ``fast_mode`` of ``ServoLoop``.
+    """
 
     lag: float
     drift: float
@@ -328,7 +347,7 @@ class ServoLoop:
     def calculate_response(
         self, position: float, step: float, setpoints: SetpointPolynomial
     ) -> ServoResponse:
-        """Return the response from ``position``, reached by a last move of ``step`` (mm or degrees)."""
+        """Return the response of an axis at ``position`` whose last move was ``step``, in mm or degrees."""
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
         lag = (2.0 * w * (ddp - missing * dp - drift) - 2.0 * ddp) / (w * w)
@@ -341,9 +360,10 @@ class ServoLoop:
     def get_states_at(
         self, setpoints: SetpointPolynomial, response: ServoResponse, k: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position at grid point ``k``, the last move and the change of the move.
+        """Return the position at grid point ``k``, the length of the last move, and the change of this
+        length.
 
-        Units are mm (or degrees) and intervals of the grid.
+        Lengths are in mm or degrees, and times are in grid intervals.
         """
         (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
         slow, fast = slow_part * self.slow_mode ** (k - 1), fast_part * self.fast_mode ** (k - 1)

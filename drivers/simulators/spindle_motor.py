@@ -1,4 +1,4 @@
-"""Simulated spindle motor with a frequency inverter: latency, ramps, an encoder and faults."""
+"""Simulated spindle motor with a frequency inverter, including its latency, ramps, encoder and faults."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ class SpindleFaults:
 
 
 class OrientCommand(NamedTuple):
-    """Command to orient the spindle: ``angle`` in degrees from the index and the direction.
+    """Command to orient the spindle to ``angle_deg`` degrees from the index.
 
-    ``sense`` is 1 as M03, -1 as M04, and 0 for the shortest path.
+    ``direction`` is 1 for the direction of M03, -1 for that of M04, and 0 for the shortest path.
     """
 
     angle_deg: float
     direction: int
 
     def get_revolutions_to_angle(self, turns: float) -> float:
-        """Return the signed revolutions from ``turns`` to the angle."""
+        """Return the signed revolutions from the position ``turns`` to the angle."""
         left = (self.angle_deg / 360.0 - turns) % 1.0
         if left > 1.0 - _ANGLE_TOLERANCE_REV:
             left = 0.0
@@ -50,7 +50,7 @@ class OrientCommand(NamedTuple):
 
 
 class SimulatedSpindle(Protocol):
-    """Spindle as its controller sees it: rpm and revolutions, both signed."""
+    """Spindle as its controller uses it; rpm and revolutions are signed."""
 
     @property
     def speed(self) -> float: ...
@@ -64,7 +64,7 @@ class SimulatedSpindle(Protocol):
 
 
 class SpindleMotor:
-    """Simulated spindle motor, whose speed ramps and angle are calculated in closed form."""
+    """Simulated spindle motor, whose speed ramps and angle are calculated with closed-form formulas."""
 
     def __init__(self, config: SimSpindle) -> None:
         self.config = config
@@ -82,7 +82,7 @@ class SpindleMotor:
 
     @property
     def speed(self) -> float:
-        """The actual speed in rpm, signed."""
+        """Return the actual speed in rpm, signed."""
         faults = self.faults
         even = self._even * (1.0 - self.slip_fraction) + self._orient_speed
         if not faults.oscillation_fraction:
@@ -92,7 +92,7 @@ class SpindleMotor:
 
     @property
     def load_percent(self) -> float:
-        """The load in percent: bearing friction, acceleration and cutting.
+        """Return the load in percent, which results from bearing friction, acceleration and cutting.
 
         The load is a rough estimate; the depth of cut has no effect.
         """
@@ -106,12 +106,12 @@ class SpindleMotor:
 
     @property
     def is_at_rest(self) -> bool:
-        """Whether the spindle is at rest and no command is pending."""
+        """Return whether the spindle is at rest and no command is pending."""
         return not self._even and not self._target and not self._orders and not self._orient_speed
 
     @property
     def is_speed_constant(self) -> bool:
-        """Whether the speed stays constant until a command or a fault."""
+        """Return whether the speed remains constant until a command or fault changes it."""
         faults = self.faults
         target = 0.0 if faults.fault_text else self._target * faults.speed_fraction
         return self._even == target and not (
@@ -120,14 +120,14 @@ class SpindleMotor:
 
     @property
     def counted_revolutions(self) -> float:
-        """The revolutions counted by the encoder, in steps of a quarter pulse."""
+        """Return the revolutions that the encoder counts, in steps of a quarter pulse."""
         edges = 4 * self.config.pulses_per_rev
         return round(self.revolutions * edges) / edges
 
     def command_speed(self, time_s: float, rpm: float, coast: bool = False) -> None:
         """Queue a speed command, which takes effect after the latency of the inverter.
 
-        A stop cancels pending speeds. ``coast`` stops without a ramp.
+        A stop cancels pending speed commands. With ``coast``, the spindle stops without a ramp.
         """
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):
             return
@@ -138,7 +138,7 @@ class SpindleMotor:
         self._orders.append((time_s + self.config.latency_s, min(max(rpm, -limit), limit), coast))
 
     def cut_power(self, now: float) -> None:
-        """Switch off the power by hardware, so that the spindle coasts."""
+        """Remove the power of the motor, so that the spindle coasts."""
         self._orders.clear()
         self.cancel_orientation()
         self._orders.append((now, 0.0, True))
@@ -146,7 +146,10 @@ class SpindleMotor:
     # --- orientation --------------------------------------------------------------------------------------
 
     def orient_spindle(self, now: float, angle: float, sense: int) -> None:
-        """Turn from standstill to an angle in degrees and hold it, after the latency of the inverter."""
+        """Turn the spindle from standstill to ``angle`` in degrees and hold it at this angle.
+
+        The motion starts after the latency of the inverter.
+        """
         self._orient, self._begins = OrientCommand(angle, sense), now + self.config.latency_s
 
     def cancel_orientation(self) -> None:
@@ -155,7 +158,7 @@ class SpindleMotor:
 
     @property
     def is_oriented(self) -> bool:
-        """Whether the spindle has reached the commanded angle and the drive reports it."""
+        """Return whether the spindle has reached the commanded angle and the drive reports this."""
         order = self._orient
         there = (
             order is not None
@@ -166,7 +169,7 @@ class SpindleMotor:
 
     @property
     def _orient_speed(self) -> float:
-        """The speed in rpm, signed, during the move to the angle."""
+        """Return the speed in rpm, signed, while the spindle turns to the commanded angle, otherwise 0."""
         order = self._orient
         if order is None or self.time_s < self._begins or self._even or self.faults.fault_text:
             return 0.0
@@ -174,7 +177,7 @@ class SpindleMotor:
         return math.copysign(self.config.orient_rpm, way) if way else 0.0
 
     def _turn_to_angle(self, now: float) -> None:
-        """Turn toward the angle at constant speed; acceleration is neglected."""
+        """Turn toward the commanded angle at a constant speed, without simulating the acceleration."""
         order, begins = self._orient, max(self.time_s, self._begins)
         if order is None or self._even or self.faults.fault_text or now <= begins:
             return
@@ -188,7 +191,7 @@ class SpindleMotor:
             self.revolutions += math.copysign(done, way)
 
     def advance_to(self, now: float) -> None:
-        """Advance the spindle to time ``now`` and apply the commands that become due."""
+        """Advance the spindle to time ``now``, and execute the commands that become due."""
         while self._orders and self._orders[0][0] <= now:
             at, rpm, coast = self._orders.popleft()
             self._ramp_speed(max(at - self.time_s, 0.0))
@@ -200,10 +203,10 @@ class SpindleMotor:
         self.time_s = now
 
     def turn_to_times(self, times: FloatArray, cuts: BoolArray) -> FloatArray:
-        """Turn to the last of ``times`` and return speed, counted revolutions and load at each time.
+        """Turn to the last of ``times``, and return the speed, counted revolutions and load at each time.
 
-        The times are in seconds and the result has the shape (n, 3). ``cuts`` states at which times a tool
-        cuts.
+        The times are in seconds, and the result has the shape (n, 3). ``cuts`` specifies for each time
+        whether a tool is cutting.
         """
         if not self.is_speed_constant:
             return np.array(
@@ -223,14 +226,14 @@ class SpindleMotor:
         return self.speed, self.counted_revolutions, self.load_percent
 
     def set_cutting(self, now: float, *, cutting: bool) -> None:
-        """Set whether a tool cuts. While it cuts, a slipping belt loses and regains speed."""
+        """Set whether a tool is cutting; during the cut, a slipping belt loses and regains speed."""
         now = max(now, self.time_s)
         self.advance_to(now)
         swing = 0.5 - 0.5 * math.cos(2.0 * math.pi * _GRIP_FREQUENCY_HZ * now)
         self.slip_fraction = self.faults.belt_slip_fraction * swing if cutting else 0.0
 
     def _ramp_speed(self, dt: float) -> None:
-        """Ramp toward the target for ``dt`` seconds, then continue at the target speed."""
+        """Ramp toward the target speed for ``dt`` seconds; continue at this speed when it is reached."""
         faults, t, held = self.faults, self.time_s, 1.0 - self.slip_fraction
         target = 0.0 if faults.fault_text else self._target * faults.speed_fraction
         while dt > 0.0:
@@ -255,9 +258,10 @@ class SpindleMotor:
                 return
 
     def _oscillation_seconds(self, t: float, dt: float) -> float:
-        """Return the change of ``dt`` seconds from ``t`` on, as equivalent seconds at constant speed.
+        """Return the rotation that the speed oscillation adds during ``dt`` seconds from time ``t`` on.
 
-        The change is caused by the fault ``oscillation_fraction``.
+        The rotation is given as the equivalent seconds at constant speed. The fault
+        ``oscillation_fraction`` causes the oscillation.
         """
         faults = self.faults
         if not faults.oscillation_fraction:

@@ -16,11 +16,12 @@ DC1, DC2, DC3, DC4 = b"\x11", b"\x12", b"\x13", b"\x14"
 
 @dataclass(frozen=True, slots=True)
 class TransferSettings:
-    """Settings for the transfer of a program, in addition to the line settings.
+    """The settings for the transfer of a program, in addition to the line settings.
 
-    ``wrap`` is the line before and after a program; if it is empty, only silence marks the end. ``dc_codes``:
-    DC2 before and DC4 after a sent program, DC1 and DC3 around reception. ``waits_for_dc1``: send only after
-    DC1 from the other side. ``leader_length``: number of NULs before and after a program.
+    ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end. With
+    ``dc_codes``, DC2 and DC4 are sent before and after a program, and DC1 and DC3 before and after
+    reception. With ``waits_for_dc1``, sending starts only after DC1 from the other side. ``leader_length``
+    is the number of NULs before and after a program.
     """
 
     line_settings: LineSettings
@@ -32,7 +33,7 @@ class TransferSettings:
 
     @property
     def checks_parity(self) -> bool:
-        """Whether TurnDesk checks the parity itself.
+        """Return whether TurnDesk checks the parity itself.
 
         The line then has eight bits and carries seven bits with parity.
         """
@@ -40,13 +41,19 @@ class TransferSettings:
 
     @property
     def sending_settings(self) -> LineSettings:
-        """The line settings for sending, without flow control in the port while a DC1 is awaited."""
+        """Return the line settings for sending.
+
+        The port uses no flow control while TurnDesk waits for a DC1.
+        """
         held = self.line_settings.flow == "xonxoff" and self.waits_for_dc1
         return replace(self.line_settings, flow="none") if held else self.line_settings
 
     @property
     def receiving_settings(self) -> LineSettings:
-        """The line settings for receiving, without XON/XOFF because the input is read at once."""
+        """Return the line settings for receiving.
+
+        The port does not use XON/XOFF, because the input is read immediately.
+        """
         flow = "rtscts" if self.line_settings.flow == "rtscts" else "none"
         if self.checks_parity:
             return replace(self.line_settings, bits=8, parity="N", flow=flow)
@@ -61,7 +68,10 @@ _NAME_PATTERN = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,39}")
 
 
 def split_lines(text: bytes) -> list[bytes]:
-    """Split text at LF, CR LF, CR or the LF CR CR of tapes; empty lines in between remain."""
+    """Return the lines of a text, divided at LF, CR LF, CR or the LF CR CR of tapes.
+
+    Empty lines between other lines are retained.
+    """
     lines: list[bytes] = []
     at = 0
     for ends in _LINE_ENDS.finditer(text):
@@ -72,7 +82,7 @@ def split_lines(text: bytes) -> list[bytes]:
 
 
 def find_program_name(first_characters: bytes, lines: list[bytes]) -> str:
-    """Return the name after the first %, or the O number of the first line that is not blank."""
+    """Return the program name after the first %, or the O number of the first line that is not blank."""
     said = first_characters.decode("ascii", "replace").strip().strip("()").strip()
     header = re.fullmatch(r"_N_(.+)_(MPF|SPF)", said, re.IGNORECASE)
     if header is not None:
@@ -94,7 +104,7 @@ _SKIPPED_CODES = bytes((0x00, 0x11, 0x12, 0x13, 0x14, 0x1A, 0x04, 0x7F))
 
 
 class ReceptionPhase(StrEnum):
-    """Phases of a reception."""
+    """The phases of a reception."""
 
     WAITING = "waiting"  # Waiting for the first %.
     STORING = "storing"
@@ -102,12 +112,15 @@ class ReceptionPhase(StrEnum):
 
 
 class IncompleteError(DriverError):
-    """Reception of an incomplete or invalid program, of which nothing is saved."""
+    """Error raised if the received program is incomplete or invalid, so that nothing is saved."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReceivedText:
-    """Received complete program; ``name`` is empty if the program does not contain one."""
+    """A complete received program.
+
+    ``name`` is empty if the program does not contain a name.
+    """
 
     program_bytes: bytes
     name: str
@@ -118,12 +131,11 @@ class ReceivedText:
 
 
 class ProgramParser:
-    """Parser of received characters.
+    """A parser of received characters.
 
-    ``add_characters`` adds characters, and ``build_program`` returns the result when complete.
-
-    ``handle_silence`` reports the end of the input. On a line of eight bits, the first % shows the encoding:
-    25 is eight bits, A5 is seven bits with even parity.
+    ``add_characters`` adds characters, and ``build_program`` returns the complete program. Call
+    ``handle_silence`` at the end of the input. On a line with eight bits, the first % shows the encoding:
+    25 hex means eight bits, and A5 hex means seven bits with even parity.
     """
 
     def __init__(self, settings: TransferSettings) -> None:
@@ -140,12 +152,12 @@ class ProgramParser:
 
     @property
     def leading_text(self) -> str:
-        """The last characters before the first %, with codes for those that are not text."""
+        """Return the last characters before the first %, with codes for characters that are not text."""
         return "".join(self._told())
 
     @property
     def is_noise(self) -> bool:
-        """Whether most characters before the first % are not text in seven or eight bits."""
+        """Return whether most characters before the first % are not text in seven or eight bits."""
         return sum(len(one) > 1 for one in self._told()) * 2 > len(self._before)
 
     def _told(self) -> list[str]:
@@ -154,11 +166,14 @@ class ProgramParser:
 
     @property
     def line_count(self) -> int:
-        """The number of received lines, including that of the first %."""
+        """Return the number of received lines, including the line of the first %."""
         return self._feeds or self._returns
 
     def add_characters(self, received: bytes) -> None:
-        """Add received characters. Raises IncompleteError at the first invalid one."""
+        """Add received characters.
+
+        Raises IncompleteError at the first invalid character.
+        """
         self.character_count += len(received)
         if self.character_count > MAX_PROGRAM_BYTES:
             raise IncompleteError(
@@ -172,9 +187,9 @@ class ProgramParser:
                 self._store(character)
 
     def handle_silence(self) -> None:
-        """Finish at the end of the input; a final % needs no line end.
+        """Finish the program at the end of the input.
 
-        Raises IncompleteError if the final % is missing.
+        A final % needs no line end. Raises IncompleteError if the final % is missing.
         """
         if self.phase is ReceptionPhase.COMPLETE:
             return
@@ -200,7 +215,7 @@ class ProgramParser:
         )
 
     def _split_text(self, text: bytes) -> tuple[bytes, list[bytes]]:
-        """Return the text after the first %, and the lines."""
+        """Return the text after the first %, and the lines of the program."""
         lines = split_lines(text)
         if not self._wrap:
             return b"", lines
@@ -270,8 +285,8 @@ class ProgramParser:
     def _handle_bad_parity(self, character: int) -> None:
         """Handle a parity error.
 
-        In noise before an eight-bit program, a character may look like a % with parity; reception then starts
-        again. Raises IncompleteError otherwise.
+        In noise before an eight-bit program, a character may look like a % with parity. Reception then
+        starts again. Otherwise, raises IncompleteError.
         """
         if not self._settings.checks_parity and not self.line_count:
             self._skipped += len(self._raw) + 1
@@ -289,7 +304,7 @@ class ProgramParser:
         )
 
     def _is_at_end(self) -> bool:
-        """Return whether the present line is the final %."""
+        """Return whether the present line contains only the final %."""
         line = bytes(character & _SEVEN_BIT_MASK for character in self._raw[self._begins :])
         return bool(self._begins) and line.translate(None, _SKIPPED_CODES).strip() == self._wrap
 
@@ -320,7 +335,10 @@ class ProgramParser:
 
 
 def _format_character(character: int, parity: int) -> str:
-    """Return a character as text in eight bits, or in seven with this parity; otherwise its code."""
+    """Return a character as a text, or its code if it is not text.
+
+    The character is read with eight bits, or with seven bits and the given parity.
+    """
     plain = character & _SEVEN_BIT_MASK if calculate_parity(character) == parity else character
     if plain in {_CR, _LF, _TAB}:
         return " "
@@ -328,7 +346,10 @@ def _format_character(character: int, parity: int) -> str:
 
 
 def _has_even_parity(raw: bytes) -> bool:
-    """Return whether all characters have seven bits with even parity, at least one with the top bit set."""
+    """Return whether all characters have seven bits with even parity.
+
+    At least one character must have the top bit set.
+    """
     return any(character > _SEVEN_BIT_MASK for character in raw) and not any(
         calculate_parity(c) for c in raw if c
     )
@@ -342,7 +363,7 @@ _PARITY_BIT = 0x80
 
 
 def encode_program(text: bytes, settings: TransferSettings) -> bytes:
-    """Return the bytes to send for a program.
+    """Return the bytes that must be sent for a program.
 
     Raises DriverError if the program is empty or contains characters that cannot be transferred.
     """
@@ -361,7 +382,10 @@ def encode_program(text: bytes, settings: TransferSettings) -> bytes:
 
 
 def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:
-    """Return the lines without their own frame, which would otherwise be sent twice."""
+    """Return the lines without the delimiter lines that they already contain.
+
+    These delimiters would otherwise be sent twice.
+    """
     if lines and lines[0].strip() == wrap:
         lines = lines[1:]
     return lines[:-1] if lines and lines[-1].strip() == wrap else lines

@@ -1,4 +1,7 @@
-"""Transfer of one program, which runs in one thread; other threads may read its progress and cancel it."""
+"""The transfer of one program, which runs in one thread.
+
+Other threads may read its progress and cancel it.
+"""
 
 from __future__ import annotations
 
@@ -32,15 +35,16 @@ END_SILENCE_S = 10.0  # Seconds of silence within a program after which it count
 
 
 class CancelledError(DriverError):
-    """Cancellation of the transfer by the operator; nothing is saved."""
+    """Error raised if the operator cancels the transfer, so that nothing is saved."""
 
 
 @dataclass(frozen=True, slots=True)
 class TransferState:
-    """Progress of a transfer: bytes, lines and the reason for waiting, which is one of the words above.
+    """The progress of a transfer: bytes, lines, and the reason for waiting.
 
-    ``total_bytes`` 0 means unknown. The last field is the received text before the first %, which is not a
-    program.
+    ``total_bytes`` is 0 if the total is unknown. ``wait_reason`` is empty or one of the reasons that this
+    module defines, such as FOR_DC1. ``received_text`` is the text received before the first %, which is not
+    part of the program.
     """
 
     done_bytes: int = 0
@@ -51,8 +55,9 @@ class TransferState:
 
 
 class _Transfer:
-    """Base class of both transfer directions; any thread may read ``progress``, which is replaced as a
-    whole.
+    """The base class of both transfer directions.
+
+    Any thread may read ``progress``, because it is always replaced as a whole.
     """
 
     def __init__(self, wire: FlowControlTransport, clock: Clock, settings: TransferSettings) -> None:
@@ -61,7 +66,10 @@ class _Transfer:
         self.progress = TransferState()
 
     def cancel(self) -> None:
-        """Cancel the transfer, which takes effect within 0.1 s."""
+        """Cancel the transfer.
+
+        The cancellation takes effect within 0.1 s.
+        """
         self._cancelled.set()
 
     def _go_on(self) -> None:
@@ -70,7 +78,7 @@ class _Transfer:
 
 
 class SendTransfer(_Transfer):
-    """Transfer that sends bytes in chunks of 64, as fast as the other side permits."""
+    """A transfer that sends bytes in chunks of 64, as fast as the other side permits."""
 
     def __init__(
         self, wire: FlowControlTransport, clock: Clock, settings: TransferSettings, data: bytes
@@ -84,9 +92,9 @@ class SendTransfer(_Transfer):
         self.progress = TransferState(0, len(data))
 
     def run(self) -> int:
-        """Send the program and return the number of bytes.
+        """Send the program, and return the number of bytes.
 
-        Raises CancelledError, WireError or DriverError.
+        Raises CancelledError, WireError or DriverError if the program is not sent completely.
         """
         try:
             if self._settings.waits_for_dc1:
@@ -145,13 +153,16 @@ class SendTransfer(_Transfer):
         self._tell(out, HELD_BACK if still > STOPPED_AFTER_S else "")
 
     def _wait_for_room(self, waiting: int) -> None:
-        """Wait until the pending bytes are transmitted, or until the other side sends something."""
+        """Wait until the pending bytes are transmitted, or until the other side sends a character."""
         self._handle_codes(
             self._wire.receive(min(max(waiting, 1) * self._settings.line_settings.character_s, CYCLE_S))
         )
 
     def _handle_codes(self, received: bytes) -> None:
-        """Obey DC3 and DC1 if the kernel does not; other received characters are ignored."""
+        """Handle received DC3 and DC1 codes if the kernel does not.
+
+        Other received characters are ignored.
+        """
         if self._settings.line_settings.flow != "xonxoff":
             return
         for character in received:
@@ -166,10 +177,13 @@ class SendTransfer(_Transfer):
 
 
 class ReceiveTransfer(_Transfer):
-    """Transfer that receives one complete program."""
+    """A transfer that receives one complete program."""
 
     def run(self) -> ReceivedText:
-        """Receive a program. Raises CancelledError, IncompleteError or WireError; then nothing is saved."""
+        """Receive a program and return it.
+
+        Raises CancelledError, IncompleteError or WireError; nothing is then saved.
+        """
         try:
             return self._receive()
         finally:
@@ -214,7 +228,10 @@ class ReceiveTransfer(_Transfer):
         )
 
     def _finish_after_silence(self, incoming: ProgramParser, *, is_silent: bool) -> None:
-        """Finish after a silence; without a complete frame, wait longer because the sender may be slow."""
+        """Finish the reception after a silence.
+
+        Without a complete frame, wait longer, because the sender may be slow.
+        """
         if not self._settings.delimiter and not is_silent:
             return
         try:

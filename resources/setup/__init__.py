@@ -1,1 +1,4 @@
-"""Set-up: what a fresh machine gets: locked by hash, listed with its licences, in one file."""
+"""Setup of a new computer.
+
+The packages are locked by hash, listed with their licenses, and bundled in one file.
+"""

@@ -1,8 +1,8 @@
-"""Checks the locked packages against a public list of vulnerabilities: ``python -m resources.setup.audit``.
+"""Check of the locked packages for known vulnerabilities: ``python -m resources.setup.audit``.
 
-It asks the list of osv.dev through ``pip-audit`` (``pipx install pip-audit``) and writes the result with its
-date to ``docs/vulnerabilities.md``, also where the list could not be reached. Its exit status is 0 only when
-every package was checked and none has a known vulnerability.
+The check queries the list of osv.dev through ``pip-audit`` (``pipx install pip-audit``). It writes the
+result with its date to ``docs/vulnerabilities.md``, even if the list could not be reached. The exit status
+is 0 only if every package was checked and no package has a known vulnerability.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ _LONGEST = 300.0  # s
 
 
 class Result(NamedTuple):
-    """What the list has on one locked file; ``unchecked`` are those that it did not answer about."""
+    """Vulnerabilities that the list contains for one locked file.
+
+    ``unchecked`` are the packages for which the list returned no result.
+    """
 
     name: str
     checked: int
@@ -38,7 +41,10 @@ class Result(NamedTuple):
 
 
 def result_of(name: str, packages: Sequence[str], answer: str) -> Result:
-    """Read the answer of pip-audit. A package that it leaves out or skips is not checked."""
+    """Parse the output of pip-audit.
+
+    A package that pip-audit omits or skips is unchecked.
+    """
     try:
         told: list[dict[str, Any]] = json.loads(answer)["dependencies"]
         asked = {each["name"]: each["vulns"] for each in told if "vulns" in each}
@@ -50,7 +56,7 @@ def result_of(name: str, packages: Sequence[str], answer: str) -> Result:
 
 
 def audited(command: str, name: str) -> Result:
-    """The result of one locked file."""
+    """Run pip-audit on one locked file, and return the result."""
     packages = sorted(locked_packages(name))
     words = [command, *_ASK, "--requirement", str(locked_file(name))]
     try:
@@ -61,7 +67,7 @@ def audited(command: str, name: str) -> Result:
 
 
 def page(results: Sequence[Result], day: str) -> str:
-    """The page, dated."""
+    """Return the text of the page, including its date."""
     return "\n".join(_lines(results, day)) + "\n"
 
 
@@ -78,7 +84,7 @@ def _lines(results: Sequence[Result], day: str) -> Iterator[str]:
 
 
 def main() -> int:
-    """Ask, write the page, answer the exit status."""
+    """Run the check, write the page, and return the exit status."""
     command = shutil.which("pip-audit")
     if command is None:
         sys.stderr.write("pip-audit is not installed; it asks the list: pipx install pip-audit\n")

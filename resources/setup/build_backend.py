@@ -1,7 +1,7 @@
-"""Build of TurnDesk's wheel: the packages of the source code become parts of one package ``turndesk``.
+"""Build backend for the wheel of TurnDesk, which moves all source packages into one package ``turndesk``.
 
-Setuptools builds the wheel, and this backend then moves its packages. Editable installs and source
-distributions are those of setuptools, so that the names of the source code remain as they are in a clone.
+Setuptools builds the wheel, and this backend then moves its packages. Setuptools also builds editable
+installs and source distributions, whose package names are the same as in a clone.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def build_wheel(
     config_settings: Mapping[str, Any] | None = None,
     metadata_directory: str | None = None,
 ) -> str:
-    """Build the wheel in a folder, and return its name."""
+    """Build the wheel in a folder, and return the file name of the wheel."""
     settings = dict(config_settings) if config_settings else None
     name = str(build_meta.build_wheel(wheel_directory, settings, metadata_directory))
     path = Path(wheel_directory) / name

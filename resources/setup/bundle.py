@@ -1,9 +1,9 @@
-"""The bundle for a computer without a network, one file: ``python -m resources.setup.bundle [FOLDER]``.
+"""Build the bundle for a computer without a network: ``python -m resources.setup.bundle [FOLDER]``.
 
-It holds the wheels of all supported Pythons by the lock, TurnDesk, licences, SBOM and ``install.sh``, and
-unpacks itself: ``sh turndesk-….run`` sets the desk up. ``--system-packages`` adds the libraries of Qt, for
-the release on which the bundle is made; ``--machine aarch64`` makes it for 64-bit ARM. Making it
-needs a network.
+The bundle is one file with the locked wheels for all supported Python versions, TurnDesk, licenses, the
+SBOM and ``install.sh``. It unpacks itself: ``sh turndesk-….run`` sets up TurnDesk. ``--system-packages``
+adds the Qt libraries for the system release on which the bundle is built; ``--machine aarch64`` builds the
+bundle for 64-bit ARM. Building the bundle requires a network.
 """
 
 from __future__ import annotations
@@ -35,11 +35,14 @@ _LICENCES = ("GPL-3", "LGPL-3")
 
 
 class BundleError(Exception):
-    """The bundle cannot be made; the sentence says why."""
+    """Error that prevents the bundle from being built; the text states the reason."""
 
 
 def run(*words: object, cwd: Path = HOUSE) -> str:
-    """A command's output. Raises BundleError with its last lines."""
+    """Run a command in ``cwd`` and return its output.
+
+    Raises BundleError with the last lines of the output if the command fails.
+    """
     done = subprocess.run([str(each) for each in words], cwd=cwd, capture_output=True, text=True, check=False)
     if done.returncode:
         last = "\n".join((done.stderr or done.stdout).strip().splitlines()[-4:])
@@ -48,7 +51,7 @@ def run(*words: object, cwd: Path = HOUSE) -> str:
 
 
 def version() -> str:
-    """What is in the bundle: the version, and the commit with its date where it is known."""
+    """Return the version in the bundle, with its commit and date if they are known."""
     try:
         day = run("git", "show", "--no-patch", "--format=%cd", "--date=format:%Y%m%d", "HEAD").strip()
         return (
@@ -60,13 +63,16 @@ def version() -> str:
 
 
 def platforms(machine: str) -> Iterator[str]:
-    """The platforms whose wheels run on this machine, as pip wants them named."""
+    """Yield the pip options for all platforms whose wheels run on this machine."""
     yield from (f"--platform=manylinux_2_{n}_{machine}" for n in range(GLIBC[machine], 4, -1))
     yield from (f"--platform={each}_{machine}" for each in reversed(_OLD_NAMES))
 
 
 def fetch_wheels(folder: Path, machine: str) -> None:
-    """All wheels of the desk for every supported Python; pip checks each against its locked hash."""
+    """Download all wheels that TurnDesk needs for every supported Python version.
+
+    Pip checks each wheel against its locked hash.
+    """
     for python in PYTHONS:
         for locked in ("desk", "installer"):
             words = ["--quiet", "--disable-pip-version-check", "--only-binary=:all:"]
@@ -76,7 +82,9 @@ def fetch_wheels(folder: Path, machine: str) -> None:
 
 
 def build_product(folder: Path) -> None:
-    """TurnDesk's own wheel, from a copy: nothing of an earlier build gets into it."""
+    """Build the wheel of TurnDesk from a copy of the source, so that it contains no files of an earlier
+    build.
+    """
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "turndesk"
         copy.mkdir()
@@ -89,7 +97,10 @@ def build_product(folder: Path) -> None:
 
 
 def fetch_system_packages(folder: Path) -> list[Component]:
-    """What the set-up asks Debian or Ubuntu for, with all that this needs, as a repository of packages."""
+    """Download the Debian or Ubuntu packages that the setup installs, with their dependencies.
+
+    The folder becomes a package repository. Return the components for the SBOM.
+    """
     folder.mkdir()
     wanted = re.findall(
         r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$',
@@ -119,7 +130,7 @@ def fetch_system_packages(folder: Path) -> list[Component]:
 
 
 def release_name() -> str:
-    """The release of this system, such as ``debian12``."""
+    """Return the name of this system's release, such as ``debian12``."""
     text = Path("/etc/os-release").read_text(encoding="utf-8")
     found: dict[str, str] = dict(
         re.findall(r'^(ID|VERSION_ID|VERSION_CODENAME)="?([^"\n]*)"?$', text, re.MULTILINE)
@@ -128,7 +139,10 @@ def release_name() -> str:
 
 
 def gather(folder: Path, machine: str, *, system_packages: bool, wheels: Path | None = None) -> None:
-    """Put the contents of the bundle into a folder; ``wheels`` are packages that are fetched already."""
+    """Put the contents of the bundle into a folder.
+
+    ``wheels`` is a folder of wheels that are already downloaded; with None, the wheels are downloaded.
+    """
     fetched, wheels = wheels, folder / "wheels"
     if fetched:
         shutil.copytree(fetched, wheels)
@@ -157,7 +171,10 @@ def _goes_along(name: str) -> bool:
 
 
 def pack(folder: Path, target: Path, machine: str) -> None:
-    """One file that unpacks itself: a script, and behind it everything, held by its SHA-256."""
+    """Write one file that unpacks itself.
+
+    The file starts with a script, followed by the packed contents. The script contains their SHA-256.
+    """
     with tempfile.TemporaryFile() as packed:
         with tarfile.open(fileobj=packed, mode="w") as archive:
             archive.add(folder, arcname=".", filter=owned_by_root)
@@ -174,13 +191,16 @@ def pack(folder: Path, target: Path, machine: str) -> None:
 
 
 def _script(words: dict[str, str]) -> bytes:
-    """The script in front, with what it has to know; where the packed part starts has four digits."""
+    """Return the script at the start of the bundle, with its placeholders replaced by ``words``.
+
+    The position where the packed contents start has four digits.
+    """
     text = (HERE / "unpack.sh").read_text(encoding="utf-8")
     return re.sub("@([A-Z0-9]+)@", lambda found: words[found[1]], text).encode()
 
 
 def main(argv: list[str]) -> int:
-    """Make the bundle."""
+    """Build the bundle and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.bundle", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=Path(), help="where it is put")
     parser.add_argument("--machine", choices=GLIBC, default=platform.machine())

@@ -1,7 +1,7 @@
-"""TurnDesk, as a wheel installs it: one package whose folder contains the packages of the source code.
+"""Package ``turndesk`` as a wheel installs it, whose folder contains the packages of the source code.
 
-The build copies this file to ``turndesk/__init__.py``. The packages are found only by the processes of
-TurnDesk, so that an installed TurnDesk does not claim the names ``app``, ``core``, ``drivers`` and
+The build copies this file to ``turndesk/__init__.py``. Only the processes of TurnDesk can import the inner
+packages, so that an installed TurnDesk does not occupy the names ``app``, ``core``, ``drivers`` and
 ``resources`` in its environment.
 """
 

@@ -1,7 +1,8 @@
-"""Lists the licences of all Python packages: ``python -m resources.setup.licences``.
+"""List the licenses of all Python packages: ``python -m resources.setup.licences``.
 
-It reads what the installed packages say of themselves and writes the tables of ``docs/licences.md``. A
-package whose licence is not one that TurnDesk may be passed on with is named, and nothing is written.
+The script reads the metadata of the installed packages and writes the tables of ``docs/licences.md``. If
+the license of a package does not permit distribution with TurnDesk, the script reports the package and
+writes nothing.
 """
 
 from __future__ import annotations
@@ -60,11 +61,11 @@ _ROW = re.compile(r"^\| (?P<name>[a-z0-9-]+) \| (?P<version>\d\S*) \| (?P<licenc
 
 
 class LicenceError(Exception):
-    """A package that may not be passed on, or says nothing of it."""
+    """Error for a package whose license does not permit distribution or is not stated."""
 
 
 class Licensed(NamedTuple):
-    """A package, its version, its licence as an SPDX expression."""
+    """Package with its version and its license as an SPDX expression."""
 
     name: str
     version: str
@@ -72,7 +73,10 @@ class Licensed(NamedTuple):
 
 
 def licence_of(package: Distribution) -> str:
-    """The licence that a package states, as an SPDX expression. Raises LicenceError."""
+    """Return the license that a package states, as an SPDX expression.
+
+    Raises LicenceError if the license is missing or not compatible.
+    """
 
     def stated(field: str) -> list[str]:
         return package.metadata.get_all(field) or []
@@ -92,7 +96,10 @@ def licence_of(package: Distribution) -> str:
 
 
 def compatible(expression: str) -> bool:
-    """Whether one of the licences that are offered (OR), with all that it joins (AND), is compatible."""
+    """Return whether a license expression is compatible.
+
+    At least one alternative (OR) must consist only of compatible licenses (AND).
+    """
     return any(
         all(each.strip() in COMPATIBLE for each in choice.split(" AND "))
         for choice in expression.split(" OR ")
@@ -100,18 +107,21 @@ def compatible(expression: str) -> bool:
 
 
 def listed(name: str, without: str | None) -> Iterator[LockedPackage]:
-    """The packages of a set of the lock that are not in another."""
+    """Return the locked packages of the set ``name`` that are not in the set ``without``."""
     others = locked_packages(without) if without else {}
     return (each for each in locked_packages(name).values() if each.name not in others)
 
 
 def rows(page: str) -> list[Licensed]:
-    """The packages that the page lists."""
+    """Return the packages that are listed on a page."""
     return [Licensed(*found.groups()) for found in _ROW.finditer(page)]
 
 
 def tables(known: dict[str, str]) -> str:
-    """The tables of the page. ``known`` are licences of packages that are not installed here."""
+    """Return the tables of the page as text.
+
+    ``known`` contains the licenses of packages that are not installed on this computer.
+    """
     lines = []
     for heading, name, without in TABLES:
         lines += [f"## {heading}", "", "| package | version | license |", "|---|---|---|"]
@@ -126,13 +136,13 @@ def tables(known: dict[str, str]) -> str:
 
 
 def page(old: str) -> str:
-    """The page with its tables made anew: all from its first table on."""
+    """Return the page with new tables, which replace everything from its first table on."""
     known = {row.name: row.licence for row in rows(old)}
     return old.partition(f"## {TABLES[0][0]}")[0] + tables(known)
 
 
 def main() -> int:
-    """Write the page."""
+    """Write the page and return the exit status."""
     try:
         PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
     except LicenceError as error:

@@ -1,8 +1,9 @@
-"""Locks the Python packages by version and hash: ``python -m resources.setup.lock [--upgrade]``.
+"""Lock the Python packages by version and hash: ``python -m resources.setup.lock [--upgrade]``.
 
-From the requirements of ``pyproject.toml`` come the files ``locked-*.txt``, which the set-up gives to
-``pip install --require-hashes --no-deps``: one for every supported Python, for Linux, macOS and Windows.
-Versions stay as they are unless ``--upgrade`` is said. It needs ``uv`` (``pipx install uv``) and a network.
+The script writes the files ``locked-*.txt`` from the requirements in ``pyproject.toml``. The setup passes
+these files to ``pip install --require-hashes --no-deps``. They are valid for every supported Python version
+on Linux, macOS and Windows. Versions change only with ``--upgrade``. The script requires ``uv`` (``pipx
+install uv``) and a network.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ _HASH = re.compile(r"--hash=sha256:([0-9a-f]{64})\b")
 
 @dataclass(frozen=True)
 class LockedPackage:
-    """A package as it is locked: name in lower case, version, SHA-256 of its files, where it is needed."""
+    """Locked package: its name in lower case, version, SHA-256 of its files, and environment marker."""
 
     name: str
     version: str
@@ -51,17 +52,17 @@ class LockedPackage:
 
 
 def locked_file(name: str) -> Path:
-    """The file of locked packages of one of SETS."""
+    """Return the path of the file with the locked packages of a set."""
     return HERE / f"locked-{name}.txt"
 
 
 def locked_packages(name: str) -> dict[str, LockedPackage]:
-    """The packages of one of SETS, by name."""
+    """Return the locked packages of a set by name."""
     return {package.name: package for package in read_locked(locked_file(name).read_text(encoding="utf-8"))}
 
 
 def read_locked(text: str) -> Iterator[LockedPackage]:
-    """The packages of a locked file."""
+    """Yield the packages in the text of a locked file."""
     starts = list(_PIN.finditer(text))
     ends = [each.start() for each in starts[1:]] + [len(text)]
     for found, end in zip(starts, ends, strict=True):
@@ -70,17 +71,20 @@ def read_locked(text: str) -> Iterator[LockedPackage]:
 
 
 def project() -> dict[str, Any]:
-    """What pyproject.toml says."""
+    """Return the contents of pyproject.toml."""
     return tomllib.loads((HOUSE / "pyproject.toml").read_text(encoding="utf-8"))
 
 
 def build_packages() -> list[str]:
-    """What TurnDesk itself is put in place with: it is locked too, nothing is fetched beside the lock."""
+    """Return the requirements for building TurnDesk itself.
+
+    They are also locked, so that the setup downloads nothing that is not locked.
+    """
     return [str(each) for each in project()["build-system"]["requires"]]
 
 
 def main(argv: list[str]) -> int:
-    """Write all locked files."""
+    """Write all locked files and return the exit status."""
     if (uv := shutil.which("uv")) is None:
         sys.stderr.write("uv is not installed; it resolves the packages: pipx install uv\n")
         return 2

@@ -1,4 +1,4 @@
-"""A wheel whose packages are parts of one package ``turndesk``.
+"""Conversion of a wheel so that all its packages are parts of one package ``turndesk``.
 
 The wheel has the same bytes whenever ``SOURCE_DATE_EPOCH`` and the source are the same.
 """
@@ -25,7 +25,9 @@ _MODE = 0o100644
 
 
 def in_one_package(wheel: bytes) -> bytes:
-    """Return a wheel whose packages are parts of ``turndesk``, with its files in order and of one time."""
+    """Return a wheel whose packages are parts of ``turndesk``, with sorted files that all have the same
+    time.
+    """
     with zipfile.ZipFile(io.BytesIO(wheel)) as archive:
         files = {moved(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")}
     record = next(name for name in files if name.endswith(".dist-info/RECORD"))
@@ -47,7 +49,10 @@ def in_one_package(wheel: bytes) -> bytes:
 
 
 def moved(name: str) -> str:
-    """Return the place of a file in the wheel. Raises ValueError for a file of an unknown package."""
+    """Return the new path of a file in the wheel.
+
+    Raises ValueError if the file belongs to an unknown package.
+    """
     top = name.partition("/")[0]
     if top in PACKAGES:
         return f"{NAME}/{name}"
@@ -63,7 +68,7 @@ def _time() -> tuple[int, int, int, int, int, int]:
 
 
 def _record(files: Mapping[str, bytes], record: str) -> bytes:
-    """Return the list of the wheel's files with hash and size."""
+    """Return the list of the wheel's files with their hashes and sizes (RECORD)."""
     made = io.StringIO()
     rows = csv.writer(made, lineterminator="\n")
     for name in sorted(files):

@@ -1,9 +1,9 @@
-"""Builds a release: ``python -m resources.setup.release FOLDER``, from a clean checkout of the last commit.
+"""Build a release from a clean checkout of the last commit: ``python -m resources.setup.release FOLDER``.
 
 The release consists of the wheel, the source distribution, the bundle for a computer without a network, a
-folder that can be moved, and Debian packages, with ``SHA256SUMS`` and the SBOM. Everything is built twice and
-compared byte for byte. A network is needed once, for the locked packages. ``dpkg-deb`` writes the Debian
-packages; it is part of every Debian and Ubuntu.
+folder that can be moved, and Debian packages, with ``SHA256SUMS`` and the SBOM. Everything is built twice
+and compared byte for byte. A network is required once, for the locked packages. ``dpkg-deb``, which is part
+of every Debian and Ubuntu, writes the Debian packages.
 """
 
 from __future__ import annotations
@@ -32,7 +32,10 @@ SUMS = "SHA256SUMS"
 
 
 def build(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
-    """Build everything from the checkout in which this module is. Raises BundleError or LicenceError."""
+    """Build all artifacts from the checkout that contains this module.
+
+    Raises BundleError or LicenceError.
+    """
     build_product(folder)
     wheel = next(folder.glob("turndesk-*.whl"))
     _write_source_distribution(folder)
@@ -62,7 +65,7 @@ def _write_source_distribution(folder: Path) -> None:
 
 
 def write_sums(folder: Path) -> None:
-    """Write the SHA-256 of every file, as ``sha256sum --check`` reads it."""
+    """Write the SHA-256 of every file in the format that ``sha256sum --check`` reads."""
     lines = []
     for path in sorted(folder.iterdir()):
         if path.name != SUMS:
@@ -72,7 +75,7 @@ def write_sums(folder: Path) -> None:
 
 
 def differences(first: Path, second: Path) -> list[str]:
-    """Return the names of files that differ between two folders, or that only one of them has."""
+    """Return the names of files that differ between two folders, or that exist in only one of them."""
     names = {path.name for folder in (first, second) for path in folder.iterdir()}
     return sorted(name for name in names if _bytes(first / name) != _bytes(second / name))
 
@@ -82,9 +85,10 @@ def _bytes(path: Path) -> bytes | None:
 
 
 def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
-    """Build twice from two clean checkouts, compare, and write the release to a new folder.
+    """Build the release and write it to a new folder.
 
-    Raises BundleError if the two builds differ.
+    Everything is built twice from two clean checkouts and compared. Raises BundleError if the two builds
+    differ.
     """
     if folder.exists():
         raise BundleError(f"{folder} exists already; name a new folder")
@@ -113,7 +117,7 @@ def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
 
 
 def main(argv: Sequence[str]) -> int:
-    """Build the release."""
+    """Build the release and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.release", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, help="new folder for the release")
     parser.add_argument("--machine", choices=GLIBC, default=platform.machine())

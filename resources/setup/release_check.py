@@ -1,9 +1,10 @@
-"""Tries a Debian package in a bare root: ``python -m resources.setup.release_check PACKAGE``, as root.
+"""Test a Debian package in a minimal system: ``python -m resources.setup.release_check PACKAGE``, as root.
 
-The check makes a minimal root with ``debootstrap``, with the package sources of this computer. It installs an
-earlier version, upgrades, proves and runs a program, removes and purges, and compares the files before and
-after. ``lintian`` must find no error. The check needs ``debootstrap``, ``lintian`` and a network for Debian's
-packages, takes several minutes, and is not part of the test command.
+The check creates a minimal root file system with ``debootstrap``, with the package sources of this
+computer. It installs an earlier version, upgrades the package, proves and runs a program, removes and
+purges the package, and compares the files before and after. ``lintian`` must not find an error. The check
+requires ``debootstrap``, ``lintian`` and a network for Debian's packages, takes several minutes, and is not
+part of the test command.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ USES: Sequence[tuple[str, str]] = (
 
 
 def earlier_package(package: Path, folder: Path) -> Path:
-    """Return the same package as version 0.0.0, with its files in another folder."""
+    """Return the path of the same package as version 0.0.0, with its files in a different folder."""
     root = folder / "earlier"
     run("dpkg-deb", "--raw-extract", package, root)
     version = next((root / "opt" / "turndesk").iterdir())
@@ -63,7 +64,10 @@ def earlier_package(package: Path, folder: Path) -> Path:
 
 @contextmanager
 def bare_root(release: str, folder: Path) -> Iterator[Path]:
-    """Yield a minimal root of a Debian release, with its mounts and the package sources of this computer."""
+    """Yield a minimal root file system of a Debian release.
+
+    The root has its mounts and the package sources of this computer.
+    """
     root = folder / "root"
     run("debootstrap", "--variant=minbase", release, root)
     (root / "etc" / "apt" / "sources.list").unlink(missing_ok=True)
@@ -88,19 +92,25 @@ def bare_root(release: str, folder: Path) -> Iterator[Path]:
 
 
 def in_root(root: Path, command: str) -> str:
-    """Run a shell command in the root, and return its output. Raises BundleError if it fails."""
+    """Run a shell command in the root file system, and return its output.
+
+    Raises BundleError if the command fails.
+    """
     lines = f"export HOME=/root LC_ALL=C.UTF-8 TURNDESK_HOME=/root/data; {_SAMPLES}; {command}"
     return run("chroot", root, "sh", "-c", lines)
 
 
 def files(root: Path) -> set[str]:
-    """Return the files of the root that a purge must leave as they were."""
+    """Return the files in the root file system that a purge must not change."""
     listed = in_root(root, "find / -xdev \\( -type f -o -type l \\) -print").splitlines()
     return {name for name in listed if not _IGNORED.match(name)}
 
 
 def check(package: Path, release: str) -> Iterator[str]:
-    """Yield one line for each success. Raises BundleError at the first failure."""
+    """Yield one line for each successful step of the check.
+
+    Raises BundleError at the first failure.
+    """
     with tempfile.TemporaryDirectory(prefix="turndesk-") as work, bare_root(release, Path(work)) as root:
         earlier = earlier_package(package, Path(work))
         shutil.copy(earlier, root / "root" / "earlier.deb")
@@ -129,7 +139,7 @@ def check(package: Path, release: str) -> Iterator[str]:
 
 
 def lintian_errors(package: Path) -> list[str]:
-    """Return the errors that lintian reports and that no documented override explains."""
+    """Return the errors that lintian reports, except those that a documented override explains."""
     done = subprocess.run(
         ["lintian", "--no-cfg", "--tag-display-limit=0", str(package)],
         capture_output=True,
@@ -140,7 +150,7 @@ def lintian_errors(package: Path) -> list[str]:
 
 
 def main(argv: Sequence[str]) -> int:
-    """Check one package."""
+    """Check one package and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.release_check", description=__doc__)
     parser.add_argument("package", type=Path)
     parser.add_argument("--release", default="bookworm", help="Debian release (default: bookworm)")

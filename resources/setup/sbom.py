@@ -1,4 +1,7 @@
-"""The SBOM, CycloneDX 1.6 in JSON: all packages and files of a desk, licence, hash, what they need."""
+"""SBOM of TurnDesk in CycloneDX 1.6 JSON.
+
+The SBOM lists all packages and files with their licenses, hashes and dependencies.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +25,9 @@ _ROOT = "turndesk"
 
 
 def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ()) -> dict[str, Any]:
-    """The document for a version of TurnDesk, the wheels that go with it and components of the system.
+    """Return the SBOM for a version of TurnDesk, its wheels and the components of the system.
 
-    Raises LicenceError for a package that may not be passed on.
+    Raises LicenceError if the license of a package does not permit distribution.
     """
     files = _files(wheels)
     names = sorted(locked_packages("desk"))
@@ -48,7 +51,10 @@ def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ())
 
 
 def file_of_the_system(name: str, version: str, path: Path, distribution_name: str) -> Component:
-    """A system package that is brought along: ``distribution_name`` is debian or ubuntu."""
+    """Return the component for a system package that is part of the bundle.
+
+    ``distribution_name`` is "debian" or "ubuntu".
+    """
     return {
         "type": "library",
         "bom-ref": f"deb:{name}",
@@ -60,7 +66,7 @@ def file_of_the_system(name: str, version: str, path: Path, distribution_name: s
 
 
 def _package(name: str, files: list[Path]) -> Component:
-    """A locked package with its licence and the files of it that are there."""
+    """Return the component for a locked package, with its license and its available files."""
     locked = locked_packages("desk")[name]
     component: Component = {"type": "library", "bom-ref": name, "name": name, "version": locked.version}
     component["purl"] = f"pkg:pypi/{name}@{locked.version}"
@@ -71,7 +77,11 @@ def _package(name: str, files: list[Path]) -> Component:
 
 
 def _qt(name: str, version: str) -> list[Component]:
-    """Qt itself, which lies in its Python package and has its version; its CPE says what is known of it."""
+    """Return the component for Qt, which is part of a Python package and has the same version as this
+    package.
+
+    The CPE of the component identifies known vulnerabilities of Qt.
+    """
     if name != "pyside6-essentials":
         return []
     cpe = f"cpe:2.3:a:qt:qt:{version}:*:*:*:*:*:*:*"
@@ -79,13 +89,16 @@ def _qt(name: str, version: str) -> list[Component]:
 
 
 def _brought_along() -> list[Component]:
-    """What lies in TurnDesk's own files and is somebody else's."""
+    """Return the components for third-party files that are part of TurnDesk's own files."""
     font: Component = {"type": "data", "bom-ref": "b612", "name": "B612", "description": "the fonts"}
     return [font | {"licenses": [{"license": {"id": "OFL-1.1"}}]}]
 
 
 def _needs(name: str) -> set[str]:
-    """What an installed package needs on Linux, on any Python that TurnDesk runs on."""
+    """Return the packages that an installed package requires on Linux.
+
+    The result applies to all Python versions that TurnDesk supports.
+    """
     places = [{"python_version": each, "python_full_version": f"{each}.0", "extra": ""} for each in PYTHONS]
     wanted = map(Requirement, distribution(name).requires or ())
     return {
@@ -96,13 +109,13 @@ def _needs(name: str) -> set[str]:
 
 
 def _now() -> datetime:
-    """Return the stated time of a build that can be repeated, or the present time."""
+    """Return the configured time of a reproducible build (``SOURCE_DATE_EPOCH``), or the present time."""
     stated = os.environ.get("SOURCE_DATE_EPOCH", "")
     return datetime.fromtimestamp(int(stated), UTC) if stated else datetime.now(UTC)
 
 
 def _files(wheels: Iterable[Path]) -> dict[str, list[Path]]:
-    """The wheels by their packages."""
+    """Return the wheels by the name of their package."""
     found: dict[str, list[Path]] = {}
     for path in sorted(wheels):
         found.setdefault(str(parse_wheel_filename(path.name)[0]), []).append(path)

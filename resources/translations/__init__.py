@@ -1,1 +1,1 @@
-"""Catalogues of the operator's languages, and the script that collects what they must hold."""
+"""Catalogs of the operator's languages, and the script that collects the texts for them."""

@@ -1,7 +1,8 @@
 """Collect every text that a person can read: ``python -m resources.translations.collect``.
 
-A text with values is the template of a ``Message``, such as ``LINE {line}``. The catalogs (Qt's ``.ts``) get
-the new texts, and ``pyside6-lrelease`` compiles them. ``messages.csv`` lists every text by its id.
+A text with values is the template of a ``Message``, such as ``LINE {line}``. New texts are added to the
+catalogs (Qt's ``.ts`` files), which ``pyside6-lrelease`` compiles. ``messages.csv`` lists every text by its
+id.
 """
 
 from __future__ import annotations
@@ -270,7 +271,10 @@ _SHORT = frozenset(
 
 
 def texts() -> dict[str, str]:
-    """Return every text that the screen shows, and the first file that has it; they are translated."""
+    """Return every text that the screen shows, with the first file that contains the text.
+
+    These texts are translated.
+    """
     found: dict[str, str] = {}
     for room in ROOMS:
         loud = room.startswith(LOUD)
@@ -285,7 +289,7 @@ def texts() -> dict[str, str]:
 
 
 def console_texts(shown: Container[str]) -> dict[str, str]:
-    """Return the texts of command line and drivers that are not among ``shown``, with their files."""
+    """Return the texts of the command line and the drivers that are not in ``shown``, with their files."""
     found: dict[str, str] = {}
     for top in ("app", "core", "drivers"):
         for path in sorted((HOUSE / top).rglob("*.py")):
@@ -311,12 +315,15 @@ def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
 
 
 def _of_levels() -> list[str]:
-    """The levels, and what each may change."""
+    """Return the names of the access levels, and the changes that each level permits."""
     return [*(level.name for level in AccessLevel), *(act.value for act in ProtectedChange)]
 
 
 def _of_codes() -> list[str]:
-    """What the code table says of codes to an operator; the rest of it is documentation."""
+    """Return the texts of the code table that an operator can see.
+
+    All other texts in the table are documentation.
+    """
     codes = [code for _, chapter in CODE_CHAPTERS for code in chapter]
     said = {code.mdi_error_text for code in codes if code.mdi_error_text} | {code.group for code in codes}
     for refusal in (each for code in codes for each in code.entry_errors):
@@ -327,7 +334,7 @@ def _of_codes() -> list[str]:
 
 
 def _of_books() -> list[str]:
-    """Chapters and meanings of the code books, which the editor shows."""
+    """Return the chapters and meanings in the code books, which the editor shows."""
     books = [get_code_book(dialect) for dialect in Dialect]
     chapters = {title for book in books for title, _ in book.chapters}
     shown = chapters | {entry.what for book in books for entry in book.entries}
@@ -340,12 +347,12 @@ def _of_books() -> list[str]:
 
 
 def _of_extras() -> list[str]:
-    """What the optional features say in tables of their own."""
+    """Return the texts in the tables of the optional features."""
     return [text for extra in extras().values() for text in extra.words()]
 
 
 def _loud_alarms() -> list[str]:
-    """Alarms that are shown in capitals and are not found by their small letters: M30, E-stop, C."""
+    """Return the alarm texts that differ from their lower-case form, in capitals as the screen shows them."""
     texts = [entry.text for entry in CATALOGUE.values()]
     return [text.upper() for text in texts if text != text.lower()]
 
@@ -362,12 +369,15 @@ def _is_read(text: str, loud: bool) -> bool:
 
 
 def catalogue(language: str) -> dict[str, str]:
-    """Return the finished translations of a ``.ts`` file by their English text."""
+    """Return the finished translations in a ``.ts`` file by their English text."""
     return {text: told for text, (told, finished) in _entries(language).items() if finished}
 
 
 def _entries(language: str) -> dict[str, tuple[str, bool]]:
-    """Return translation and whether it is finished by English text; empty if there is no file."""
+    """Return each translation, and whether it is finished, by the English text.
+
+    The result is empty if the file does not exist.
+    """
     path = HERE / f"turndesk_{language}.ts"
     if not path.exists():
         return {}
@@ -381,10 +391,10 @@ def _entries(language: str) -> dict[str, tuple[str, bool]]:
 
 
 def write(language: str, wanted: dict[str, str], successors: Mapping[str, str]) -> None:
-    """Write the ``.ts`` file of the wanted texts with their translations, and its ``.qm``.
+    """Write the ``.ts`` file with the wanted texts and their translations, and compile the ``.qm`` file.
 
-    ``successors``: the former English by the present one, for texts that were reworded. They keep the old
-    translation, marked as unfinished.
+    ``successors`` maps the present English text to the former text of each reworded text. A reworded text
+    retains the former translation, marked as unfinished.
     """
     known = _entries(language)
     root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")
@@ -408,7 +418,7 @@ def write(language: str, wanted: dict[str, str], successors: Mapping[str, str]) 
 
 
 def main() -> int:
-    """Bring list and catalogs up to date; return the number of texts without a translation."""
+    """Update the message list and the catalogs, and return the number of texts without a translation."""
     shown = texts()
     successors = write_list({**shown, **console_texts(shown)})
     missing = 0

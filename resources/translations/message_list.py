@@ -1,7 +1,7 @@
-"""The list of all texts, ``messages.csv``: the id of each text and its English template.
+"""List of all texts, ``messages.csv``, with the id and the English template of each text.
 
-An id stays when a text is reworded: a new text takes over the id of the most similar text of the same
-folder that has gone.
+The id of a text does not change when the text is reworded: a new text receives the id of the most similar
+text of the same folder that no longer exists.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _SIMILAR = 0.6  # from this ratio on, a text is a reworded one; see difflib
 
 
 def read_list() -> dict[str, str]:
-    """Return the listed texts by id; empty if there is no list yet."""
+    """Return the listed texts by id, or an empty dictionary if the list does not exist yet."""
     if not LIST.exists():
         return {}
     with LIST.open(newline="", encoding="utf-8") as file:
@@ -28,7 +28,10 @@ def read_list() -> dict[str, str]:
 
 
 def write_list(texts: Mapping[str, str]) -> dict[str, str]:
-    """Write the list of the texts, given with their files; return the former text of each reworded text."""
+    """Write the list of texts, and return the former text of each reworded text.
+
+    ``texts`` contains the file of each text.
+    """
     former = read_list()
     known = {english: name for name, english in former.items()}
     gone = {name: english for name, english in former.items() if english not in texts}
@@ -48,12 +51,16 @@ def write_list(texts: Mapping[str, str]) -> dict[str, str]:
 
 
 def _folder(file: str) -> str:
-    """Return the first part of an id: the package, such as ``jog`` or ``interpreter``."""
+    """Return the first part of an id, which is the name of the package, such as ``jog`` or
+    ``interpreter``.
+    """
     return Path(file).parts[1].removesuffix(".py") if file else "tables"
 
 
 def _most_similar(text: str, folder: str, gone: Mapping[str, str]) -> str:
-    """Return the id of the text that this one replaces; empty if there is none."""
+    """Return the id of the deleted text that ``text`` replaces, or an empty text if there is no similar
+    text.
+    """
     found, best = "", _SIMILAR
     for name, english in gone.items():
         if (
@@ -65,7 +72,7 @@ def _most_similar(text: str, folder: str, gone: Mapping[str, str]) -> str:
 
 
 def _new_id(text: str, file: str, used: Iterable[str]) -> str:
-    """Return an id of the first words of a text that no other text has."""
+    """Return a new unique id that consists of the first words of a text."""
     words = re.findall(r"[a-z0-9]+", _HOLE.sub("", text).lower())[:_WORDS]
     base = f"{_folder(file)}.{'-'.join(words)}"
     taken = frozenset(used)

@@ -1,4 +1,4 @@
-"""Texts in a syntax tree: whole strings, templates of messages, and strings that are put together."""
+"""Texts in a syntax tree: whole strings, templates of messages, and strings that are composed of parts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MISTAKES = frozenset(
 
 
 def marked(tree: ast.Module) -> Iterator[str]:
-    """Yield the texts in ``tr("…")`` and the templates of messages, whatever they look like."""
+    """Yield the texts in ``tr("…")`` and the templates of messages, regardless of their contents."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and node.args and _is_marked(node):
             for part in ast.walk(node.args[0]):
@@ -30,7 +30,7 @@ def _is_marked(call: ast.Call) -> bool:
 
 
 def texts_of(tree: ast.Module) -> Iterator[str]:
-    """Yield every whole string but docstrings, errors of the programmer, patterns and logs."""
+    """Yield every whole string except docstrings, errors for programmers, patterns and log messages."""
     skipped = _skipped(tree)
     for node in ast.walk(tree):
         if isinstance(node, ast.JoinedStr | ast.BinOp) and _pieces(node) is not None:
@@ -40,7 +40,9 @@ def texts_of(tree: ast.Module) -> Iterator[str]:
 
 
 def composed_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield line and text of every string that is put together, with ``{}`` for each value."""
+    """Yield the line and text of every string that is composed of parts, with ``{}`` in place of each
+    value.
+    """
     skipped = _skipped(tree)
     for node in ast.walk(tree):
         if id(node) not in skipped and isinstance(node, ast.JoinedStr | ast.BinOp):
@@ -51,7 +53,7 @@ def composed_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 
 def _skipped(tree: ast.Module) -> set[int]:
-    """Docstrings, mistakes of the programmer, patterns and logs; with all that is in them."""
+    """Return the ids of the nodes in docstrings, errors for programmers, patterns and log messages."""
     found: set[int] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant):
@@ -76,7 +78,9 @@ def _name(node: ast.expr) -> str:
 
 
 def _pieces(node: ast.expr) -> list[str | None] | None:
-    """The text of a composed string, None for each hole; None when it is no string at all."""
+    """Return the parts of a composed string, with None for each value, or None if the node is
+    not a string.
+    """
     if isinstance(node, ast.Constant):
         return [node.value] if isinstance(node.value, str) else None
     if isinstance(node, ast.JoinedStr):
@@ -90,7 +94,7 @@ def _pieces(node: ast.expr) -> list[str | None] | None:
 
 
 def _own_parts(node: ast.expr) -> Iterator[ast.AST]:
-    """The parts that became pieces; expressions in holes are looked at by themselves."""
+    """Yield the nodes that became parts of a string; expressions for values are examined separately."""
     yield node
     if isinstance(node, ast.JoinedStr):
         yield from (value for value in node.values if isinstance(value, ast.Constant))

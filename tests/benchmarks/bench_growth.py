@@ -31,7 +31,8 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import load_source
 from core.proving.prove_program import prove
 machine = read_machine(None)
-prove(load_source(Path(sys.argv[1])), create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={}), machine)
+setup = create_setup(machine, tool_offsets={1: ToolOffset()}, secondary_offsets={})
+prove(load_source(Path(sys.argv[1])), setup, machine)
 """
 
 

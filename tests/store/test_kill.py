@@ -28,7 +28,8 @@ number = len(store.programs.list_versions("part"))
 def both(connection):
     program_records.save_program_version(connection, "part", b"%d " % number * 2000, "kill")
     wanted = {"x": float(number % 1000)}
-    offset_tables.change_row(connection, OffsetKind.TOOL, 1, offset_tables.ChangeReason("kill", "test"), wanted)
+    reason = offset_tables.ChangeReason("kill", "test")
+    offset_tables.change_row(connection, OffsetKind.TOOL, 1, reason, wanted)
 
 while True:
     number += 1

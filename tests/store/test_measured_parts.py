@@ -250,7 +250,8 @@ number = 0
 while True:
     number += 1
     cycle = CycleRow(str(number), "pin.nc", number, "2026", "2026", 1.0, "COMPLETE")
-    store.keep(lambda u: u.replace_operation(("cycle", cycle.key), lambda c: part_cycles.save_cycle(c, cycle))).result()
+    save = lambda c: part_cycles.save_cycle(c, cycle)
+    store.keep(lambda u: u.replace_operation(("cycle", cycle.key), save)).result()
     reading = ReadingRow(0, of, number, 10.0 + number, "mm", "", "typed", "")
     store.write(lambda c: measured_parts.add_reading(c, reading)).result()
     sys.stdout.write(f"{number}\\n")

@@ -1,1 +1,1 @@
-"""Implementations of commands, loaded only when they are needed."""
+"""Implementations of commands, which are loaded only when they are needed."""

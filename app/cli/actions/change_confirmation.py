@@ -1,6 +1,7 @@
-"""Suspicious offset changes on the command line: rejected beyond the travel, otherwise confirmed.
+"""Check of suspicious offset changes on the command line.
 
-A change is confirmed by --yes, or by Y on a terminal. The rules are the same as on the screen.
+A change beyond the travel is rejected. Any other suspicious change must be confirmed by --yes, or by Y on a
+terminal. The rules are the same as on the screen.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ OffsetChanges = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 def confirm_changes(store: Store, args: argparse.Namespace, changes: OffsetChanges) -> None:
     """Raise CommandError if a value exceeds the travel, or if a suspicious change is not confirmed.
 
-    The store itself rejects values out of range.
+    The store itself rejects values that are out of range.
     """
     travel = _machine_travel(store, args)
     tables = {kind: store.offsets.get_table(kind).read_rows() for kind in changes}
@@ -72,7 +73,10 @@ def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
 
 
 def _describe_suspicions(suspicions: Mapping[OffsetKind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
-    """Return one text for all suspicious changes; ``tools`` are the tools that may follow a master tool."""
+    """Return one text for all suspicious changes.
+
+    ``tools`` are the tools that may follow a master tool.
+    """
     texts = (
         describe_suspicions(each, partial(_format_change, kind), partial(_reason, tools))
         for kind, each in suspicions.items()
@@ -93,7 +97,7 @@ def _reason(tools: Iterable[int], each: Suspicion) -> str:
 
 
 def _format_change(kind: OffsetKind, suspicion: Suspicion) -> str:
-    """Return a change as text, such as T1 x +1.20000 → -15.00000 in."""
+    """Return a change as text, such as ``T1 x +1.20000 → -15.00000 in``."""
     letter = {
         OffsetKind.TOOL: format_edge_name(suspicion.number),
         OffsetKind.SECONDARY: f"D{suspicion.number}",

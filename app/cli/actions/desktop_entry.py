@@ -1,4 +1,4 @@
-"""Desktop menu entry with its icon and file types, and the autostart entry, in the XDG folders."""
+"""Desktop menu entry with its icon and file types, and autostart entry, in the XDG folders."""
 
 from __future__ import annotations
 
@@ -72,7 +72,10 @@ def _quote_word(word: str) -> str:
 
 
 def install_entries(*, autostart: bool) -> list[Path]:
-    """Write the entries and return their paths. Raises CommandError if a file cannot be written."""
+    """Write the entries and return their paths.
+
+    The autostart entry is written only with ``autostart``. Raises CommandError if a file cannot be written.
+    """
     entry, icon, types, start = _entry_paths()
     shipped = files("resources") / "desktop"
     try:
@@ -95,7 +98,10 @@ def entry_text(command: str) -> str:
 
 
 def _update_databases(applications: Path, mime: Path) -> None:
-    """Let file managers find the entry and the file types now, if the desktop has the tools for this."""
+    """Update the desktop databases, so that file managers find the entry and the file types immediately.
+
+    A database is skipped if the desktop does not have the tool that updates it.
+    """
     for tool, folder in (("update-desktop-database", applications), ("update-mime-database", mime)):
         if shutil.which(tool) and folder.is_dir():
             subprocess.run([tool, str(folder)], check=False, capture_output=True, timeout=60)

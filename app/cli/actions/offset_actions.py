@@ -1,4 +1,4 @@
-"""Actions of ``turndesk offsets``: show, set and undo offsets and tool shapes of the store, in inches."""
+"""Actions of ``turndesk offsets``, which show, set and undo stored offsets and tool shapes in inches."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _show(args: argparse.Namespace) -> int:
 
 
 def _convert_to_inches(kind: OffsetKind, row: OffsetRow) -> dict[str, FieldValue]:
-    """Return every field by name in the unit of entry, which is inches for lengths of tools."""
+    """Return every field by name in its unit of entry, which is inches for lengths of tools."""
     values: list[FieldValue] = list(row)
     return {
         name: _convert_type(field, value)
@@ -120,7 +120,7 @@ def _line(name: str, row: OffsetRow) -> str:
 
 
 def _format_shape(row: ShapeRow) -> str:
-    """Return the specified fields of a shape in the syntax of entry."""
+    """Return the specified fields of a shape in the syntax in which they are entered."""
     told = [f"{row.kind} {row.hand}"]
     values: list[FieldValue] = list(row)
     for field, value in zip(FIELDS_BY_KIND[OffsetKind.SHAPE].values(), values, strict=True):
@@ -177,7 +177,10 @@ def _set_all(
     changes: Mapping[OffsetKind, Mapping[str, FieldValue]],
     reason: ChangeReason,
 ) -> list[OffsetRow]:
-    """Set the offset and the shape of one tool in one transaction."""
+    """Set the offset and the shape of one tool in one transaction.
+
+    The shape is removed if its kind is ``none``.
+    """
     rows = list[OffsetRow]()
     for kind, values in changes.items():
         if values.get("kind") == NO_SHAPE_KIND:
@@ -248,9 +251,9 @@ def _named(text: str) -> tuple[OffsetKind, int]:
 
 
 def _parse_entries(kind: OffsetKind, entries: list[str]) -> dict[str, FieldValue]:
-    """Return the fields from entries such as ``x=1.25``, lengths in mm.
+    """Return the fields from entries such as ``x=1.25``, with lengths in mm.
 
-    Raises CommandError for the first error.
+    Raises CommandError for the first invalid entry.
     """
     values: dict[str, FieldValue] = {}
     for entry in entries:
@@ -287,7 +290,10 @@ def _entered(field: RowField, text: str) -> FieldValue:
 
 
 def _parse_choice(field: RowField, word: str) -> str:
-    """Return one of the field's choices. Raises CommandError with the most similar choice."""
+    """Return ``word`` if it is one of the field's choices.
+
+    Raises CommandError with the most similar choice if it is not.
+    """
     known = (*field.choices, NO_SHAPE_KIND) if field.name == "kind" else field.choices
     if word not in known:
         raise CommandError(f"{field.name}: {describe_unknown_key(word, known)}", "unknown-word")
@@ -295,7 +301,7 @@ def _parse_choice(field: RowField, word: str) -> str:
 
 
 def _convert_type(field: RowField, value: FieldValue) -> FieldValue:
-    """Return the value in the unit of entry."""
+    """Return the value of a field in the unit in which it is entered."""
     return (
         convert_to_inches(value)
         if field.field_type is FieldType.LENGTH and not isinstance(value, str)
@@ -304,7 +310,7 @@ def _convert_type(field: RowField, value: FieldValue) -> FieldValue:
 
 
 def _parse_value(field: RowField, text: str) -> FieldValue:
-    """Return the value of a text, lengths in mm. Raises CommandError if the text is invalid."""
+    """Return the value of an entered text, with lengths in mm. Raises CommandError if the text is invalid."""
     if field.field_type is FieldType.TEXT:
         return text.strip()
     if field.field_type is FieldType.BOOLEAN and text.strip().lower() not in _FLAGS:
@@ -323,7 +329,7 @@ def _parse_value(field: RowField, text: str) -> FieldValue:
 
 
 def _clear(args: argparse.Namespace) -> int:
-    """Clear one offset or a whole table as one step, which can be undone."""
+    """Clear one offset or a whole table in one step that can be undone."""
     letter = args.offset.upper()
     with open_store() as store:
         if letter in {**_KIND, **_MILL_KIND}:

@@ -1,1 +1,1 @@
-"""Reports of faults in TurnDesk: crash files, and the report that a user may publish."""
+"""Crash files for errors in TurnDesk, and the bug report that a user may publish."""

@@ -1,4 +1,4 @@
-"""The report of a fault: version, system, machine file, program, newest crash file and newest log lines."""
+"""Bug report with the version, system, machine file, program, newest crash file and newest log lines."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ _WITH_NAMES = ("who", "program", "person")
 
 
 class Part(NamedTuple):
-    """One part of the report."""
+    """One titled part of the bug report."""
 
     title: str
     text: str
 
 
 class _Stored(NamedTuple):
-    """What the report uses of the store."""
+    """Data from the store that the bug report uses."""
 
     people: frozenset[str] = frozenset()
     programs: frozenset[str] = frozenset()
@@ -57,10 +57,10 @@ class _Stored(NamedTuple):
 
 
 def bug_report(machine_file: str | None = None, program: Path | None = None) -> str:
-    """Return the report. Raises CommandError if a named file cannot be read.
+    """Return the text of the bug report. Raises CommandError if a named file cannot be read.
 
-    Without ``machine_file``, the report contains the file in use; without ``program``, it contains the
-    program that was started last.
+    Without ``machine_file``, the report contains the machine file in use. Without ``program``, it contains
+    the program that was started last.
     """
     stored = _stored()
     programs = {*stored.programs, *_names_in(find_data_folder() / "programs")} | (
@@ -95,7 +95,7 @@ def _system() -> str:
 
 
 def _users() -> Iterator[str]:
-    """Yield the names of the user of this process."""
+    """Yield the login name and the full name of the user who runs this process."""
     with suppress(OSError, KeyError, ImportError):
         yield getpass.getuser()
     with suppress(ImportError, KeyError):
@@ -107,7 +107,10 @@ def _users() -> Iterator[str]:
 
 
 def _stored() -> _Stored:
-    """Return what the store contains; a store that cannot be read is reported by its code."""
+    """Return the store's data for the report.
+
+    If the store cannot be read, the result contains only the error code.
+    """
     try:
         with Store.open(find_data_folder(), read_only=True) as store:
             with store.read() as connection:
@@ -156,7 +159,9 @@ def _names_in(folder: Path) -> Iterator[str]:
 
 
 def _names_of_runs() -> Iterator[str]:
-    """Yield the names of programs in the names of the run logs, such as ``20260102T030405000000-PIN``."""
+    """Yield the program names contained in the file names of run logs, such as
+    ``20260102T030405000000-PIN``.
+    """
     for path in (find_data_folder() / "logs").glob("*.jsonl"):
         yield path.stem.partition("-")[2]
 
@@ -189,7 +194,10 @@ def _shipped_strings() -> frozenset[str]:
 
 
 def _machine_part(place: str | None, replacements: Replacements, *, named: bool) -> Iterator[Part]:
-    """Yield the machine file. Raises CommandError if the file was named and cannot be read."""
+    """Yield the report part with the machine file.
+
+    Raises CommandError if the user named a file that cannot be read.
+    """
     if place is None:
         yield Part("Machine file", "the shipped simulated lathe")
     elif not Path(place).exists() and place.removesuffix(".toml") in resources.machine_names():
@@ -231,7 +239,7 @@ def _last_lines(path: Path, change: Callable[[str], str]) -> str:
 
 
 def _read(path: Path, *, must_exist: bool) -> str:
-    """Return the last part of a text file. Raises CommandError if it must exist and cannot be read."""
+    """Return the last part of a text file. Raises CommandError if the file must exist and cannot be read."""
     try:
         with path.open("rb") as file:
             file.seek(max(0, path.stat().st_size - _MOST_BYTES))

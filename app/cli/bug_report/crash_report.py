@@ -1,7 +1,7 @@
-"""Reports of internal errors: one line on the terminal, and the traceback in a crash file.
+"""Reports of internal errors, with one line on the terminal and the traceback in a crash file.
 
-The module also restores a Ctrl+C that Python drops: an interrupt raised in a finalizer is only printed, and
-the command would continue.
+The module also restores interrupts by Ctrl+C that Python drops. Python only prints an interrupt that is
+raised in a finalizer, and the command would continue.
 """
 
 from __future__ import annotations
@@ -24,20 +24,23 @@ _NAMES = 100  # file names tried, the largest number of crashes in one second
 
 
 def report_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
-    """Report an uncaught exception as an excepthook: one line, with the traceback in a crash file."""
+    """Print one line about an uncaught exception, and write its traceback to a crash file.
+
+    The function is installed as ``sys.excepthook``.
+    """
     where = write_crash_file(kind, error, trace)
     what = str(error).splitlines()[0] if str(error) else kind.__name__
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
 def report_thread(thread_error: threading.ExceptHookArgs) -> None:
-    """Report an exception that ended a thread. The other threads continue."""
+    """Report an exception that ended a thread, while the other threads continue."""
     if thread_error.exc_value is not None and not isinstance(thread_error.exc_value, SystemExit):
         report_crash(thread_error.exc_type, thread_error.exc_value, thread_error.exc_traceback)
 
 
 def write_crash_file(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
-    """Write a crash file to the log folder, or to the system's temporary folder; return its path."""
+    """Write a crash file to the log folder, or to the system's temporary folder, and return its path."""
     import tempfile
     import traceback
     from pathlib import Path
@@ -54,7 +57,7 @@ def write_crash_file(kind: type[BaseException], error: BaseException, trace: Tra
 
 
 def _log_folder() -> Path | None:
-    """Return the log folder; None if the data folder cannot be used."""
+    """Return the log folder, or None if the data folder cannot be used."""
     try:
         from app.desk.data_folder import DataFolderError, find_data_folder
     except (OSError, ImportError):
@@ -66,7 +69,7 @@ def _log_folder() -> Path | None:
 
 
 def _try_write(folder: Path, text: str) -> Path | None:
-    """Write a new file and return its path; None if it cannot be written."""
+    """Write a new crash file and return its path, or None if the file cannot be written."""
     stem = f"crash-{time.strftime('%Y%m%d-%H%M%S')}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -86,7 +89,7 @@ def _try_write(folder: Path, text: str) -> Path | None:
 
 @contextmanager
 def catch_interrupts() -> Iterator[None]:
-    """Save interrupts that Python drops inside the block, for the next ``raise_interrupt``."""
+    """Save each interrupt that Python drops inside the block for the next call of ``raise_interrupt``."""
     before = sys.unraisablehook
 
     def keep(told: UnraisableHookArgs) -> None:

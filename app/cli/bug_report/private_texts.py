@@ -1,4 +1,4 @@
-"""Programs, machine files and logs without the texts in them that may be private."""
+"""Removal of private texts from programs, machine files and logs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http",
 
 
 def program_without_comments(text: str) -> str:
-    """Return a program whose comments, strings and names have ``x`` for each letter; their places remain."""
+    """Return a program with ``x`` for each letter of its comments, strings and names.
+
+    The length and position of each text do not change.
+    """
 
     def hidden(found: re.Match[str]) -> str:
         start = found["name"] or ""
@@ -34,10 +37,11 @@ def program_without_comments(text: str) -> str:
 
 
 def machine_without_names(text: str, known: Collection[str], replacements: Replacements) -> str:
-    """Return the text of a machine file without comments and without private strings.
+    """Return the text of a machine file without comments and private strings.
 
-    A string remains if it is one of ``known`` (the strings of the shipped machine files), or if it has the
-    form of a terminal outside of the network's tables. The text does not need to be valid TOML.
+    A string is retained if it is in ``known``, the strings of the shipped machine files. Outside the
+    network tables, a string with the form of a terminal name is also retained. The text does not need to be
+    valid TOML.
     """
     lines, table = [], ""
     for line in text.splitlines():
@@ -56,7 +60,7 @@ def machine_without_names(text: str, known: Collection[str], replacements: Repla
 
 
 def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]:
-    """Yield a line with its strings replaced; the line ends at its comment."""
+    """Yield the parts of a line up to its comment, with all strings replaced."""
     end = 0
     while True:
         string, comment = _STRING.search(line, end), line.find("#", end)
@@ -74,7 +78,7 @@ def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]
 
 
 def event_line(line: str) -> str:
-    """Return a line of a run's event log without the name of its scope record."""
+    """Return a line of a run's event log without the name of the run's scope recording."""
     try:
         event = json.loads(line)
         event.pop("record", None)
@@ -84,7 +88,10 @@ def event_line(line: str) -> str:
 
 
 def text_of_event(text: str) -> str:
-    """Return the template of a message with its numbers, without its names; a plain text as it is."""
+    """Return a message as its template and numeric values, without names.
+
+    A plain text is returned unchanged.
+    """
     if not isinstance(text, Message):
         return text
     numbers = {name: each for name, each in text.values.items() if isinstance(each, int | float)}

@@ -1,7 +1,7 @@
 """Replacement of names, paths and addresses in a text that will be published.
 
-Names that are known (users, programs, this computer) are replaced wherever they occur. Paths, addresses and
-file names are recognized by their form. The same value always has the same replacement, such as ``PERSON-1``.
+Known names (users, programs, this computer) are replaced wherever they occur. Paths, addresses and file
+names are recognized by their form. The same value always gets the same replacement, such as ``PERSON-1``.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ _SHORTEST = 2  # characters of a name that is replaced wherever it occurs
 
 
 class Replacements:
-    """Replacements for the private values of one report.
+    """Replacements for the private values in one report.
 
-    ``people`` are names of users, ``programs`` names of program files, ``computers`` names of computers.
-    ``public`` are file names that TurnDesk itself ships.
+    ``people`` are names of users, ``programs`` are names of program files, and ``computers`` are names of
+    computers. ``public`` are file names that TurnDesk itself ships.
     """
 
     def __init__(
@@ -69,7 +69,7 @@ class Replacements:
             self._known.setdefault(name.casefold(), (self.placeholder(kind, stem), suffix))
 
     def placeholder(self, kind: str, value: str) -> str:
-        """Return the replacement of a value; an equal value, in any case, has the same one."""
+        """Return the replacement of a value. Values that differ only in case have the same replacement."""
         key = f"{kind}:{value.casefold()}"
         if key not in self._given:
             self._counts[kind] = self._counts.get(kind, 0) + 1
@@ -77,7 +77,7 @@ class Replacements:
         return self._given[key]
 
     def __call__(self, text: str) -> str:
-        """Return the text without private values."""
+        """Return the text with all private values replaced."""
         for pattern, kind in ((_URL, "URL"), (_MAIL, "MAIL")):
             text = pattern.sub(self._as(kind), text)
         text = _SECRET.sub(lambda found: f"{found[1]}{found[2]}SECRET", text)
@@ -99,7 +99,10 @@ class Replacements:
         return pattern.sub(lambda found: "".join(self._known[found[0].casefold()]), text)
 
     def _path(self, path: str) -> str:
-        """Return a path of TurnDesk or Python from its package on, and the replacement of any other path."""
+        """Return the replacement of a path.
+
+        A path of TurnDesk or Python is shortened so that it starts at its package.
+        """
         if own := _OWN.match(path):
             return f"…/{own['tail']}"
         if _SYSTEM.match(path):

@@ -1,1 +1,1 @@
-"""Formatting of results as text and as JSON."""
+"""Formatting of results as text and JSON."""

@@ -1,4 +1,5 @@
-"""Output of ``prove --compare OFFSETS``: part, times and findings with other offsets.
+"""Output of ``prove --compare OFFSETS``, which compares parts, times and findings with a second set of
+offsets.
 
 ``core/proving/offset_comparison.py`` compares the parts.
 """
@@ -23,7 +24,10 @@ _ZERO_TOLERANCE = 5e-5  # in or mm
 def make_comparison_json(
     job: ProofJob, source: ProgramSource, report: ProofReport, part: PartReport | None
 ) -> Json:
-    """Return the JSON object ``compare``. Lengths are inches for OmniTurn programs, otherwise mm."""
+    """Return the JSON object ``compare``.
+
+    Lengths are in inches for OmniTurn programs, and otherwise in mm.
+    """
     from core.proving.offset_comparison import ProvedPart, prove_other_offsets
 
     assert job.other_offsets is not None
@@ -66,7 +70,7 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
 
 
 def _round_value(value: float) -> float:
-    """Return a value rounded to six decimals, and 0.0 for values that would be shown as zero."""
+    """Return a value rounded to six decimals, or 0.0 if its text would show zero."""
     return 0.0 if abs(value) < _ZERO_TOLERANCE else round(value, 6)
 
 
@@ -74,7 +78,7 @@ def _round_value(value: float) -> float:
 
 
 def format_comparison(comparison: Json, *, metric: bool, dialect: Dialect) -> str:
-    """Return the comparison as text for the proof, in the unit of the program."""
+    """Return the comparison as text for the proof, in the unit that the program uses."""
     scale = MM_PER_INCH if metric and dialect is Dialect.OMNITURN else 1.0
     unit = "mm" if metric or dialect is not Dialect.OMNITURN else "in"
     pairs = comparison["features"]

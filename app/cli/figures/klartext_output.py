@@ -28,7 +28,7 @@ _AXES = ("a", "b", "c")
 
 
 def make_block_json(block: Block, source_line: str, start_s: float, end_s: float) -> Json:
-    """Return an elementary block with the keys of docs/json.md; missing axes are null."""
+    """Return the JSON object of an elementary block, with the keys of docs/json.md. Missing axes are null."""
     feed, mode = _feed_and_unit(block)
     swivel = block.swivel
     shown = {
@@ -45,9 +45,9 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
-    """Return the JSON keys of a proof that differ on a mill.
+    """Return the JSON keys of a proof that are different for a mill.
 
-    ``limits`` are machine positions, and ``final_position`` has all axes.
+    ``limits`` are machine positions, and ``final`` has the positions of all axes.
     """
     limits: Json = {
         name.lower(): [round_millimeters(low), round_millimeters(high)]
@@ -62,7 +62,7 @@ def make_mill_json(report: ProofReport, mill: MillResults) -> Json:
 
 
 def format_machine_limits(mill: MillResults) -> str:
-    """Return the limits of the machine positions as a line of text."""
+    """Return the lowest and highest machine position of each axis as a line of text."""
     if not mill.axis_ranges:
         return "  machine stands\n"
     reached = zip(mill.axis_names, mill.axis_ranges, strict=False)
@@ -72,7 +72,11 @@ def format_machine_limits(mill: MillResults) -> str:
 def get_final_position(
     mill: MillResults, setpoint: Sequence[float], *, is_complete: bool
 ) -> dict[str, float]:
-    """Return the final position of a run: all axes, and the working plane if the run is ``is_complete``."""
+    """Return the final position of a run, by axis.
+
+    The result has all axes and the working plane if ``is_complete``, and otherwise the axes of
+    ``setpoint``.
+    """
     if is_complete and mill.final_position is not None:
         return {name: at for name, at in _position_json(mill.final_position).items() if isinstance(at, float)}
     named = ((f"m{name.lower()}" if name in "XYZ" else name.lower()) for name in mill.axis_names)
@@ -80,7 +84,7 @@ def get_final_position(
 
 
 def format_row(block: Block, start_s: float) -> str:
-    """Return a block as a line of the table, with positions in the working plane."""
+    """Return a block as a table row, with positions in the working plane."""
     feed, mode = _feed_and_unit(block)
     speed = "" if feed is None else f"{feed:.1f}{'°' if mode == 'deg/min' else ''}/m"
     swivel = block.swivel
@@ -93,7 +97,7 @@ def format_row(block: Block, start_s: float) -> str:
 
 
 def _position_json(swivel: PlanePosition) -> Json:
-    """Return the end point in the working plane, and the positions of all axes."""
+    """Return the end point in the working plane and the machine positions of all axes."""
     plane = dict(zip(("x", "y", "z"), map(round_millimeters, swivel.end), strict=True))
     machine = dict(zip(("mx", "my", "mz"), map(round_millimeters, swivel.machine_position), strict=True))
     angles = (None if angle is None else round_degrees(angle) for angle in swivel.rotary_angles)
@@ -101,7 +105,9 @@ def _position_json(swivel: PlanePosition) -> Json:
 
 
 def _plane_json(swivel: PlanePosition) -> Json:
-    """Return the plane of a PLANE block: its frame by rows, its origin and the targets of the axes."""
+    """Return the plane of a PLANE block, which is its frame by rows, its origin, and the target angles of
+    the axes.
+    """
     q120, q121, q122 = (round_degrees(target) for target in swivel.system.target_angles)
     return {
         "frame": [[round(cell, 12) + 0.0 for cell in line] for line in swivel.system.frame],
@@ -113,7 +119,10 @@ def _plane_json(swivel: PlanePosition) -> Json:
 
 
 def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
-    """Return the speed along the path and its unit; for a rapid, the speed that the slowest axis permits."""
+    """Return the path speed of a block and its unit.
+
+    The speed of a rapid is the speed that the slowest axis permits.
+    """
     if not block.moves or block.travel is None or block.travel.length == 0.0:
         return None, None
     unit = "deg" if block.has_angular_feed else "mm"

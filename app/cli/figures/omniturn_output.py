@@ -1,6 +1,6 @@
 """Output of elementary blocks of OmniTurn programs, in inches and minutes.
 
-Long columns of numbers are rounded and written together, with exactly the same text as for single numbers.
+Long columns of numbers are rounded and formatted together, with exactly the same text as single numbers.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _ZERO, _POINT, _MINUS, _LINE_END, _NOTHING = *b"0.-\n", 0
 
 
 def round_exactly(values: FloatArray, decimal_places: int) -> FloatArray:
-    """Return the values (m,) rounded exactly like ``round(value, places) + 0.0``."""
+    """Return the values (m,) rounded exactly like ``round(value, decimal_places) + 0.0``."""
     steps = values * 10.0**decimal_places
     whole = np.rint(steps)
     found: FloatArray = whole / 10.0**decimal_places + 0.0
@@ -54,10 +54,10 @@ def round_exactly(values: FloatArray, decimal_places: int) -> FloatArray:
 
 
 def format_decimals(values: FloatArray, decimal_places: int) -> list[str]:
-    """Return the shortest text of each rounded value (m,), identical to ``repr``; at most 11 places.
+    """Return the shortest text of each value (m,) rounded to at most 11 places, identical to ``repr``.
 
-    A decimal fraction of twelve digits is the shortest text of its double. The function therefore only writes
-    the digits and omits leading and trailing zeros.
+    A decimal fraction of twelve digits is the shortest text of its double. The function therefore only
+    writes the digits and omits leading and trailing zeros.
     """
     found = round_exactly(values, decimal_places)
     size = np.abs(found)
@@ -70,8 +70,9 @@ def format_decimals(values: FloatArray, decimal_places: int) -> list[str]:
 
 
 def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_places: int) -> list[str]:
-    """Return numbers (m,) of steps of 10^-``decimal_places`` as text, with a digit on each side of the
-    point.
+    """Return numbers (m,) of steps of 10^-``decimal_places`` as texts.
+
+    Each text has at least one digit before and after the decimal point.
     """
     digits, point = _digit_table(count), _DIGITS - decimal_places
     for at in range(point - 1):
@@ -91,7 +92,9 @@ def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_place
 
 
 def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
-    """Return the twelve digits of each number as characters (12, m), the most significant first."""
+    """Return the twelve digits of each number as characters (12, m), with the most significant
+    digit first.
+    """
     groups = np.stack([count // 10**8, count // 10**4 % 10**4, count % 10**4])
     fours = _four_digit_table()[groups].view(np.uint8)
     return fours.reshape(3, len(count), 4).transpose(0, 2, 1).reshape(_DIGITS, len(count))
@@ -99,7 +102,9 @@ def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
 
 @cache
 def _four_digit_table() -> npt.NDArray[np.uint32]:
-    """Return the four digits of 0 to 9999, each as four characters in one integer (10000,)."""
+    """Return the four digits of each number from 0 to 9999, packed as four characters in one integer
+    (10000,).
+    """
     return np.frombuffer("".join([f"{each:04d}" for each in range(10_000)]).encode(), np.uint32)
 
 
@@ -108,7 +113,10 @@ TABLE_HEAD = "    n  line  kind        X radius          Z         feed      rpm
 
 
 def make_block_json(block: Block, source_line: str, start_s: float, end_s: float) -> Json:
-    """Return an elementary block with the keys and units of docs/json.md; keys that do not apply are null."""
+    """Return the JSON object of an elementary block, with the keys and units of docs/json.md.
+
+    Keys that do not apply to the block are null.
+    """
     arc = block.kind == "arc"
     circular = arc or block.kind == "plane-arc"
     turned = block.kind == "rotate"  # its speed is in rpm
@@ -133,12 +141,12 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def _feed_value(block: Block) -> float:
-    """Return the feed of a block in in/min or in/rev."""
+    """Return the feed of a block in in/rev if it is per revolution, and otherwise in in/min."""
     return to_inches(block.feed) if block.per_rev else to_inches_per_minute(block.feed)
 
 
 def format_row(block: Block, start_s: float) -> str:
-    """Return a block as a line of the table."""
+    """Return a block as a table row."""
     return (
         f"{block.n:5d} {block.line:5d}  {block.kind:10s}{to_inches(block.x):11.5f}{to_inches(block.z):11.5f}"
         f"{_feed_text(block)}{start_s:8.2f}  {block.text}\n"
@@ -146,7 +154,7 @@ def format_row(block: Block, start_s: float) -> str:
 
 
 def _feed_text(block: Block) -> str:
-    """Return feed and spindle speed as text for the table."""
+    """Return the feed and spindle speed of a block as text for the table."""
     feed = f"{to_inches(block.feed):.5f}/r" if block.per_rev else f"{to_inches_per_minute(block.feed):.2f}/m"
     return f"{feed:>13s}{block.rpm:9.0f}"
 
@@ -155,7 +163,7 @@ def _feed_text(block: Block) -> str:
 
 
 def format_series(moves: TimedSeries) -> str:
-    """Return the lines of the table for a series of moves."""
+    """Return the table rows of a series of moves."""
     series = moves.series
     line = f"%5d %5d  {series.pattern.kind:10s}%11.5f%11.5f%s%8.2f  %s\n"
     lines = series.line.tolist()
@@ -174,7 +182,7 @@ def format_series(moves: TimedSeries) -> str:
 
 
 def _feed_texts(series: StraightMoveSeries, text: Callable[[Block], str]) -> Iterable[str]:
-    """Return the text of each move that depends only on its feed."""
+    """Return a text for each move of a series, for texts that depend only on the feed."""
     like = series.pattern
     if series.feed is None:
         return [text(like)] * len(series)
@@ -184,7 +192,7 @@ def _feed_texts(series: StraightMoveSeries, text: Callable[[Block], str]) -> Ite
 
 
 def make_series_json(moves: TimedSeries) -> str:
-    """Return the JSON objects for a series of moves, one per line."""
+    """Return the JSON objects of a series of moves, one per line."""
     series, like, lines = moves.series, moves.series.pattern, moves.series.line.tolist()
     texts = _texts_json(series.source_lines())  # the text of a plain move is its source line
     columns = {
@@ -208,12 +216,15 @@ def make_series_json(moves: TimedSeries) -> str:
 
 
 def _texts_json(texts: Sequence[str]) -> list[str]:
-    """Return each text as JSON, encoded together for speed. The texts must not contain line breaks."""
+    """Return each text as JSON. The texts are encoded together for speed and must not contain line breaks."""
     return json.dumps(texts, separators=("\n", ": "))[1:-1].split("\n")
 
 
 def _interleave(separators: Sequence[str], columns: Sequence[Iterable[str]], count: int) -> str:
-    """Return ``count`` lines made of columns, with the same texts before, ``separators`` and after them."""
+    """Return ``count`` lines of text made of columns.
+
+    Each line has the same ``separators`` before, between and after its columns.
+    """
     width = len(separators) + len(columns)
     woven = [""] * (count * width)
     for at, text in enumerate(separators):
@@ -224,9 +235,9 @@ def _interleave(separators: Sequence[str], columns: Sequence[Iterable[str]], cou
 
 
 def _plane_json(block: Block) -> Json:
-    """Return end and center of a block in the virtual mill's frame.
+    """Return the end and the center of a block in the virtual mill's frame.
 
-    On the side of the part, its Z is a diameter.
+    In the side plane of the part, the Z value is a diameter.
     """
     way = block.plane
     if way is None:

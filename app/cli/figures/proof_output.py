@@ -1,4 +1,4 @@
-"""Output of a proof as JSON, with the keys and units of docs/json.md, and of the stock as text."""
+"""Output of a proof as JSON with the keys and units of docs/json.md, and of its stock as text."""
 
 from __future__ import annotations
 
@@ -31,7 +31,10 @@ _CHECK_NAMES = {
 
 
 def make_stock_json(part: PartReport, dialect: Dialect) -> Json | None:
-    """Return the stock with the keys of docs/json.md; None if no stock is specified or can be assumed."""
+    """Return the stock as JSON with the keys of docs/json.md.
+
+    The result is None if the stock is not specified and cannot be assumed.
+    """
     stock, last = part.stock, part.last_piece
     if stock is None:
         return None
@@ -54,7 +57,7 @@ def make_stock_json(part: PartReport, dialect: Dialect) -> Json | None:
 
 
 def format_stock(part: PartReport, dialect: Dialect) -> str:
-    """Return the stock as text for the proof."""
+    """Return the description of the stock as text for the proof."""
     if part.stock is None:
         return "".join(f"  {words}\n" for words in part.assumptions)
     inch = dialect is Dialect.OMNITURN
@@ -95,7 +98,7 @@ def _points(profile: ProfilePoints, dialect: Dialect) -> list[list[float]]:
 
 
 def make_diagnostic_json(diagnostic: Diagnostic) -> Json:
-    """Return a diagnostic with the keys of docs/json.md; the column of a whole line is 1."""
+    """Return a diagnostic as JSON with the keys of docs/json.md. The column is 1 for a whole line."""
     return {
         "line": diagnostic.line,
         "column": max(diagnostic.column, 1) if diagnostic.line else 0,
@@ -113,16 +116,16 @@ def make_diagnostic_json(diagnostic: Diagnostic) -> Json:
 
 
 def count_stops(report: ProofReport, *, optional_stop: bool) -> int:
-    """Return how often a cycle waits for the operator."""
+    """Return how many times one cycle waits for the operator."""
     return report.stop_count + (report.optional_stop_count if optional_stop else 0)
 
 
 def make_report_json(
     file: str, report: ProofReport, part: PartReport | None = None, *, optional_stop: bool = False
 ) -> Json:
-    """Return a proof with the keys and units of docs/json.md; ``stock`` is null on a mill.
+    """Return a proof as JSON with the keys and units of docs/json.md.
 
-    Lengths are inches for OmniTurn programs, otherwise mm.
+    Lengths are in inches for OmniTurn programs, and otherwise in mm. ``stock`` is null on a mill.
     """
     reach, times = report.ranges, report.times
     mill: Json = {}

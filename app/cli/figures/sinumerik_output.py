@@ -26,7 +26,10 @@ _M_PER_MIN = 60.0 / 1000.0  # m/min for 1 mm/s
 
 
 def make_block_json(block: Block, source_line: str, start_s: float, end_s: float) -> Json:
-    """Return an elementary block with the keys of docs/json.md; keys that do not apply are null."""
+    """Return the JSON object of an elementary block, with the keys of docs/json.md.
+
+    Keys that do not apply to the block are null.
+    """
     arc, doubled = block.kind == "arc", 2.0 if block.modal.diameter else 1.0
     feed, mode = _feed_and_unit(block)
     return {
@@ -52,7 +55,7 @@ def make_block_json(block: Block, source_line: str, start_s: float, end_s: float
 
 
 def format_row(block: Block, start_s: float) -> str:
-    """Return a block as a line of the table, with X as programmed and C of the program."""
+    """Return a block as a table row, with X as programmed and C in the program's coordinates."""
     feed, mode = _feed_and_unit(block)
     x = block.x * (2.0 if block.modal.diameter else 1.0)
     shown = "" if feed is None else f"{feed:.2f} {mode}"
@@ -64,7 +67,7 @@ def format_row(block: Block, start_s: float) -> str:
 
 
 def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
-    """Return the programmed feed and its unit; for a rapid, the speed along its path."""
+    """Return the programmed feed of a block, or the path speed of a rapid, and its unit."""
     if not block.moves:
         return None, None
     alone = (block.x, block.z) == (block.x0, block.z0) and block.c != block.c0
@@ -73,6 +76,6 @@ def _feed_and_unit(block: Block) -> tuple[float | None, str | None]:
 
 
 def _round_angle(value: float, block: Block) -> float:
-    """Return an angle in degrees; for a modulo axis from 0 to less than 360."""
+    """Return a rounded angle in degrees. The angle of a modulo axis is from 0 to less than 360."""
     angle = round_degrees(value)
     return round_degrees(angle % _DEGREES_PER_REV) % _DEGREES_PER_REV if block.modal.is_c_modulo else angle

@@ -1,4 +1,4 @@
-"""Conversion of internal values in millimeters and seconds to output in inches and minutes."""
+"""Conversion of internal values in millimeters and seconds to output units."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Json = dict[str, object]
 
 
 def make_block_head(block: Block, source_line: str) -> Json:
-    """Return the first keys of the JSON object of every elementary block."""
+    """Return the first keys of an elementary block's JSON object, which are the same for all languages."""
     return {
         "n": block.n,
         "line": block.line,
@@ -32,7 +32,7 @@ def make_block_head(block: Block, source_line: str) -> Json:
 
 
 def to_inches(mm: float) -> float:
-    """Return a length in inches, rounded to nine decimals to hide the error of the conversion."""
+    """Return a length in mm as inches, rounded to nine decimals to hide the conversion error."""
     return round(mm / MM_PER_INCH, 9) + 0.0  # =
 
 
@@ -42,33 +42,40 @@ def round_millimeters(mm: float) -> float:
 
 
 def get_length_converter(dialect: Dialect) -> Callable[[float], float]:
-    """Return the function that converts lengths in mm to output: inches for OmniTurn, otherwise mm."""
+    """Return the function that converts lengths from mm to the output unit, inches for OmniTurn and
+    otherwise mm.
+    """
     return to_inches if dialect is Dialect.OMNITURN else round_millimeters
 
 
 def get_volume_converter(dialect: Dialect) -> Callable[[float], float]:
-    """Return the function that converts volumes in mm³ to the cubic unit of ``get_length_converter``."""
+    """Return the function that converts volumes from mm³ to cubic inches for OmniTurn, and otherwise leaves
+    them in mm³.
+    """
     scale = MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0
     return lambda mm3: round(mm3 / scale, 6)
 
 
 def get_path_feed(block: Block, unit: str) -> tuple[float, str]:
-    """Return the feed along a path in mm or degrees, and its unit."""
+    """Return the feed along a path and its unit, which is ``unit`` per revolution or per minute.
+
+    ``unit`` is ``mm`` or ``deg``.
+    """
     if block.per_rev:
         return round(block.feed, 6), f"{unit}/rev"
     return round(block.feed * _PER_MINUTE, 6), f"{unit}/min"
 
 
 def to_inches_per_minute(mm_s: float) -> float:
-    """Return a speed in mm/s as in/min."""
+    """Return a speed in mm/s as in/min, rounded to six decimals."""
     return round(mm_s * 60 / MM_PER_INCH, 6)
 
 
 def round_seconds(t: float) -> float:
-    """Return seconds rounded to the microsecond."""
+    """Return a time in seconds, rounded to the microsecond."""
     return round(t, 6)
 
 
 def round_degrees(angle: float) -> float:
-    """Return degrees rounded to six decimals."""
+    """Return an angle in degrees, rounded to six decimals."""
     return round(angle, 6) + 0.0

@@ -1,1 +1,1 @@
-"""Reference of machine-readable output."""
+"""Reference page for the machine-readable output."""

@@ -1,4 +1,7 @@
-"""Generator of the JSON reference: ``python -m app.cli.json_reference.json_page docs/json.md``."""
+"""Generator of the JSON reference.
+
+To write the page, run ``python -m app.cli.json_reference.json_page docs/json.md``.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +68,7 @@ undoes), `at`, the number, the row before and after the change as `old_…` and 
 
 
 def generate_page() -> str:
-    """Return the complete page."""
+    """Return the complete reference page as Markdown."""
     lines = [_HEAD.rstrip("\n"), *_commands(), *_shop_floor(), *_store()]
     return "\n".join([_TITLE, *_contents(), *lines]) + "\n"
 
@@ -127,7 +130,7 @@ def _wrapped(text: str) -> list[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the file named in the arguments."""
+    """Write the reference page to the file named in the arguments."""
     Path(argv[0]).write_text(generate_page(), encoding="utf-8")
     return 0
 

@@ -1,1 +1,1 @@
-"""Proving of many programs on all cores, with a cache of proofs."""
+"""Proving of many programs on all CPU cores, with a cache of proofs."""

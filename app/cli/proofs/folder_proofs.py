@@ -1,4 +1,4 @@
-"""The command ``turndesk prove DIR``: programs of folders, proved on all cores and reported by name."""
+"""The command ``turndesk prove DIR``, which proves all programs of folders on all CPU cores."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ProgramFiles:
-    """Paths of programs in order of names, and the number of other files."""
+    """Paths of programs in the order of their names, and the number of other files."""
 
     paths: tuple[Path, ...]
     other_count: int
 
 
 def find_programs(names: Iterable[str]) -> ProgramFiles:
-    """Return the programs in these files and folders; a named file may have any suffix.
+    """Return the programs among these files and in these folders. A named file may have any suffix.
 
     Raises CommandError if a folder cannot be read or contains no program.
     """
@@ -79,7 +79,7 @@ def find_programs(names: Iterable[str]) -> ProgramFiles:
 
 
 def _expand_names(names: Iterable[str]) -> Iterator[str]:
-    """Yield the names. Raises CommandError for an empty name, which would mean the current folder."""
+    """Yield the names. Raises CommandError for an empty name, because it would mean the current folder."""
     for name in names:
         if not name:
             raise CommandError("the file name is empty; use . for the programs in this folder", "empty-name")
@@ -95,7 +95,10 @@ def _by_name(path: Path) -> tuple[list[str], str]:
 
 
 def _iterate_files(folder: Path) -> Iterator[Path]:
-    """Yield all files in and below a folder, except hidden folders; links to folders are not followed."""
+    """Yield all files in a folder and its subfolders.
+
+    Hidden folders are skipped, and links to folders are not followed.
+    """
     for where, folders, names in os.walk(folder, onerror=_unreadable):
         folders[:] = [name for name in folders if not name.startswith(".")]
         yield from (Path(where) / name for name in names)
@@ -119,7 +122,7 @@ def _is_program(path: Path) -> bool:
 
 
 def prove_programs(args: argparse.Namespace, fitting_jobs: FittingJobs) -> int:
-    """Prove all programs; return 1 if a program has errors, or 2 if one cannot be read."""
+    """Prove all programs. Return 1 if a program has errors, or 2 if a program cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = find_programs(args.files)
     with open_report(args) as report:
@@ -138,7 +141,7 @@ def _workers(args: argparse.Namespace) -> WorkerSource:
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """A program to prove, with its index in the order of names and the place of its proof in the cache."""
+    """A program to prove, with its index in the order of names and its location in the proof cache."""
 
     index: int
     source: ProgramSource
@@ -148,7 +151,7 @@ class _Unit:
 
 
 class _Run:
-    """One call of the command: the programs to prove, and the results reported so far."""
+    """One call of the command, with the programs to prove and the results reported so far."""
 
     def __init__(
         self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
@@ -169,7 +172,7 @@ class _Run:
         self._progress = ProgressBar("proving", len(files.paths))
 
     def prove(self) -> None:
-        """Prove all programs. Finished proofs are saved even if the command is interrupted."""
+        """Prove all programs, and save finished proofs even if the command is interrupted."""
         proving: WorkDistributor[_Unit, Proof] = WorkDistributor(self._workers, self._submit)
         results = proving.iterate_results(self._iterate_units())
         try:
@@ -191,7 +194,7 @@ class _Run:
                 cache.delete_oldest()
 
     def print_outcome(self) -> int:
-        """Print the table or the number of other files; return the exit status."""
+        """Print the table, or with --json the number of other files, and return the exit status."""
         rows = [(path, self._proofs[k]) for k, path in enumerate(self._files.paths)]
         others = self._files.other_count
         if not self._args.json:
@@ -204,7 +207,7 @@ class _Run:
         return executor.submit(prove_packed, unit.job.pickled_job, self._version, unit.source)
 
     def _iterate_units(self) -> Iterator[_Unit]:
-        """Yield the programs without a saved proof, as workers become available."""
+        """Yield each program that has no saved proof, when a worker becomes available."""
         for index, path in enumerate(self._files.paths):
             try:
                 source = read_source(path, self._args)
@@ -226,7 +229,7 @@ class _Run:
                 yield _Unit(index, source, job, key, cache)
 
     def _get_cache(self, machine: str, job: ProofJob) -> ProofCache | None:
-        """Return the cache for this machine; print once which machine was chosen."""
+        """Return the cache for this machine, or None if the cache is off. Print the chosen machine once."""
         if machine not in self._caches:
             if machine:
                 sys.stderr.write(describe_machine_choice("each Klartext program", machine))
@@ -234,7 +237,7 @@ class _Run:
         return None if self._args.no_cache else self._caches[machine]
 
     def _create_job(self, source: ProgramSource, common: ProofJob) -> ProofJob:
-        """Return the common job, or a job with the stored part data of this program."""
+        """Return the common job, or a copy with the stored part data of this program."""
         kept = self._kept_parts.get(source.name)
         if kept is None:
             return common
@@ -285,7 +288,7 @@ class _Run:
         self._progress.report_progress(len(self._proofs))
 
     def _print_result(self, path: Path, proof: Proof) -> None:
-        """Report the proof of a program, called in the order of names."""
+        """Print the proof of a program. The method is called in the order of names."""
         if proof.failure_reason:
             sys.stderr.write(f"turndesk: {proof.failure_reason}\n")
         elif self._args.json:
@@ -302,7 +305,7 @@ def _status(proof: Proof) -> int:
 
 
 def _program_data(setting: PartSettings) -> object:
-    """Return the part data that apply only to one program."""
+    """Return the part settings that apply to only one program."""
     return setting.stock, setting.clamping, setting.silenced
 
 
@@ -313,14 +316,14 @@ ProofRow = tuple[Path, Proof]
 
 
 def format_table(rows: Sequence[ProofRow], other_count: int) -> str:
-    """Return the complete table; ``others`` is the number of files that are not programs."""
+    """Return the complete table as text. ``other_count`` is the number of files that are not programs."""
     return (
         _HEAD + "".join(_line(path, proof) for path, proof in rows) + _sum(rows, other_count) + _slowest(rows)
     )
 
 
 def format_verdict(proof: Proof) -> str:
-    """Return the result of a proof in one or two words."""
+    """Return the result of a proof as one or two words."""
     if proof.failure_reason:
         return "not proved"
     return "errors" if proof.count_findings("error") else "proved"
@@ -340,7 +343,7 @@ def _line(path: Path, proof: Proof) -> str:
 
 
 def _format_comparison(proof: Proof) -> str:
-    """Return the effect of other offsets as one line."""
+    """Return one line of text that shows the effect of the other offsets."""
     found = proof.report.get("compare")
     if not isinstance(found, dict):
         return ""

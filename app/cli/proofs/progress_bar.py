@@ -1,4 +1,4 @@
-"""Progress bar for work of more than two seconds, on stderr and only on a terminal."""
+"""Progress bar on stderr for work that takes more than two seconds, shown only on a terminal."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ BAR_WIDTH = 30
 
 
 class ProgressBar:
-    """A progress bar toward ``total``, or a counter if ``total`` is 0.
+    """Progress bar toward ``total``, or counter if ``total`` is 0.
 
-    A value beyond the total, such as blocks of a program with loops, is also shown as a counter.
+    Progress beyond the total, such as the blocks of a program with loops, is also shown as a counter.
     """
 
     def __init__(self, description: str, total: float = 0.0) -> None:
@@ -37,7 +37,7 @@ class ProgressBar:
             sys.stderr.flush()
 
     def report_progress(self, done: float) -> None:
-        """Report the progress. The call is cheap unless the bar must be drawn."""
+        """Report the progress. The call takes little time unless the bar must be drawn."""
         if not self._terminal or time.monotonic() < self._next:
             return
         self._next = time.monotonic() + REDRAW_INTERVAL_S
@@ -46,7 +46,7 @@ class ProgressBar:
         sys.stderr.flush()
 
     def format_bar(self, done: float) -> str:
-        """Return the text of the bar for this progress."""
+        """Return the text of the bar for the progress ``done``."""
         if not 0 < done <= self.total:
             return f"{self.description}: {done:,.0f}"
         share = done / self.total

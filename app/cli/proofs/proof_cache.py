@@ -1,7 +1,7 @@
-"""Cache of proofs, found by everything on which they depend.
+"""Cache of proofs, whose keys are hashes of all data on which a proof depends.
 
-A file is written under a temporary name and renamed, so a killed process leaves no incomplete proof. A
-damaged file cannot be decompressed and is ignored.
+A file is written under a temporary name and then renamed, so that a killed process does not leave an
+incomplete proof. A damaged file cannot be decompressed and is ignored.
 """
 
 from __future__ import annotations
@@ -31,7 +31,10 @@ _STALE_AGE_S = 3600.0  # s; an older temporary file was left by a process that h
 
 
 class ProofCache:
-    """Proofs of one job in the folder ``proofs`` of the data folder, by their contents."""
+    """Saved proofs of one job in the folder ``proofs`` of the data folder.
+
+    The file name of a proof is a hash of the data on which the proof depends.
+    """
 
     def __init__(self, folder: Path, job: ProofJob, max_bytes: int = MAX_CACHE_BYTES) -> None:
         self._folder, self._largest = folder, max_bytes
@@ -40,14 +43,17 @@ class ProofCache:
         self._full = False
 
     def get_key(self, source: ProgramSource, program_data: object = None) -> str:
-        """Return the key of a program's proof; ``program_data`` are data that apply only to this program."""
+        """Return the cache key of a program's proof.
+
+        ``program_data`` are data that apply only to this program.
+        """
         text = format_for_hash(
             (source.name, str(source.dialect), source.text, source.subprograms, program_data)
         )
         return sha256(self._job + text.encode("utf-8", "surrogatepass")).hexdigest()
 
     def find_proof(self, key: str) -> Proof | None:
-        """Return the saved proof, or None."""
+        """Return the saved proof, or None if the cache does not contain a valid proof."""
         path = self._path(key)
         try:
             kept = json.loads(zlib.decompress(path.read_bytes()))
@@ -57,7 +63,7 @@ class ProofCache:
             return None
 
     def save_proof(self, key: str, proof: Proof) -> None:
-        """Save a proof. The first disk error is reported, and no more proofs are then saved."""
+        """Save a proof. After the first disk error, which is reported, no more proofs are saved."""
         if self._full:
             return
         path = self._path(key)
@@ -73,7 +79,9 @@ class ProofCache:
             sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
     def delete_oldest(self) -> None:
-        """Delete the oldest proofs if the cache is too large, and temporary files of killed processes."""
+        """Delete the oldest proofs if the cache is too large, and delete temporary files of killed
+        processes.
+        """
         try:
             there = [_File(path, *_stamp(path)) for path in self._folder.glob("??/*")]
         except OSError:
@@ -112,7 +120,7 @@ def _stamp(path: Path) -> tuple[float, int]:
 
 
 def format_for_hash(value: object) -> str:
-    """Return a value as text that is identical in every process, for hashing.
+    """Return a value as text for hashing that is identical in every process.
 
     Raises TypeError for a value without such a text, such as a function.
     """

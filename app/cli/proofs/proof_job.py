@@ -1,6 +1,6 @@
-"""Common data of programs that are proved together: machine, context, part and options.
+"""Common data of programs that are proved together, which are the machine, setup, part and options.
 
-Without --machine, each program is proved on a machine that can run it, Klartext on a shipped mill.
+Without --machine, each program is proved on a machine that can run it, such as a shipped mill for Klartext.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class OtherOffsets:
-    """Offsets for a comparison: the name of their file, and the context with them."""
+    """Offsets for a comparison, given as the name of their file and the setup that uses them."""
 
     name: str
     setup: Setup
@@ -40,7 +40,7 @@ class ProofJob:
 
     @cached_property
     def pickled_job(self) -> bytes:
-        """The job pickled for a worker."""
+        """Return the job as bytes, pickled for a worker."""
         import pickle
 
         return pickle.dumps(self)
@@ -48,8 +48,9 @@ class ProofJob:
 
 @dataclass(slots=True)
 class FittingJobs:
-    """Jobs by machine: the job of the options, and one for each shipped machine that a program needs.
+    """Proof jobs by machine.
 
+    There is one job for the machine of the options, and one for each shipped machine that a program needs.
     ``create_job`` creates a job.
     """
 
@@ -59,7 +60,10 @@ class FittingJobs:
     _made: dict[str, ProofJob] = field(default_factory=dict)
 
     def select_machine_name(self, source: ProgramSource) -> str:
-        """Return the shipped machine for this program; empty means the machine of the options."""
+        """Return the name of the shipped machine for this program.
+
+        An empty text means the machine of the options.
+        """
         if self.args.machine is not None:
             return ""
         from app.compose.machine.machine_selection import select_machine
@@ -67,7 +71,7 @@ class FittingJobs:
         return select_machine(source)
 
     def get_job_for(self, machine: str) -> ProofJob:
-        """Return the job on this machine. Raises CommandError."""
+        """Return the job for this machine. Raises CommandError if the machine or an option is invalid."""
         if machine not in self._made:
             args = self.args
             if machine:
@@ -77,5 +81,5 @@ class FittingJobs:
 
 
 def describe_machine_choice(program_name: str, machine: str) -> str:
-    """Return the line that reports the machine chosen for a program."""
+    """Return the line of text that reports which machine was chosen for a program."""
     return f"turndesk: {program_name} is proved on the shipped {machine}; --machine chooses another one\n"

@@ -1,4 +1,4 @@
-"""Proving on all cores: a pool of worker processes, with recovery if a worker is killed."""
+"""Pool of worker processes that proves programs on all CPU cores and recovers if a worker is killed."""
 
 from __future__ import annotations
 
@@ -30,32 +30,35 @@ _EXTRA_UNITS = 2  # units queued in addition to those that workers process
 
 
 def count_cores() -> int:
-    """Return the number of cores that this process may use."""
+    """Return the number of CPU cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 class WorkerSource(Protocol):
-    """Source of workers; ``killed_exception`` is the exception of a unit that kills its worker."""
+    """Source of workers.
+
+    ``killed_exception`` is the exception that a unit of work raises if its worker is killed.
+    """
 
     killed_exception: type[BaseException]
 
     @property
     def max_units_in_progress(self) -> int:
-        """Largest number of units in progress."""
+        """Return the largest number of units that may be in progress."""
 
     def start_workers(self, worker_count: int | None = None, /) -> Executor:
-        """Start workers, ``jobs`` or all, and return their executor."""
+        """Start ``worker_count`` workers, or all workers if it is None, and return their executor."""
 
     def stop_workers(self, executor: Executor | None, /, *, is_done: bool) -> None:
-        """Stop the workers; unless ``done`` is true, also abort the units in progress."""
+        """Stop the workers, and unless ``is_done`` is true, also abort the units in progress."""
 
 
 class LocalWorkers:
     """Worker processes on this computer.
 
-    Units must be functions of modules with arguments that can be pickled.
+    Units must be module-level functions, and their arguments must be picklable.
     """
 
     def __init__(self, jobs: int) -> None:
@@ -69,16 +72,16 @@ class LocalWorkers:
             self._context.set_forkserver_preload(list(_PRELOADED_MODULES))
 
     def start_workers(self, worker_count: int | None = None) -> Executor:
-        """Start ``jobs`` workers, or all, and return their executor."""
+        """Start ``worker_count`` workers, or all workers if it is None, and return their executor."""
         return ProcessPoolExecutor(
             worker_count or self.worker_count, mp_context=self._context, initializer=_initialize_worker
         )
 
     def stop_workers(self, executor: Executor | None, *, is_done: bool) -> None:
-        """Stop the workers; unless ``done`` is true, also abort the units in progress.
+        """Stop the workers, and unless ``is_done`` is true, also abort the units in progress.
 
-        The method waits for the thread of the pool, because Python's shutdown would otherwise close pipes
-        that this thread still uses.
+        The method waits for the pool's thread, because Python's shutdown would otherwise close pipes that
+        this thread still uses.
         """
         if not is_done:
             self._terminate_workers()
@@ -94,16 +97,17 @@ class LocalWorkers:
 
 
 def _initialize_worker() -> None:
-    """Initialize a worker, which ignores Ctrl-C because the parent process ends it."""
+    """Initialize a worker, which ignores Ctrl+C because the parent process ends the worker."""
     gc.set_threshold(50_000)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 class WorkDistributor(Generic[WorkUnit, UnitResult]):
-    """Distribution of units of work to workers; results are returned in the order in which they finish.
+    """Distributor of units of work to workers, which returns results in the order in which the units
+    finish.
 
     If a worker is killed, all workers of its pool end. Their units are then repeated one at a time, each in
-    its own worker. A unit that kills its worker again is the cause.
+    a separate worker. A unit that kills its worker again is the cause.
     """
 
     def __init__(
@@ -118,7 +122,7 @@ class WorkDistributor(Generic[WorkUnit, UnitResult]):
     ) -> Generator[tuple[WorkUnit, UnitResult | BaseException], None, None]:
         """Yield each unit with its result or its exception.
 
-        A BrokenExecutor means that the unit kills its worker.
+        The exception BrokenExecutor means that the unit killed its worker.
         """
         executor: Executor | None = None
         done = False

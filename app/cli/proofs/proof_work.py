@@ -24,10 +24,10 @@ _CODE_FOLDERS = ("app/cli", "app/compose", "app/report", "core")  # folders with
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """Result of a proof: the JSON object, or the reason ``failure_reason`` why the proof failed.
+    """Result of a proof, which is the JSON object ``report``, or the ``failure_reason`` if proving failed.
 
-    ``report_section`` is the program's part of a report, if required. ``duration_s`` is the duration of the
-    proof, or 0 for a proof from the cache.
+    ``report_section`` is the program's section of a report, if one is required. ``duration_s`` is the
+    duration of the proof in seconds, or 0 for a proof from the cache.
     """
 
     report: Json
@@ -47,11 +47,11 @@ class Proof:
 
 
 class VersionMismatchError(Exception):
-    """The worker has another version of TurnDesk, so its proofs would differ."""
+    """Error for a worker that has a different version of TurnDesk, whose proofs would differ."""
 
 
 def prove_packed(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
-    """Prove one program in a worker. Raises OtherVersionError unless the versions match.
+    """Prove one program in a worker. Raises VersionMismatchError if the versions differ.
 
     An empty ``version`` disables the check.
     """
@@ -74,7 +74,7 @@ def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
 
 
 class ProofFindings(NamedTuple):
-    """Results of one proof: report, part, section of a report (empty if not required) and comparison."""
+    """Results of one proof, with the report section, which is empty if not required, and the comparison."""
 
     report: ProofReport
     part: PartReport | None
@@ -85,7 +85,7 @@ class ProofFindings(NamedTuple):
 def prove_with_findings(
     job: ProofJob, source: ProgramSource, progress: Callable[[float], None] | None = None
 ) -> ProofFindings:
-    """Prove one program; make the comparison and the report section if the job requires them."""
+    """Prove one program, and add the comparison and the report section if the job requires them."""
     from core.proving.part_proof import prove_with_part, require_tool_offsets
 
     record = _run_record(job)

@@ -1,4 +1,4 @@
-"""The file of ``--report``, HTML or PDF, written under a temporary name until all programs are proved."""
+"""The file of ``--report``, in HTML or PDF, which has a temporary name until all programs are proved."""
 
 from __future__ import annotations
 
@@ -21,20 +21,22 @@ _HTML, _PDF = {".html", ".htm"}, {".pdf"}
 
 
 class _Pages(Protocol):
-    """Writer of a report, one program after the other. All methods may raise OSError."""
+    """Writer that adds programs to a report one at a time. All methods may raise OSError."""
 
     def add_page(self, name: str, html: str, /) -> None:
         """Add the HTML of the next program under its name."""
 
     def finish(self) -> None:
-        """Finish the file on the disk, so that a full disk is detected before the old report is replaced."""
+        """Write the complete file to the disk, so that a full disk is detected before the old report is
+        replaced.
+        """
 
     def close(self) -> None:
-        """Close the file in any state."""
+        """Close the file, whether complete or not."""
 
 
 class _HtmlPages:
-    """Writer of one page for a browser."""
+    """Writer of a report as one HTML page."""
 
     def __init__(self, path: Path) -> None:
         from app.desk.translation import ENGLISH_CODE
@@ -57,7 +59,7 @@ class _HtmlPages:
 
 
 class _PdfPages:
-    """Writer of numbered pages for a printer; each program starts on a new page."""
+    """Writer of a report as numbered PDF pages. Each program starts on a new page."""
 
     def __init__(self, path: Path, paper: str | None) -> None:
         from app.report.html_tables import make_headline
@@ -79,7 +81,7 @@ class _PdfPages:
 
 
 class ReportFile:
-    """A report in progress, written one program after the other.
+    """A report in progress, to which programs are added one at a time.
 
     Methods raise CommandError for disk errors.
     """
@@ -88,7 +90,7 @@ class ReportFile:
         self._path, self._pages = path, pages
 
     def add_proof(self, path: Path, proof: Proof) -> None:
-        """Add the section of the next program."""
+        """Add the report section of the next program."""
         from app.report.report_page import make_program_section, make_unproved_section
 
         part = make_program_section(
@@ -100,7 +102,7 @@ class ReportFile:
             raise _unwritable(self._path, error) from error
 
     def finish(self, temporary_path: Path) -> None:
-        """Finish the report and move it to its final place."""
+        """Finish the report and move its temporary file to its final path."""
         try:
             self._pages.finish()
             self._pages.close()
@@ -111,9 +113,9 @@ class ReportFile:
 
 @contextlib.contextmanager
 def open_report(args: argparse.Namespace) -> Iterator[ReportFile | None]:
-    """Yield the report of --report, or None without the option.
+    """Yield the report file of --report, or None without the option.
 
-    Invalid options raise CommandError before anything is proved.
+    Invalid options raise CommandError before a program is proved.
     """
     if args.report is None:
         if args.paper is not None:

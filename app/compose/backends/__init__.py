@@ -1,1 +1,1 @@
-"""Connection, checking and simulation of machines by the backend in their machine file."""
+"""Connection, checking and simulation of machines by the backend that their machine file specifies."""

@@ -1,4 +1,4 @@
-"""Entries of the backends: one ``BACKEND`` in the module of each backend.
+"""Table of the backends, in which each module defines one ``BACKEND``.
 
 The module also defines the rows of ``turndesk machine check``.
 """
@@ -37,11 +37,12 @@ PlayFunction = Callable[
 
 @dataclass(frozen=True, slots=True)
 class ConnectedMachine:
-    """The ports of a connected machine.
+    """Ports of a connected machine.
 
     ``on_screen_station`` is the operator station on the screen, or None if the machine has its own station.
-    ``list_more_rows`` are rows of ``turndesk machine check`` that follow the station. ``measured`` lists
-    those of these rows, and the inputs outside the backend, whose values hardware reports.
+    ``list_more_rows`` returns rows of ``turndesk machine check`` that follow the station's row.
+    ``list_measured_rows`` returns the names of those rows, and of inputs outside the backend, whose values
+    are measured by hardware.
     """
 
     ports: MachinePorts
@@ -54,15 +55,16 @@ class ConnectedMachine:
 
 @dataclass(frozen=True, slots=True)
 class Backend:
-    """The functions of a backend.
+    """Functions of a backend.
 
-    ``word`` is the name of the device in the message about a missing response. ``create_drivers`` creates
-    the part that the driver host runs, and ``connect`` the part in the control's process, including its
-    inverter. A backend with both uses the driver host if the machine file specifies one. ``is_simulated``
-    returns whether the machine and its devices are simulated here. ``play_devices`` simulates only the
-    devices, to try a machine file without hardware. ``survey_nodes`` asks every node or checks every pin; it
-    yields name, address, fault and details. ``measured`` lists the rows of ``turndesk machine check`` whose
-    values hardware reports; without it no row counts as checked.
+    ``device_name`` is the name of the device in the message about a missing response. ``create_drivers``
+    creates the drivers that the driver host runs. ``connect`` connects the machine in the control's
+    process, including an inverter. A backend with both functions uses the driver host if the machine file
+    specifies one. ``is_simulated`` returns whether the machine and its devices are simulated on this
+    computer. ``play_devices`` simulates only the devices, to try a machine file without hardware.
+    ``survey_nodes`` asks every node or checks every pin, and yields name, address, fault and details.
+    ``list_measured_rows`` returns the rows of ``turndesk machine check`` whose values hardware reports. By
+    default, no row counts as checked.
     """
 
     device_name: str
@@ -75,7 +77,7 @@ class Backend:
 
 
 def find_backend(machine: Machine) -> Backend:
-    """Return the backend of a machine; its libraries are loaded on connection.
+    """Return the backend of a machine, whose libraries are loaded when it connects.
 
     Raises DriverError if no driver exists for the backend.
     """
@@ -95,7 +97,7 @@ def _backend(word: str) -> Backend:
 
 
 def list_playable_backends() -> list[str]:
-    """Return the names of the backends whose devices can be simulated alone."""
+    """Return the names of the backends whose devices can be simulated without the rest of the machine."""
     return [word for word in BACKENDS if _backend(word).play_devices is not None]
 
 
@@ -115,7 +117,7 @@ class AxisFields(TypedDict):
 
 
 def get_axis_fields(axis: Axis, machine: Machine) -> AxisFields:
-    """Return the data of an axis that every driver with a setpoint queue needs."""
+    """Return the axis data that every driver with a setpoint queue needs."""
     return {
         "name": axis.name,
         "vmax": axis.vmax,
@@ -131,12 +133,15 @@ def get_axis_fields(axis: Axis, machine: Machine) -> AxisFields:
 
 
 def has_station(machine: Machine) -> bool:
-    """Return whether the machine has its own operator station, instead of the station on the screen."""
+    """Return whether the machine has its own operator station instead of the station on the screen."""
     return any(name in machine.inputs for name in STATION_INPUTS)
 
 
 def wired_inputs(machine: Machine) -> list[str]:
-    """Return the rows of ``turndesk machine check`` for inputs, and for a station wired to them."""
+    """Return the names of the rows of ``turndesk machine check`` for the inputs.
+
+    The result includes the operator station if it is wired to inputs.
+    """
     inputs = [f"input {name}" for name in machine.inputs]
     return [*inputs, "station"] if has_station(machine) else inputs
 
@@ -161,7 +166,7 @@ FAILED_STATES = (
 
 
 class CheckRow(NamedTuple):
-    """One row of the check: name, address, state and details."""
+    """One row of the machine check, with name, address, state and details."""
 
     name: str
     at: str
@@ -170,18 +175,19 @@ class CheckRow(NamedTuple):
 
     @property
     def verdict(self) -> str:
-        """Result of the check.
+        """Return the result of the check.
 
-        The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``not mark_unchecked``.
+        The result is ``ok``, ``FAIL`` if the state contradicts the machine file, or ``NOT_CHECKED``.
         """
         if self.state in FAILED_STATES:
             return "FAIL"
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
     def mark_unchecked(self, measured_names: Container[str]) -> CheckRow:
-        """Return the row as ``not mark_unchecked`` if hardware did not report it and it does not fail.
+        """Return the row with the state ``NOT_CHECKED`` if hardware did not report the row and the row does
+        not fail.
 
-        ``measured`` has the names of the rows that hardware reported.
+        ``measured_names`` has the names of the rows that hardware reported.
         """
         if self.name in measured_names or self.state in FAILED_STATES:
             return self
@@ -190,10 +196,10 @@ class CheckRow(NamedTuple):
 
 @dataclass(slots=True)
 class CheckResults:
-    """Results of a machine check: rows, warnings, faults and process rights.
+    """Results of a machine check, which are rows, warnings, faults and process rights.
 
-    ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the system
-    grants to the control process.
+    ``warnings`` are notes about conditions that are not faults. ``rights`` are the rights that the
+    operating system grants to the control process.
     """
 
     rows: list[CheckRow] = field(default_factory=list)

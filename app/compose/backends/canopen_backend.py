@@ -1,4 +1,4 @@
-"""CANopen backend. Loads python-can and canopen, which are optional."""
+"""CANopen backend, which loads the optional libraries python-can and canopen."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ _LIBRARY_NAMES = frozenset(("can", "canopen", "msgpack"))
 def connect_canopen_machine(
     machine: Machine, clock: Clock, idle: Callable[[], None] | None = None
 ) -> CanopenMachine:
-    """Connect to the bus of a machine file.
+    """Connect to the bus that the machine file specifies.
 
-    Raises DriverError, which names a missing library.
+    Raises DriverError if the connection fails. The error names a missing library.
     """
     try:
         from drivers.canopen.canopen_machine import CanopenMachine
@@ -49,7 +49,10 @@ def connect_canopen_machine(
 
 
 def create_canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
-    """Return simulated drives and terminals for the bus of a machine file. Raises DriverError."""
+    """Return simulated drives and terminals for the bus of a machine file.
+
+    Raises DriverError if a library or the bus configuration is missing.
+    """
     from app.compose.backends.simulated_backend import create_sim_config
 
     try:
@@ -60,7 +63,7 @@ def create_canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
 
 
 def survey_canopen_bus(machine: Machine, clock: Clock) -> list[SurveyResult]:
-    """Ask each node of the bus for its identity. Raises DriverError."""
+    """Ask each node of the bus for its identity. Raises DriverError if the bus cannot be used."""
     try:
         from drivers.canopen.canopen_survey import identify_nodes
     except ImportError as error:
@@ -69,7 +72,7 @@ def survey_canopen_bus(machine: Machine, clock: Clock) -> list[SurveyResult]:
 
 
 def describe_missing_library(error: ImportError) -> str:
-    """Return the message for a missing library."""
+    """Return the error message for a missing library, with the command that installs it."""
     name = (error.name or "").partition(".")[0]
     library = {"can": "python-can"}.get(name, name) if name in _LIBRARY_NAMES else str(error)
     return Message(
@@ -78,7 +81,7 @@ def describe_missing_library(error: ImportError) -> str:
 
 
 def create_canopen_config(machine: Machine) -> CanopenConfig:
-    """Return the configuration of the bus. Raises DriverError if the machine file has no bus."""
+    """Return the configuration of the bus. Raises DriverError if the machine file does not specify a bus."""
     can = machine.hardware.find_driver_table(CanopenTable)
     if can is None:
         raise DriverError("{source}: the [canopen] table is missing", source=machine.source)
@@ -131,7 +134,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
 
 
 def _encoder_config(machine: Machine, nodes: dict[str, CanNode]) -> EncoderConfig | None:
-    """Return the configuration of the encoder, or None.
+    """Return the configuration of the spindle encoder, or None if the machine does not have one.
 
     The encoder of a drive has no node entry, because the drive's node maps its second input.
     """
@@ -157,7 +160,10 @@ def _is_simulated(machine: Machine) -> bool:
 
 
 def create_canopen_drivers(machine: Machine, clock: Clock) -> DriverBundle:
-    """Return the machine on its bus for the driver host. Raises DriverError."""
+    """Return the drivers of the machine on its bus for the driver host.
+
+    Raises DriverError if connecting fails.
+    """
     peers = create_canopen_peers(machine, clock) if _is_simulated(machine) else None
     try:
         # A stopped clock does not let the peers run, so they are served between the steps.
@@ -215,7 +221,7 @@ def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the axes and the spindle with a node, and all inputs of the modules."""
+    """Yield the axes and the spindle that have a node, and all inputs of the modules."""
     config = create_canopen_config(machine)
     yield from (axis.name for axis in config.axes if axis.node is not None)
     if config.spindle is not None or config.encoder is not None:
@@ -239,7 +245,10 @@ BACKEND = Backend(
 
 
 def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
-    """Return every object written to each node at a start, by node name. Raises DriverError."""
+    """Return every object that is written to each node at startup, by node name.
+
+    Raises DriverError if a library is missing or the configuration is invalid.
+    """
     try:
         from drivers.canopen.canopen_objects import load_drive_dictionary
         from drivers.canopen.canopen_setup import (

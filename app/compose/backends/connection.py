@@ -1,6 +1,6 @@
 """Connection of a machine to its ports, in this process or through the driver host.
 
-The driver host is loaded only for machines that use it, because loading delays the start.
+The driver host module is loaded only for machines that use it, because loading delays the start.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ HAS_DRIVER_HOST = sys.platform != "win32"
 
 
 def connect_machine(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
-    """Return everything that the executor needs. Raises DriverError if a device does not respond.
+    """Return the ports and functions that the executor needs.
 
-    ``lock`` is a file descriptor that a driver host process inherits and holds until it has ended.
+    Raises DriverError if a device does not respond.
+
+    ``lock`` is a file descriptor that a driver host process inherits and does not close before it ends.
     """
     connected = _connected(remove_feature_inputs(machine), clock, lock)
     for extra in extras().values():
@@ -28,7 +30,10 @@ def connect_machine(machine: Machine, clock: Clock, lock: int | None = None) -> 
 
 
 def remove_feature_inputs(machine: Machine) -> Machine:
-    """Return the machine without the inputs that optional features provide, as its backend is wired."""
+    """Return a copy of the machine that has only the inputs wired to its backend.
+
+    The inputs that optional features provide are removed.
+    """
     for extra in extras().values():
         machine = extra.remove_own_inputs(machine)
     return machine
@@ -45,5 +50,5 @@ def _connected(machine: Machine, clock: Clock, lock: int | None) -> ConnectedMac
 
 
 def needs_real_time(machine: Machine) -> bool:
-    """Return whether a part of the machine runs in real time, so that a step clock cannot be used."""
+    """Return whether a part of the machine runs in real time, so that a manual clock cannot be used."""
     return has_inverter(machine) or not is_simulated(machine)

@@ -1,4 +1,6 @@
-"""Connection of a machine through the driver host, in a separate process or in this one for tests."""
+"""Connection of a machine through the driver host, which runs in a separate process, or in this one for
+tests.
+"""
 
 from __future__ import annotations
 
@@ -15,9 +17,11 @@ from drivers.wakeups import RealClock
 
 
 def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
-    """Start the driver host and return the machine's ports. Raises DriverError if it does not respond.
+    """Start the driver host and return the connected machine.
 
-    ``lock`` is a file descriptor that the driver host process holds until it has ended.
+    Raises DriverError if the host does not respond.
+
+    ``lock`` is a file descriptor that the driver host process does not close before it ends.
     """
     line, close = _open_connection(machine, clock, lock)
     try:
@@ -33,9 +37,10 @@ def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None)
 def _open_connection(
     machine: Machine, clock: Clock, lock: int | None
 ) -> tuple[HostConnection, Callable[[], None]]:
-    """Return the connection to the driver host and its close function.
+    """Return the connection to the driver host and the function that closes the connection.
 
-    With a real clock the driver host is a process; otherwise the same messages run in this thread.
+    With a real clock, the driver host is a separate process. Otherwise it handles the same messages in this
+    thread.
     """
     if isinstance(clock, RealClock) and not _is_virtual(machine):
         process = DriverHostProcess(machine, clock, lock)

@@ -1,6 +1,7 @@
-"""The driver host process, and the class that starts it.
+"""The driver host process, and the class that starts the process.
 
-The command is ``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the machine on stdin.
+The command is ``python -m app.compose.backends.driver_host_process FD ZERO BELL``, with the pickled machine
+on stdin.
 """
 
 from __future__ import annotations
@@ -41,7 +42,10 @@ from drivers.wakeups import ConnectionAttempt, ProcessBell, RealClock
 
 
 def create_host_drivers(machine: Machine, clock: Clock) -> DriverBundle:
-    """Return the backend and spindle of a machine for the driver host. Raises DriverError."""
+    """Return the drivers of a machine's backend and spindle for the driver host.
+
+    Raises DriverError if the driver host does not support the backend.
+    """
     make = find_backend(machine).create_drivers
     if make is None:
         raise DriverError(f"{machine.source}: the driver host does not support backend {machine.backend}")
@@ -66,9 +70,9 @@ _END_TIMEOUT_S = 10.0
 
 
 class DriverHostProcess:
-    """A driver host in a separate process, and the connection to it.
+    """A driver host in a separate process, with the connection to the process.
 
-    The process holds the file descriptor ``lock`` until it has ended.
+    The process does not close the file descriptor ``lock`` before it ends.
     """
 
     def __init__(self, machine: Machine, clock: RealClock, lock: int | None = None) -> None:
@@ -84,7 +88,7 @@ class DriverHostProcess:
         self.connection = HostConnection(link, clock, self._restart, self._bell)
 
     def _restart(self) -> ConnectionAttempt[HostLink]:
-        """Start another process after the old one has ended, so that the bus never has two masters."""
+        """Start a new process after the old process has ended, so that the bus never has two masters."""
 
         def begun() -> HostLink:
             self._end()
@@ -95,7 +99,7 @@ class DriverHostProcess:
         return ConnectionAttempt(begun)
 
     def _start_process(self) -> HostLink:
-        """Start the process and return its link. Raises DriverError with the error of its drivers."""
+        """Start the process and return its link. Raises DriverError if its drivers report an error."""
         machine, clock = self._machine, self._clock
         ours, theirs = socket.socketpair()
         with theirs:
@@ -130,7 +134,7 @@ class DriverHostProcess:
         return self._link
 
     def close(self) -> None:
-        """Let the driver host stop the machine and end, even if it is being restarted."""
+        """Make the driver host stop the machine and end, even while it is being restarted."""
         self._closed = True
         self._end()
         self._bell.close()
@@ -144,7 +148,9 @@ class DriverHostProcess:
             self.process.wait()
 
     def _read_first_message(self, sock: socket.socket) -> Message:
-        """Return the first message of the driver host: ready, or the reason for a failure."""
+        """Return the first message of the driver host, which reports either readiness or the reason for a
+        failure.
+        """
         inbox = MessageDecoder()
         sock.settimeout(_START_TIMEOUT_S)
         try:
@@ -159,15 +165,16 @@ class DriverHostProcess:
 
 
 def get_setpoint_interval(machine: Machine) -> float:
-    """Return the seconds between setpoints if the drives need each setpoint on time, otherwise 0."""
+    """Return the time between setpoints in seconds, or 0 if the drives do not need each setpoint on time."""
     can = machine.hardware.find_driver_table(CanopenTable)
     return can.sync if can is not None and can.mode in CYCLIC_MODES else 0.0
 
 
 def make_priority_warning(period_s: float, delay_s: float) -> str:
-    """Return the warning for the operator that the driver host has no real-time priority.
+    """Return the warning that the driver host does not have real-time priority.
 
-    ``period_s`` is the time between setpoints, and ``delay_s`` the largest delay in the test, in seconds.
+    ``period_s`` is the time between setpoints, and ``delay_s`` is the largest delay in the test, both in
+    seconds.
     """
     template = (
         (
@@ -194,7 +201,7 @@ def make_priority_warning(period_s: float, delay_s: float) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Connect the drivers, report the result, and serve requests until the control disconnects."""
+    """Connect the drivers, report the result, and process requests until the control disconnects."""
     sock = socket.socket(fileno=int(arguments[0]))
     clock: Clock = RealClock(float(arguments[1]))
     machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has

@@ -23,7 +23,10 @@ _HOME_HERE_METHODS = frozenset((35, 37))  # homing methods of CiA 402 that use t
 
 
 def create_grblhal_config(machine: Machine) -> GrblConfig:
-    """Return the configuration of the controller. Raises DriverError if the machine file does not fit."""
+    """Return the configuration of the controller.
+
+    Raises DriverError if the machine file is not suitable for grblHAL.
+    """
     model = machine.hardware.find_driver_table(GrblhalTable)
     if model is None:
         raise DriverError("{source}: the [grblhal] table is missing", source=machine.source)
@@ -56,7 +59,7 @@ def _play_devices(
     print_line: Callable[[str], None],
     _typed: Callable[[], Iterable[str]],
 ) -> None:
-    """Run a simulator of the controller on the TCP port of the machine file, or on a new pseudo terminal."""
+    """Run a simulator of the controller on the TCP port of the machine file, or on a new pseudoterminal."""
     address = parse_tcp_address(create_grblhal_config(machine).table.port)
     end: TcpConnection | PtyConnection = PtyConnection() if address is None else TcpConnection(*address)
     print_line(
@@ -76,9 +79,10 @@ def _axis(axis: Axis, machine: Machine) -> GrblAxis:
 
 
 def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
-    """Connect a controller that plans motion itself; its operator station is on the screen.
+    """Connect a controller that plans motion on its own. The operator station is on the screen.
 
-    If an inverter drives the spindle, the controller's encoder, if any, measures its speed.
+    If an inverter drives the spindle and the controller has an encoder, the encoder measures the spindle
+    speed.
     """
     controller = GrblMachine(create_grblhal_config(machine), clock)
     ports, close, encoder = controller.ports, controller.close, controller.encoder
@@ -91,10 +95,10 @@ def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the controller, a spindle with an encoder, and the inputs.
+    """Yield the names of the controller, a spindle with an encoder, and the inputs.
 
-    Axis positions are only counted steps, and the overrides are those of the screen, so they are not
-    measured.
+    Axis positions are only counts of steps, and the overrides are set on the screen. Hardware measures
+    neither.
     """
     yield "controller"
     if machine.spindle.encoder_ppr:

@@ -22,7 +22,7 @@ from drivers.wakeups import RealClock
 
 
 def create_hal_config(machine: Machine) -> HalConfig:
-    """Return the configuration of HAL. Raises DriverError if the machine file has no [hal] table."""
+    """Return the configuration of HAL. Raises DriverError if the machine file does not have a [hal] table."""
     hal = machine.hardware.find_driver_table(HalTable)
     if hal is None:
         raise DriverError("{source}: the [hal] table is missing", source=machine.source)
@@ -55,7 +55,7 @@ def create_hal_config(machine: Machine) -> HalConfig:
 
 
 def _hal_path(machine: Machine, name: str) -> Path:
-    """Return the path of the HAL file: next to the machine file, or among the shipped files."""
+    """Return the path of the HAL file, which is in the machine file's folder or is a shipped file."""
     beside = Path(machine.source).parent / name
     return resources.hal_file(name) if not Path(machine.source).exists() else beside.resolve()
 
@@ -78,7 +78,10 @@ def _is_spindle(axis: Axis, machine: Machine, hal: HalTable) -> bool:
 
 
 def create_hal_drivers(machine: Machine, clock: Clock) -> DriverBundle:
-    """Return the machine on HAL for the driver host. Raises DriverError."""
+    """Return the drivers of the machine on HAL for the driver host.
+
+    Raises DriverError if HAL cannot be used.
+    """
     config = create_hal_config(machine)
     zero = clock.origin_s if isinstance(clock, RealClock) else 0.0
     owned = HalMachine(config, clock, lambda: HalSession(config, zero))
@@ -91,7 +94,7 @@ def create_hal_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
 
 def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, str, str]]:
-    """Yield every pin that the machine file names, with the fault that HAL reports."""
+    """Yield every pin named in the machine file, with the error that HAL reports for the pin."""
     session = HalSession(create_hal_config(machine), 0.0, check_only=True)
     session.close()
     for each in session.pin_verdicts:
@@ -99,10 +102,10 @@ def _survey_rows(machine: Machine, _clock: Clock) -> Iterator[tuple[str, str, st
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
-    """Yield the axes and the spindle with encoders, and all inputs; nothing for a simulated board.
+    """Yield the names of axes and spindle with encoders, and of all inputs.
 
-    The position of a step drive is only the number of steps sent. Without [board], the driver does not know
-    the kind of the axes' drives.
+    A simulated board yields no names. The position of a step drive is only the number of steps sent.
+    Without [board], the driver does not know the kind of the axes' drives.
     """
     board, hal = machine.hardware.find_driver_table(BoardTable), machine.hardware.find_driver_table(HalTable)
     if board is not None and board.kind == SIM:

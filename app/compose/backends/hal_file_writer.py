@@ -1,4 +1,4 @@
-"""The LinuxCNC HAL file for a machine file, with its wiring table."""
+"""Writer of the LinuxCNC HAL file for a machine file, with the wiring table."""
 
 from __future__ import annotations
 
@@ -37,10 +37,11 @@ _BOARD_BUILDERS: Mapping[str, Callable[[LatheData], HalFile]] = {
 
 @dataclass(frozen=True, slots=True)
 class GeneratedHal:
-    """The generated files and tables for a machine.
+    """HAL files and tables that are generated for a machine.
 
-    ``name`` is the file name in [hal], and ``wiring_rows`` are the rows of the wiring table. Other
-    attributes are the additional files, the wiring table as text lines, and the required measurements.
+    ``name`` is the file name in [hal], and ``text`` is the HAL file. ``extra_files`` are the additional
+    files by name. ``wiring_rows`` are the rows of the wiring table, and ``wiring_table`` is the table as
+    lines of text. ``measurements`` are the measurements that the builder must make.
     """
 
     name: str
@@ -53,7 +54,10 @@ class GeneratedHal:
 
 
 def generate_hal(machine: Machine) -> GeneratedHal:
-    """Return the HAL file of a machine as text. Raises the errors of ``build_hal_file``."""
+    """Return the generated HAL file and wiring table of a machine.
+
+    Raises the errors of ``build_hal_file``.
+    """
     file, hal = build_hal_file(machine), machine.hardware.find_driver_table(HalTable)
     return GeneratedHal(
         name=hal.file if hal is not None else "",
@@ -69,8 +73,8 @@ def generate_hal(machine: Machine) -> GeneratedHal:
 def build_hal_file(machine: Machine) -> HalFile:
     """Return the HAL file of a machine that uses LinuxCNC HAL.
 
-    Raises CommandError if the machine file has no [hal] or [board], and MachineFileError for names that the
-    board does not have.
+    Raises CommandError if the machine file has no [hal] or [board] table, or MachineFileError for names
+    that the board does not have.
     """
     hal, board = machine.hardware.find_driver_table(HalTable), machine.hardware.find_driver_table(BoardTable)
     if hal is None or machine.backend != "hal":
@@ -119,7 +123,7 @@ def build_hal_file(machine: Machine) -> HalFile:
 
 
 def _terminal_names(machine: Machine, hal: HalTable) -> Iterator[tuple[str, str]]:
-    """Yield every pin or signal in the machine file, with its key."""
+    """Yield every pin or signal name in the machine file, with its key."""
     yield from ((f"hal.{key}", getattr(hal, key)) for key in ("machine_on", "charge_pump", "link_fault"))
     for axis, pins in hal.axes.items():
         yield from ((f"hal.axes.{axis}.{key}", name) for key, name in asdict(pins).items())

@@ -1,4 +1,4 @@
-"""Frequency inverter on a serial line, in place of the backend's own spindle."""
+"""Connection of a frequency inverter on a serial line, which replaces the backend's own spindle."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ def add_inverter(
     close: Callable[[], None],
     encoder: SpindleEncoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
-    """Return the ports with the inverter as spindle, and a function that closes both, the spindle first.
+    """Return the ports with the inverter as spindle, and a function that closes the spindle and then the
+    devices.
 
-    ``close`` closes the other devices. It is also called if the inverter does not respond. ``measures`` is an
-    encoder in addition to the backend's spindle. Raises DriverError if the inverter does not respond.
+    ``close`` closes the other devices. It is also called if the inverter does not respond. ``encoder`` is
+    an encoder that measures the spindle speed. Raises DriverError if the inverter does not respond.
     """
     try:
         thread, joined = _attended(machine, ports, clock, encoder)
@@ -100,22 +101,25 @@ def _attended(
 
 
 def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozenset[UnknownPart]:
-    """Return the unknown parts of the backend, with the spindle judged by the inverter and its encoder."""
+    """Return the unknown parts of the backend.
+
+    The spindle is unknown if the inverter and its encoder do not report its state.
+    """
     rest = ports.unknown() - {UnknownPart.SPINDLE}
     return rest | {UnknownPart.SPINDLE} if spindle.is_state_unknown else rest
 
 
 def halt_with_inverter(ports: MachinePorts, spindle: InverterSpindle) -> None:
-    """Stop the inverter from any thread, then the other devices."""
+    """Stop the inverter and then the other devices. Any thread may call this function."""
     spindle.coast()
     if ports.halt_machine is not None:
         ports.halt_machine()
 
 
 class AxisOnlySamples:
-    """A ``SampleSource`` without the spindle values of the backend, whose spindle is not used.
+    """A ``SampleSource`` without the spindle values of a backend whose own spindle is not used.
 
-    The record has the values of the real spindle from each tick.
+    The scope record gets the values of the real spindle at each tick.
     """
 
     def __init__(self, inner: SampleSource, axes: int, load: Callable[[], float]) -> None:
@@ -123,7 +127,9 @@ class AxisOnlySamples:
         self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
 
     def take(self, max_rows: int = 8192) -> FloatArray:
-        """Return the samples with unknown spindle speed and revolutions, and the inverter's last load."""
+        """Return the samples with unknown spindle speed and revolutions, and with the inverter's
+        last load.
+        """
         rows = self._inner.take(max_rows)
         rows[:, self._spindle] = float("nan")
         rows[:, self._spindle.stop - 1] = self._load()
@@ -131,7 +137,7 @@ class AxisOnlySamples:
 
 
 class FaultClearingAxes:
-    """An ``AxisSink`` whose faults are cleared together with those of the spindle."""
+    """An ``AxisSink`` that clears the faults of the spindle together with the faults of the axes."""
 
     def __init__(self, inner: AxisSink, clear_spindle: Callable[[], None]) -> None:
         self._clear, self._beside = inner.clear_fault, clear_spindle
@@ -141,6 +147,9 @@ class FaultClearingAxes:
         self.stop, self.home = inner.stop, inner.home
 
     def clear_fault(self) -> None:
-        """Clear the faults of the spindle and of the axes. Raises DriverError."""
+        """Clear the faults of the spindle and of the axes.
+
+        Raises DriverError if a device does not respond.
+        """
         self._beside()
         self._clear()

@@ -1,4 +1,4 @@
-"""Check of a connected machine: state of every node, drive, input and output."""
+"""Check of a connected machine, with the state of every node, drive, input and output."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ _CHECK_INTERVAL_S = 0.02  # s
 
 
 def check_machine(machine: Machine) -> CheckResults:
-    """Check each node, drive, spindle, station, input, output and pot. Driver errors become results.
+    """Check each node, drive, spindle, station, input, output and pot.
 
-    Nothing is switched on and nothing moves.
+    Driver errors become results of the check. Nothing is switched on, and nothing moves.
     """
     clock: Clock = RealClock() if needs_real_time(machine) else ManualClock()
     answers = CheckResults()
@@ -54,7 +54,7 @@ def check_machine(machine: Machine) -> CheckResults:
 
 
 def _check_nodes(machine: Machine, clock: Clock, results: CheckResults) -> None:
-    """Ask every node of a real bus separately, so that a missing node does not hide the others."""
+    """Query every node of a real bus separately, so that a missing node does not hide the other nodes."""
     survey = find_backend(machine).survey_nodes
     if survey is None or is_simulated(machine):
         return
@@ -89,7 +89,7 @@ def _ask_ports(machine: Machine, clock: Clock, answers: CheckResults) -> None:
 
 
 def _measured_names(machine: Machine, connected: ConnectedMachine) -> set[str]:
-    """Return the names of the rows whose values hardware has reported."""
+    """Return the names of the rows with values that hardware has reported."""
     names = (
         set()
         if is_simulated(machine)
@@ -101,7 +101,9 @@ def _measured_names(machine: Machine, connected: ConnectedMachine) -> set[str]:
 
 
 def _wait_until_settled(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
-    """Poll the axes until all inputs are known, as a controller may read auxiliary inputs one by one."""
+    """Poll the axes until all inputs are known, because a controller may read auxiliary inputs one at a
+    time.
+    """
     began = clock.now()
     while (waited := clock.now() - began) < _MAX_WAIT_S:
         ports.axes.sample()
@@ -111,7 +113,7 @@ def _wait_until_settled(clock: Clock, ports: MachinePorts, machine: Machine) -> 
 
 
 def _device_name(machine: Machine) -> str:
-    """Return the name of the part that could not be reached."""
+    """Return the name of the device that could not be reached."""
     word = find_backend(machine).device_name
     return "spindle" if word == "feeder" and has_inverter(machine) else word
 
@@ -174,7 +176,7 @@ def _place(axis: Axis, at: float, machine: Machine) -> str:
 
 
 def _node_address(machine: Machine, name: str) -> str:
-    """Return the node of a drive, or the port of an inverter."""
+    """Return the node of a drive or the port of an inverter as text."""
     hardware = machine.hardware
     inverter, can = hardware.find_driver_table(InverterTable), hardware.find_driver_table(CanopenTable)
     if name == "spindle" and hardware.spindle_driver == "vfd" and inverter is not None:

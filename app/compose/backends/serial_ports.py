@@ -1,4 +1,4 @@
-"""Serial ports. Loads pyserial, which is needed only for machines with a serial line."""
+"""Access to serial ports through pyserial, which is loaded only for machines with a serial line."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ MISSING_LIBRARY_TEXT = "serial ports need pyserial; install it with: pip install
 
 
 def open_serial_port(settings: LineSettings, *, count_damaged: bool = False) -> FlowControlTransport:
-    """Open a port exclusively; ``count_damaged`` counts damaged characters.
+    """Open a serial port for exclusive use.
 
-    Raises DriverError, which names a missing library.
+    ``count_damaged`` makes the port count damaged characters. Raises DriverError if the port cannot be
+    opened or pyserial is missing.
     """
     try:
         from drivers.serial_port import SerialPort
@@ -21,7 +22,10 @@ def open_serial_port(settings: LineSettings, *, count_damaged: bool = False) -> 
 
 
 def list_serial_ports() -> list[tuple[str, str]]:
-    """Return device and description of each port of this computer. Raises DriverError."""
+    """Return the device and the description of each serial port.
+
+    Raises DriverError if pyserial is missing.
+    """
     try:
         from drivers.serial_port import list_ports
     except ImportError as error:

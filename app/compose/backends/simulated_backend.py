@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def create_simulation(machine: Machine, clock: Clock) -> Simulation:
-    """Return the ports and the simulated operator station of a simulated lathe on this clock."""
+    """Return the ports and the simulated operator station of a simulated lathe that uses this clock."""
     return build_simulation(create_sim_config(machine), clock)
 
 
@@ -56,7 +56,9 @@ def create_sim_config(machine: Machine) -> SimConfig:
 
 
 def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimToolSetter | None:
-    """Return the simulated tool setter if the machine file has one with tool tips, or None."""
+    """Return the simulated tool setter, or None if the machine file has no tool setter or there are no tool
+    tips.
+    """
     model = machine.hardware.find_driver_table(SetterModel)
     return SimToolSetter(model.x, model.z, model.width, tips) if model is not None and tips else None
 
@@ -66,7 +68,10 @@ def _axis(axis: Axis, machine: Machine) -> SimAxis:
 
 
 def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
-    """Return the simulated machine for the driver host; the simulation also runs while no client polls it."""
+    """Return the simulated machine for the driver host.
+
+    The simulation also runs while no client polls the driver host.
+    """
     from drivers.driver_host.host_server import MAX_SLEEP_CYCLE_S, DriverBundle
 
     ports, hands = create_simulation(machine, clock)
@@ -80,7 +85,7 @@ def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
 
 def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:
-    """Connect the simulated machine in this process; its spindle may be a real inverter."""
+    """Connect the simulated machine in this process, with a real inverter if one drives the spindle."""
     ports, hands = create_simulation(machine, clock)
     close = _do_nothing
     if has_inverter(machine):
@@ -91,7 +96,7 @@ def _connect_in_process(machine: Machine, clock: Clock) -> ConnectedMachine:
 
 
 def _do_nothing() -> None:
-    """Close nothing, because the simulation has no resources."""
+    """Do nothing on closing, because the simulation has no resources to release."""
 
 
 BACKEND = Backend(

@@ -1,4 +1,4 @@
-"""Simulated drives and terminals on a real bus, operated by typed commands."""
+"""Simulated drives and terminals on a real bus, which are operated by typed commands."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _CHUNK = 4096
 
 
 class LineReader:
-    """Reader of whole lines from a file descriptor that never blocks."""
+    """Non-blocking reader of whole lines from a file descriptor."""
 
     def __init__(self, source: int) -> None:
         self._source = source
@@ -43,7 +43,7 @@ class LineReader:
         signal.signal(signal.SIGTTIN, signal.SIG_IGN)
 
     def read_lines(self) -> Iterator[str]:
-        """Yield the lines typed since the last call."""
+        """Yield the lines that were typed since the last call."""
         if self._open and select.select([self._source], [], [], 0)[0]:
             data = b""
             with contextlib.suppress(OSError):
@@ -57,7 +57,7 @@ class LineReader:
 
 
 def execute_command(command: str, peers: CanopenDevices) -> str:
-    """Carry out one typed command; return the result or the error as text."""
+    """Execute one typed command, and return the result or the error as text."""
     name, *values = command.split()
     try:
         act = _COMMANDS[name]

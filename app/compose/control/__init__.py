@@ -1,1 +1,1 @@
-"""The control in a separate process with executor and drivers; the operator screen is its client."""
+"""Control process with the executor and the drivers. The operator screen is a client of this process."""

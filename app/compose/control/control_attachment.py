@@ -1,4 +1,4 @@
-"""First step of the screen's start: find a control that is still running, or start one."""
+"""First step of the screen's start, which finds a control that is still running or starts one."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
 
 def find_or_start_control(machine_file: str | None) -> Begun:
-    """Return the machine of the file, and its control without waiting for the control.
+    """Return the machine of the file and its control, without waiting for the control.
 
-    The control is None if it runs in a thread of the screen's process. Raises CommandError for an invalid
-    machine file, and if a running control executes a program with another machine file.
+    The control is None if it runs in a thread of the screen's process. Raises CommandError if the machine
+    file is invalid, or if a running control executes a program with a different machine file.
     """
     machine = read_machine(machine_file)
     if not USES_OWN_PROCESS:

@@ -1,4 +1,4 @@
-"""The control as seen by the screen: commands sent to its process, and messages received from there."""
+"""Client of the control process, which sends commands to the process and receives its messages."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ CLOSE_TIMEOUT_S = 20.0  # s, for drives that are switching on; then the machine 
 
 @dataclass(slots=True)
 class ControlEventHandlers:
-    """Functions called in the client's thread for messages of the control."""
+    """Functions that are called in the client's thread for messages of the control."""
 
     on_event: Callable[[LogEvent, Receipt | None], None]
     on_interrupted_job: Callable[[InterruptedJob | None], None]
@@ -85,14 +85,18 @@ class ControlEventHandlers:
 
 
 class ControlClient:
-    """Connection to the control process. ``snapshot`` is the newest snapshot, and ``post`` never blocks."""
+    """Connection to the control process.
+
+    ``snapshot`` is the newest snapshot. ``post_command`` never blocks.
+    """
 
     def __init__(
         self, started_control: StartedControl, folder: Path, records: ControlRecordings | None = None
     ) -> None:
-        """Wait for the first message. ``records`` of an earlier control continue with the data of this one.
+        """Wait for the first message of the control.
 
-        Raises DriverError if the control reports an error, does not respond or has another version.
+        ``records`` of an earlier control continue with the data of this control. Raises DriverError if the
+        control reports an error, does not respond or has a different version.
         """
         self._connection, self.control_process = connection, process = started_control
         hello = _receive_hello(connection, START_TIMEOUT_S if process is not None else REPLY_TIMEOUT_S)
@@ -135,33 +139,36 @@ class ControlClient:
         self._outbox.put(CommandMessage(command, self.clock.now()))
 
     def wait_for_snapshot(self, is_expected: Callable[[Snapshot], bool]) -> None:
-        """Wait until ``is_expected`` returns True for a snapshot, or until the control does not respond in
-        time.
-        """
+        """Wait until ``is_expected`` returns True for a snapshot, or until the time limit for a response."""
         until = time.monotonic() + REPLY_TIMEOUT_S
         while not is_expected(self.snapshot) and not self._closed.is_set() and time.monotonic() < until:
             self._came.wait(ALIVE_INTERVAL_S)
             self._came.clear()
 
     def operate_station(self, name: str, *values: object) -> None:
-        """Operate the simulated operator station."""
+        """Call the method ``name`` of the simulated operator station with these values."""
         self._outbox.put(StationAction(name, values, self.clock.now()))
 
     def pass_line(self, line: socket) -> None:
-        """Pass a socket to the control, which receives stop keys from it, and close it here."""
+        """Pass a socket to the control, which receives stop keys from the socket, and close the socket
+        here.
+        """
         self._outbox.put(line)
 
     @property
     def silent_for(self) -> float:
-        """Seconds since the last message of the control."""
+        """Return the time since the last message of the control, in seconds."""
         return time.monotonic() - self.heard_at
 
     def set_input(self, name: str, state: bool) -> None:
-        """Switch an input of a simulated machine."""
+        """Switch an input of a simulated machine on or off."""
         self._outbox.put(InputChange(name, state))
 
     def report_alive(self, snapshot: Snapshot) -> None:
-        """Report to the control that the screen handles its keys; called once per frame."""
+        """Report to the control that the screen is processing its keys.
+
+        The screen calls this method once per frame.
+        """
         now = self.clock.now()
         if now >= self._next_alive and not self.is_lost:
             self._next_alive = now + ALIVE_INTERVAL_S
@@ -173,9 +180,9 @@ class ControlClient:
                 self._kept.clear()
 
     def disconnect(self, *, end_control: bool) -> None:
-        """Disconnect before ``start_threads`` was called. ``close`` also ends the control.
+        """Disconnect before ``start_threads`` is called.
 
-        The machine of a control that is ended must be at rest.
+        ``end_control`` also ends the control, whose machine must be at rest.
         """
         with self._connection, suppress(OSError, EOFError):
             if end_control:
@@ -185,11 +192,11 @@ class ControlClient:
                     self._connection.recv()  # until its process ends and closes the socket
 
     def ask_to_end(self) -> None:
-        """Ask the control to stop the machine and to end, without waiting for it."""
+        """Ask the control to stop the machine and to end, without waiting for the end."""
         self._outbox.put(CloseRequest())
 
     def stop_and_close(self) -> None:
-        """Stop the machine, close its drivers and wait for the end of the process."""
+        """Stop the machine, close its drivers, and wait until the control process ends."""
         self._closing = True
         self.ask_to_end()
         self._closed.wait(CLOSE_TIMEOUT_S)
@@ -203,7 +210,7 @@ class ControlClient:
         self.forget()
 
     def forget(self) -> None:
-        """End the threads and the connection of a control whose process has ended."""
+        """End the threads and the connection to a control whose process has ended."""
         self._closing = True
         self._outbox.put(None)
         for thread in self._threads:
@@ -265,7 +272,7 @@ class ControlClient:
                 _log.error("the screen does not know this message of the control: %r", message)
 
     def _handle_loss(self, events: ControlEventHandlers) -> None:
-        """Show an alarm because the control process has ended; its drivers have stopped the machine."""
+        """Show an alarm that the control process has ended. Its drivers have stopped the machine."""
         why = Message("the process of the control has ended")
         last = self.snapshot
         alarm = make_alarm("control-silent", why, last.line, last.t)
@@ -276,7 +283,7 @@ class ControlClient:
 
 
 class ControlStationControls(PostedControls):
-    """The simulated operator station of the control; methods can be called from any thread.
+    """Simulated operator station of the control, whose methods can be called from any thread.
 
     ``hand`` sends the name of a method and its values to the station.
     """
@@ -285,24 +292,24 @@ class ControlStationControls(PostedControls):
         self._hand = hand
 
     def post_action(self, name: str, *values: object) -> None:
-        """Call the method with this name at the station."""
+        """Call the method with this name at the simulated station of the control."""
         self._hand(name, *values)
 
 
 class ControlRecordings(ScopeRecordings):
-    """Scope data of the control. ``handle_event`` receives the events that name alarm records."""
+    """Scope recordings of the control. ``handle_event`` receives the events that name alarm records."""
 
     def __init__(self, ring: ScopeRing, folder: Path, storage_error: str) -> None:
         super().__init__(ring, folder, storage_error)
         self._named: dict[str, float] = {}  # announced records by name, with the time in s
 
     def handle_event(self, event: LogEvent) -> None:
-        """Note the name of a record that is now being written."""
+        """Remember the name of a record that is being written, as named in the event."""
         if event.record_name:
             self._named.setdefault(event.record_name, time.monotonic())
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the record was announced and its file does not exist yet."""
+        """Return whether the record was announced but its file does not exist yet."""
         there = self.folder is not None and (self.folder / name).exists()
         return not there and time.monotonic() < self._named.get(name, -_SAVE_TIMEOUT_S) + _SAVE_TIMEOUT_S
 
@@ -314,7 +321,7 @@ def _not_taken(error: BaseException) -> None:
 def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     """Return the first message of the control.
 
-    Raises DriverError if the control reports an error, does not respond or has another version.
+    Raises DriverError if the control reports an error, does not respond or has a different version.
     """
     try:
         message = connection.recv() if connection.poll(timeout_s) else None
@@ -340,12 +347,12 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
 
 
 def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | None:
-    """Return a control that is still running because its screen was killed, or None.
+    """Return the client of a control that is still running after its screen was killed, or None.
 
-    The control listens at the socket ``path``. The result is None if no control is running or another screen
-    is connected to it. A control at rest that has another machine file is closed, and the result is None too.
-    Raises DriverError if a control with another machine file is running a program, or if the control has
-    another version or does not respond.
+    The control listens at the socket ``path``. The result is None if no control is running, or if a
+    different screen is connected to the control. A control at rest that has a different machine file is
+    closed, and the result is also None. Raises DriverError if a control with a different machine file is
+    running a program, has a different version or does not respond.
     """
     connection = _connect(path)
     if connection is None:
@@ -370,7 +377,7 @@ def find_control(machine: Machine, folder: Path, path: Path) -> ControlClient | 
 
 
 def _connect(path: Path) -> Connection | None:
-    """Return a connection to the control at a socket, or None.
+    """Return a connection to the control at a socket, or None if no control of the same user listens there.
 
     The control must belong to the same user, because its messages are unpickled.
     """

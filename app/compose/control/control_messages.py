@@ -1,6 +1,7 @@
-"""Messages between the screen and the control process: pickled tuples over one socket.
+"""Messages between the screen and the control process, sent as pickled tuples over one socket.
 
-Both ends belong to the same user. Times are seconds of one monotonic clock, whose zero the control sends.
+Both processes belong to the same user. Times are in seconds of one monotonic clock, whose zero the control
+sends.
 """
 
 from __future__ import annotations
@@ -28,14 +29,17 @@ _CREDENTIALS = struct.Struct("3i")  # process, user, group
 
 
 class CommandMessage(NamedTuple):
-    """Send a command to the executor. ``at`` is the time of the request in s."""
+    """Command for the executor. ``requested_at_s`` is the time of the request in seconds."""
 
     command: Command
     requested_at_s: float
 
 
 class StationAction(NamedTuple):
-    """Call a method of the simulated operator station. ``at`` is the time of the action in s."""
+    """Call of a method of the simulated operator station.
+
+    ``acted_at_s`` is the time of the action in seconds.
+    """
 
     name: str
     values: tuple[object, ...]
@@ -43,35 +47,35 @@ class StationAction(NamedTuple):
 
 
 class InputChange(NamedTuple):
-    """Switch an input of a simulated machine."""
+    """Request to switch an input of a simulated machine."""
 
     name: str
     is_on: bool
 
 
 class ScreenAlive(NamedTuple):
-    """The screen has handled its keys and drawn the state of the machine."""
+    """Report that the screen has processed its keys and drawn the state of the machine."""
 
 
 class StopSocketMessage(NamedTuple):
-    """The file descriptor of a socket for stop keys follows this message."""
+    """Announcement that the next data is the file descriptor of a socket for stop keys."""
 
 
 class EventStored(NamedTuple):
-    """The event with this number is stored and need not be sent again."""
+    """Confirmation that the event with this number is stored and must not be sent again."""
 
     number: int
 
 
 class CloseRequest(NamedTuple):
-    """Stop the machine, close the drivers and end the process."""
+    """Request to stop the machine, close the drivers and end the process."""
 
 
 # --- Messages from the control ----------------------------------------------------------------------------
 
 
 class HelloMessage(NamedTuple):
-    """First message of the control. The file descriptor of the scope's shared memory follows it."""
+    """First message of the control, which is followed by the file descriptor of the scope's shared memory."""
 
     version: int
     process: int  # number of its process
@@ -89,43 +93,46 @@ class HelloMessage(NamedTuple):
 
 
 class ControlFailed(NamedTuple):
-    """The control cannot be used, with the reason. No other message follows."""
+    """Last message of a control that cannot be used, with the reason."""
 
     reason: str
 
 
 class SnapshotMessage(NamedTuple):
-    """The newest snapshot. ``has_changed`` means that something has changed on a machine at rest."""
+    """Newest snapshot of the machine.
+
+    ``has_changed`` means that the state of a machine at rest has changed.
+    """
 
     snapshot: Snapshot
     has_changed: bool
 
 
 class EventMessage(NamedTuple):
-    """A numbered event for the event log."""
+    """Event for the event log, with its number."""
 
     number: int
     event: LogEvent
 
 
 class InterruptedJobNote(NamedTuple):
-    """The job that a power failure would interrupt now, or None."""
+    """Job that a power failure would interrupt now, or None."""
 
     job: InterruptedJob | None
 
 
 class ThreadEnded(NamedTuple):
-    """A thread of the control process has ended unexpectedly."""
+    """Report that a thread of the control process has ended unexpectedly."""
 
     name: str
 
 
 class MachineClosed(NamedTuple):
-    """The machine is stopped and its drivers are closed."""
+    """Report that the machine is stopped and its drivers are closed."""
 
 
 def is_own_user(connection: Connection) -> bool:
-    """Return whether the other end belongs to the user of this process."""
+    """Return whether the process at the other end of the connection belongs to the user of this process."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock, suppress(OSError):
         _, user, _ = _CREDENTIALS.unpack(sock.getsockopt(SOL_SOCKET, SO_PEERCRED, _CREDENTIALS.size))
         return bool(user == os.geteuid())

@@ -1,8 +1,8 @@
-"""The place of a control in the data folder: its socket and its two locks.
+"""Reserved slot of a control in the data folder, which consists of a socket and two locks.
 
-Each control owns one place: ``control.sock``, or ``control-2.sock`` and so on if the owners of the earlier
-places are running. The kernel releases a lock when the last process that holds it has ended, so a killed
-control leaves at most an old socket, which the next owner replaces.
+Each control owns one slot, which is ``control.sock``, or ``control-2.sock`` and so on while the owners of
+the earlier slots are running. The kernel releases a lock when the last process that holds it has ended. A
+killed control therefore leaves at most an old socket, which the next owner replaces.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ _LOOK = 0.05  # s between two attempts to lock
 
 
 class ControlPlace:
-    """The first place of a data folder whose owner does not run, reserved for this process.
+    """First slot of a data folder without a running owner, reserved for this process.
 
-    ``drivers`` is the file descriptor of the lock that a driver host inherits, so that no other control uses
-    the drivers of this place before that driver host has ended. Both locks are None if the folder cannot be
-    written, or if all places have owners.
+    ``drivers`` is the file descriptor of a lock that a driver host inherits. It prevents another control
+    from using the drivers of this slot before that driver host has ended. Both locks are None if the folder
+    is not writable, or if all slots have owners.
     """
 
     def __init__(self, folder: Path, drivers_end: float = DRIVERS_END) -> None:
-        """Reserve the place. Raises DriverError if the drivers of its last owner do not end in time."""
+        """Reserve a slot. Raises DriverError if the drivers of its last owner do not end in time."""
         self._path: Path | None = None
         self._owner: int | None = None
         self.drivers: int | None = None
@@ -52,9 +52,9 @@ class ControlPlace:
                 raise
 
     def listen(self) -> ScreenListener | None:
-        """Return a listener at the socket of the place, which replaces an old one.
+        """Return a listener at the socket of the slot, which replaces an old socket.
 
-        The result is None if the socket cannot be created. Another screen cannot find a control without a
+        The result is None if the socket cannot be created. Other screens cannot find a control without a
         listener.
         """
         if self._path is None or not socket_paths(self._path.parent):
@@ -65,7 +65,7 @@ class ControlPlace:
             return None
 
     def close(self) -> None:
-        """Release the place."""
+        """Release the slot, so that another control can reserve it."""
         for file in (self._owner, self.drivers):
             if file is not None:
                 os.close(file)
@@ -73,7 +73,10 @@ class ControlPlace:
 
 
 def _locked_later(path: Path, limit: float) -> int:
-    """Return the locked file when the drivers of the last owner have ended. Raises DriverError, OSError."""
+    """Wait until the drivers of the last owner have ended, and return the locked file.
+
+    Raises DriverError after ``limit`` seconds, and OSError if the file cannot be opened.
+    """
     until = time.monotonic() + limit
     while (file := _locked(path)) is None:
         if time.monotonic() >= until:
@@ -83,7 +86,10 @@ def _locked_later(path: Path, limit: float) -> int:
 
 
 def _locked(path: Path) -> int | None:
-    """Return the open file with an exclusive lock, or None if another process holds it. Raises OSError."""
+    """Return the file opened with an exclusive lock, or None if another process has locked it.
+
+    Raises OSError.
+    """
     file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -96,7 +102,7 @@ def _locked(path: Path) -> int | None:
 
 
 class ScreenListener:
-    """Socket in the data folder at which a screen finds the control.
+    """Socket in the data folder through which a screen finds the control.
 
     The constructor replaces an old socket. It raises OSError if the socket cannot be created.
     """
@@ -113,11 +119,11 @@ class ScreenListener:
         self._inode = path.stat().st_ino
 
     def accept(self) -> Connection:
-        """Wait for a screen and return its connection. Raises OSError."""
+        """Wait for a screen and return the connection to it. Raises OSError if the socket is closed."""
         return Connection(self._socket.accept()[0].detach())
 
     def close(self) -> None:
-        """Stop listening and delete the socket file if it belongs to this socket. Raises no exception."""
+        """Stop listening, and delete the socket file if it belongs to this socket."""
         with suppress(OSError):
             if self._path.stat().st_ino == self._inode:
                 self._path.unlink()

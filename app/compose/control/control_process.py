@@ -1,7 +1,7 @@
-"""The control process: ``python -m app.compose.control.control_process FD ZERO FOLDER``.
+"""Control process, which is started with ``python -m app.compose.control.control_process FD ZERO FOLDER``.
 
-The machine is read from stdin. FD is the socket to the screen that started the process. Another screen finds
-the control at the socket in the data folder FOLDER.
+The machine is read from stdin. FD is the socket to the screen that started the process. Another screen
+finds the control at the socket in the data folder FOLDER.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
-    """Accept screens that find the control, one after the other."""
+    """Accept one screen after another that connects to the control."""
     while not server.closing_event.is_set():
         with suppress(OSError, EOFError):
             connection = listener.accept()
@@ -75,7 +75,7 @@ def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
 
 
 def _serve_connection(server: ControlServer, connection: Connection) -> None:
-    """Serve a screen in a new thread, so that a second screen gets a response at the same time."""
+    """Serve a screen in a new thread, so that a second screen receives a response at the same time."""
     threading.Thread(target=server.serve_screen, args=(connection,), name="screen", daemon=True).start()
 
 

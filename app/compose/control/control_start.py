@@ -1,6 +1,6 @@
 """Start of the control process.
 
-A screen does this first, so that the process loads while the window opens.
+A screen starts the process first, so that it loads while the window opens.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ PLACES = ("control", "control-2", "control-3", "control-4")
 
 
 class StartedControl(NamedTuple):
-    """Connection to a control, with its process; None for a control that another screen has started."""
+    """Connection to a control, with its process, or None if a different screen started the process."""
 
     connection: Connection
     process: subprocess.Popen[bytes] | None
 
     def kill_process(self) -> None:
-        """Kill the process before its machine has moved."""
+        """Close the connection and kill the process. Call this method only before the machine has moved."""
         self.connection.close()
         if self.process is not None:
             self.process.kill()
@@ -39,7 +39,8 @@ class StartedControl(NamedTuple):
 
 
 def socket_paths(folder: Path) -> list[Path]:
-    """Return the paths of the sockets at which controls of this data folder listen, the usual one first.
+    """Return the paths of the sockets at which controls of this data folder listen, with the usual path
+    first.
 
     The list is empty if the paths are too long for a socket. Another screen cannot find such a control.
     """
@@ -48,9 +49,10 @@ def socket_paths(folder: Path) -> list[Path]:
 
 
 def start_control(machine: Machine, folder: Path, zero: float | None = None) -> StartedControl:
-    """Start the control process for this machine and data folder, without waiting for it.
+    """Start the control process for this machine and data folder without waiting for it.
 
-    ``zero`` is the zero of its clock, in s of the computer's monotonic clock. None means now.
+    ``zero`` is the zero of the control's clock, in seconds of the computer's monotonic clock. None means
+    now.
     """
     ours, theirs = socket.socketpair()
     with theirs:

@@ -1,4 +1,4 @@
-"""Shared memory and the socket of the stop keys, passed as file descriptors through a connection."""
+"""Passing of shared memory and of the socket for stop keys as file descriptors through a connection."""
 
 from __future__ import annotations
 
@@ -16,13 +16,16 @@ _MARK = b"f"  # a descriptor must be sent together with a byte
 
 
 def send_descriptor(connection: Connection, file: int) -> None:
-    """Send a file descriptor to the process at the other end. Raises OSError."""
+    """Send a file descriptor to the process at the other end. Raises OSError if the connection ends."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
         send_fds(sock, [_MARK], [file])
 
 
 def receive_descriptor(connection: Connection) -> int:
-    """Return the file descriptor that the other process sends. Raises OSError and EOFError."""
+    """Return the file descriptor that the other process sends.
+
+    Raises OSError or EOFError if the connection ends.
+    """
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
         _, files, _, _ = recv_fds(sock, len(_MARK), 1)
     if not files:
@@ -31,8 +34,9 @@ def receive_descriptor(connection: Connection) -> int:
 
 
 class SharedMemory:
-    """Shared memory without a file, which exists until the last process closes it. ``memory_view`` has its
-    bytes.
+    """Shared memory without a file, which exists until the last process closes it.
+
+    ``memory_view`` is a view of its bytes.
     """
 
     def __init__(self, file: int) -> None:
@@ -41,16 +45,16 @@ class SharedMemory:
 
     @classmethod
     def create(cls, size: int) -> SharedMemory:
-        """Return new memory of ``size`` bytes, all zero. Raises OSError."""
+        """Return new memory of ``size`` bytes that are all zero. Raises OSError if it cannot be allocated."""
         file = os.memfd_create("turndesk-scope")
         os.ftruncate(file, size)
         return cls(file)
 
 
 def handle_stop_keys(stop_socket: int, request_stop: Callable[[StopPress], None]) -> None:
-    """Call ``stop`` for each stop key received from the socket ``line``, until the socket closes.
+    """Call ``request_stop`` for each stop key received from ``stop_socket``, until the socket closes.
 
-    One separate thread receives the keys and calls ``stop``, independently of the screen's state.
+    A separate thread receives the keys and calls ``request_stop``, independently of the screen's state.
     """
     sock = socket(AF_UNIX, SOCK_SEQPACKET, fileno=stop_socket)
     threading.Thread(target=_obey, args=(sock, request_stop), name="stop-keys", daemon=True).start()

@@ -1,4 +1,4 @@
-"""The control that the screen uses, and its replacement by another one after it has ended or hangs."""
+"""The control that the screen uses, and its replacement by a new control after it has ended or hangs."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ Say = Callable[[str], None]
 
 
 class LiveControl:
-    """The control process of the screen. ``restart`` replaces it after it has ended or does not respond.
+    """The control process of the screen, which ``restart`` replaces after it has ended or does not respond.
 
-    There are never two controls of one machine: the old process has ended before another one starts, and
-    that one waits for the end of the old driver host (``control_place.py``). Methods can be called from any
-    thread and do not wait, except ``close``.
+    A machine never has two controls at the same time. The old process has ended before a new control
+    starts, and the new control waits until the old driver host has ended (``control_place.py``). Methods
+    can be called from any thread. Only ``close`` waits.
     """
 
     def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
@@ -53,22 +53,22 @@ class LiveControl:
 
     @property
     def snapshot(self) -> Snapshot:
-        """The newest snapshot."""
+        """Return the newest snapshot of the machine."""
         return self._client.snapshot
 
     @property
     def client(self) -> ControlClient:
-        """The connection to the present control."""
+        """Return the connection to the current control."""
         return self._client
 
     def begin(self, events: ControlEventHandlers, say: Say) -> None:
-        """Start to receive and send messages. ``say`` shows the operator the course of a restart."""
+        """Start to receive and send messages. ``say`` shows the operator the progress of a restart."""
         self._events = replace(events, on_interrupted_job=self._note)
         self._noted, self._say = events.on_interrupted_job, say
         self._client.start_threads(self._events)
 
     def post(self, command: Command) -> None:
-        """Send a command to the control. Reset starts another control if the present one has ended."""
+        """Send a command to the control. Reset starts a new control if the current control has ended."""
         if isinstance(command, Reset) and self._client.is_lost:
             self.restart()
             return
@@ -77,21 +77,24 @@ class LiveControl:
             self._client.post_command(command)
 
     def hand(self, name: str, *values: object) -> None:
-        """Operate the simulated operator station."""
+        """Call the method ``name`` of the simulated operator station with these values."""
         with self._lock:
             self._state.see_hand(name, values)
             self._client.operate_station(name, *values)
 
     def set_input(self, name: str, on: bool) -> None:
-        """Switch an input of a simulated machine."""
+        """Switch an input of a simulated machine on or off."""
         self._client.set_input(name, on)
 
     def see(self, snapshot: Snapshot) -> None:
-        """Report to the control that the screen handles its keys; called once per frame."""
+        """Report to the control that the screen is processing its keys.
+
+        The screen calls this method once per frame.
+        """
         self._client.report_alive(snapshot)
 
     def open_stop_line(self) -> socket | None:
-        """Return a socket through which stop keys reach the present control, without this process."""
+        """Return a socket that sends stop keys directly to the current control, without this process."""
         ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
         with self._lock:
             if self._line is not None:
@@ -101,7 +104,7 @@ class LiveControl:
         return ours
 
     def close(self) -> None:
-        """Stop the machine, close its drivers and wait for the end of the process."""
+        """Stop the machine, close its drivers, and wait until the control process ends."""
         self._closing.set()
         worker = self._worker
         if worker is not None:
@@ -113,9 +116,9 @@ class LiveControl:
     # --- replacement --------------------------------------------------------------------------------------
 
     def restart(self) -> None:
-        """Start another control in place of one that has ended or is silent, in a separate thread.
+        """Replace a control that has ended or is silent with a new control, in a separate thread.
 
-        A restart in progress continues.
+        A restart that is already in progress continues.
         """
         with self._lock:
             if not self._closing.is_set() and not self.restarting:
@@ -124,7 +127,7 @@ class LiveControl:
 
     @property
     def restarting(self) -> bool:
-        """Whether a restart is in progress."""
+        """Return whether a restart is in progress."""
         return self._worker is not None and self._worker.is_alive()
 
     def _restart(self) -> None:
@@ -134,7 +137,7 @@ class LiveControl:
                 self._start(old)
 
     def _is_silent(self, client: ControlClient) -> bool:
-        """Wait until a silent control certainly moves nothing, and return True then.
+        """Wait until a silent control can no longer move the machine, and then return True.
 
         Return False if the control responds again, or if the screen closes.
         """
@@ -149,7 +152,7 @@ class LiveControl:
         return True
 
     def _has_ended(self, client: ControlClient) -> bool:
-        """Ask the process to end, or kill it; return whether it has ended."""
+        """Ask the process to end, kill it if necessary, and return whether it has ended."""
         client.ask_to_end()
         ended = client.handle.wait(ENDS_IN) or client.handle.kill(DIES_IN)
         if ended and client.control_process is not None:
@@ -182,7 +185,7 @@ class LiveControl:
         self._events.on_change_at_rest()
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
-        """Give another control the program and the values that the screen shows."""
+        """Send the program and the values that the screen shows to a new control."""
         for name, values in self._state.hands():
             new.operate_station(name, *values)
         for command in self._state.commands(last):

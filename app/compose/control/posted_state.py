@@ -1,4 +1,4 @@
-"""State that the screen has posted to the control, for the control that replaces it."""
+"""State that the screen has sent to the control, and that a replacement control needs."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _STATION: Final = {
 
 
 class PostedState:
-    """The loaded program, the operator's values and the controls of the simulated station."""
+    """The loaded program, the operator's values, and the settings of the simulated station."""
 
     def __init__(self, interrupted: InterruptedJob | None) -> None:
         self.interrupted = interrupted  # the job that the end of the control would interrupt
@@ -42,7 +42,7 @@ class PostedState:
         self._station: dict[str, Hand] = {}
 
     def see(self, command: Command) -> None:
-        """Note a command that was posted."""
+        """Update the state for a command that was sent."""
         match command:
             case LoadJob(job, proof) | ChangeOffsets(Job() as job, proof):
                 self._job, self._proof, self._renewal = job, proof, None
@@ -56,14 +56,14 @@ class PostedState:
                 self._values[type(command)] = command
 
     def see_hand(self, name: str, values: tuple[object, ...]) -> None:
-        """Note an action at the simulated station."""
+        """Update the state for an action at the simulated station."""
         if name in _STATION:
             self._station[_STATION[name]] = name, values
 
     def commands(self, last: Snapshot) -> list[Command]:
-        """Return the commands that bring another control to this state; none of them starts anything.
+        """Return the commands that restore this state in a new control. No command starts a motion.
 
-        ``last`` is the last snapshot of the control before.
+        ``last`` is the last snapshot of the previous control.
         """
         found = list[Command]()
         if self.interrupted is not None:
@@ -82,5 +82,5 @@ class PostedState:
         return found
 
     def hands(self) -> list[Hand]:
-        """Return the actions that bring the simulated station of another control to this state."""
+        """Return the station actions that restore this state at the simulated station of a new control."""
         return list(self._station.values())

@@ -1,4 +1,4 @@
-"""Handle of a process of this computer that may have been started by another process."""
+"""Handle of a process on this computer, which may have been started by another process."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from contextlib import suppress
 
 
 class ProcessHandle:
-    """The process with this number, also after the system has given its number to another process."""
+    """Handle of one process.
+
+    The handle still refers to this process after the system has reused its process number.
+    """
 
     def __init__(self, number: int) -> None:
         self._file: int | None = None
@@ -21,7 +24,7 @@ class ProcessHandle:
             self._has_ended = error.errno == errno.ESRCH
 
     def kill(self, seconds: float) -> bool:
-        """Kill the process with SIGKILL and wait for its end; return whether it has ended in time."""
+        """Kill the process with SIGKILL, and return whether it ends within ``seconds``."""
         if self._file is None:
             return self._has_ended
         with suppress(OSError):
@@ -29,7 +32,7 @@ class ProcessHandle:
         return self.wait(seconds)
 
     def wait(self, seconds: float) -> bool:
-        """Wait for the end of the process for ``seconds`` at most; return whether it has ended."""
+        """Wait at most ``seconds`` for the process to end, and return whether it has ended."""
         if self._file is None:
             return self._has_ended
         return bool(select.select([self._file], [], [], seconds)[0])

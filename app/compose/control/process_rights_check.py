@@ -1,4 +1,4 @@
-"""Rights that the system grants to the control process: real-time priority, locked memory, nice value."""
+"""Rights of the control process, which are real-time priority, locked memory and the nice value."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 
 
 class ProcessRight(NamedTuple):
-    """A right: the granted value, and the consequence if it was refused, or empty."""
+    """A right of the process, with the granted value and the consequence if the system refused the right."""
 
     name: str
     granted: str
@@ -29,14 +29,14 @@ class ProcessRight(NamedTuple):
 
 
 def acquire_rights() -> tuple[ProcessRight, ...]:
-    """Request all rights for this process. Raises no exception."""
+    """Request all rights for this process and return the result of each request. Raises no exception."""
     scheduling = _scheduling()
     others = (_nice(), *_check_autogroup()) if scheduling.missing else ()
     return scheduling, _memory(), *others
 
 
 def check_rights() -> tuple[ProcessRight, ...]:
-    """Return the rights that a control would get; this process returns them afterwards."""
+    """Return the rights that a control would receive. This process gives the rights back afterwards."""
     policy, priority, nice = (
         os.sched_getscheduler(0),
         os.sched_getparam(0),
@@ -83,9 +83,9 @@ def _nice() -> ProcessRight:
 
 
 def _check_autogroup() -> tuple[ProcessRight, ...]:
-    """Return a warning row if the kernel groups processes by session.
+    """Return a warning row if the kernel groups processes by session, or () otherwise.
 
-    Nice values then apply only within one session.
+    With these groups, nice values apply only within one session.
     """
     with suppress(OSError):
         if _AUTOGROUP.read_text().strip() == "1":

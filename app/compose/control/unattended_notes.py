@@ -1,4 +1,4 @@
-"""Files in the data folder with events and the interrupted job of a control without a screen."""
+"""Files in the data folder with the events and the interrupted job of a control without a screen."""
 
 from __future__ import annotations
 
@@ -29,7 +29,10 @@ def save_note(folder: Path, job: InterruptedJob | None) -> None:
 
 
 def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
-    """Return whether a control without a screen has saved a note, and its job; delete the note."""
+    """Return whether a control without a screen has saved a note, and the interrupted job of the note.
+
+    The note is deleted.
+    """
     path = folder / NOTE_FILE
     try:
         value = json.loads(path.read_bytes())
@@ -41,7 +44,7 @@ def read_note(folder: Path) -> tuple[bool, InterruptedJob | None]:
 
 
 def remove_note(folder: Path) -> None:
-    """Delete the note, because the store of a connected screen has it."""
+    """Delete the note, because a connected screen has stored its contents."""
     with suppress(OSError):
         (folder / NOTE_FILE).unlink(missing_ok=True)
 
@@ -65,7 +68,7 @@ def save_events(folder: Path, left: LeftEvents) -> None:
 
 
 def pop_events(folder: Path) -> LeftEvents:
-    """Return the events that no screen has confirmed; delete the file."""
+    """Return the events that no screen has confirmed, and delete their file."""
     path = folder / EVENTS_FILE
     try:
         program, told = json.loads(path.read_bytes())

@@ -1,4 +1,4 @@
-"""Comparison of the machine file in use with the one that was last accepted."""
+"""Comparison of the machine file in use with the machine file that was last accepted."""
 
 from __future__ import annotations
 
@@ -19,28 +19,29 @@ _TEXT, _DRIVES = "text", "drives"
 
 
 class SettingsReader(Protocol):
-    """Access to the settings of the store."""
+    """Reader of settings in the store."""
 
     def read_setting(self, key: str) -> object: ...
 
 
 def get_settings_key(machine: Machine) -> str:
-    """Return the settings key of a machine file, which depends on its resolved path."""
+    """Return the settings key of a machine file, which contains the resolved path of the file."""
     path = Path(machine.source)
     place = path.resolve() if path.exists() else machine.source
     return " ".join(("machine file", str(place)))
 
 
 def create_record(machine: Machine) -> dict[str, object]:
-    """Return the record to be stored for a machine file.
+    """Return the data to store when a machine file is accepted.
 
-    The record has the text of the file and a hash of the values written to each node at a start.
+    The data contains the text of the file and a hash of the values that are written to each node at
+    startup.
     """
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
 def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[KeyChange, ...] | None:
-    """Return the differences from the accepted machine file; None if this file was never accepted."""
+    """Return the differences from the accepted machine file, or None if this file was never accepted."""
     record = persistence.read_setting(get_settings_key(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
@@ -62,9 +63,10 @@ def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[Key
 def review_changes(
     machine: Machine, persistence: Persistence, report: Callable[[str], None]
 ) -> MachineFileChanges:
-    """Return the changes for the screen. A new machine file is accepted because it was chosen.
+    """Return the changes of the machine file for the screen.
 
-    The callback writes to the event log.
+    A new machine file is accepted automatically, because the operator has chosen it. ``report`` writes to
+    the event log.
     """
     told = list_differences(machine, persistence)
 
@@ -88,9 +90,9 @@ def guard_commands(
     reviewed_changes: MachineFileChanges,
     reject: Callable[[str], None],
 ) -> Callable[[Command], None]:
-    """Return ``post_command`` with a check that rejects switching on the drives.
+    """Return a function that posts commands, but rejects switching on the drives in some cases.
 
-    Drives cannot be switched on while changes of the machine file are not accepted.
+    The drives cannot be switched on while changes of the machine file are not accepted.
     """
 
     def give(command: Command) -> None:

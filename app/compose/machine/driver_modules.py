@@ -1,4 +1,4 @@
-"""The modules that declare the tables of drivers in a machine file, loaded only for files that need them."""
+"""Modules that declare the drivers' tables in a machine file, loaded only for files that need them."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from core.table_schema import DriverDeclaration, find_raw_value
 
 
 class DriverModule(NamedTuple):
-    """A module with a ``DriverDeclaration``, the paths of its tables, and its names of a backend and a
-    spindle driver.
+    """Location of a ``DriverDeclaration``, with the names in a machine file that require it.
 
-    ``attribute`` is the name of the ``DriverDeclaration`` in the module. ``always`` loads the module for
-    every file.
+    ``tables`` are the paths of its tables. ``backend`` and ``spindle`` are the names of a backend and of a
+    spindle driver. ``attribute`` is the name of the ``DriverDeclaration`` in the module. ``always`` loads
+    the module for every file.
     """
 
     module: str
@@ -48,7 +48,9 @@ _OWN_MODULES = (
 
 @cache
 def driver_modules() -> tuple[DriverModule, ...]:
-    """Return the modules of all drivers and optional features, in the order of the findings."""
+    """Return the modules of all drivers and optional features, in the order in which findings
+    are reported.
+    """
     added = [
         (DriverModule(module, tables), extra.preceding_table)
         for extra in extras().values()
@@ -58,14 +60,14 @@ def driver_modules() -> tuple[DriverModule, ...]:
 
 
 def all_drivers() -> tuple[DriverDeclaration, ...]:
-    """Return the drivers of all modules."""
+    """Return the declarations of all driver modules."""
     return _loaded(driver_modules())
 
 
 def drivers_of(data: Mapping[str, object]) -> tuple[DriverDeclaration, ...]:
-    """Return the drivers that a parsed machine file uses, by a table or by name.
+    """Return the drivers that a parsed machine file uses through a table or a name.
 
-    A file without errors gives the same machine with these drivers as with all drivers.
+    A file without errors results in the same machine with these drivers as with all drivers.
     """
     return _loaded(each for each in driver_modules() if each.always or _is_used(each, data))
 

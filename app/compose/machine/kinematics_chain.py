@@ -1,4 +1,4 @@
-"""Kinematic chain of a mill for the interpreter, from the machine file."""
+"""Kinematic chain of a mill for the interpreter, built from the machine file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LINEAR_AXES = ("X", "Y", "Z")
 
 
 def build_kinematics(machine: Machine) -> Kinematics | None:
-    """Return the linear and rotary axes of a mill; None without Y or without [kinematics]."""
+    """Return the linear and rotary axes of a mill, or None without a Y axis or a [kinematics] table."""
     names = tuple(axis.name for axis in machine.axes)
     if machine.kinematics is None or not set(_LINEAR_AXES) <= set(names):
         return None

@@ -1,4 +1,4 @@
-"""Reading of machine files by name or path, shipped or not, with the tables that drivers add."""
+"""Reading of shipped and other machine files by name or path, with the tables that drivers add."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DEFAULT_MACHINE_FILE = "gt75.toml"
 def parse_machine(text: str, source: str) -> Machine:
     """Return the machine that the TOML ``text`` describes, including the tables of drivers.
 
-    ``source`` names the file in messages. Raises MachineFileError with every finding.
+    ``source`` names the file in messages. Raises MachineFileError that lists every finding.
     """
     data = machine_file.parse_tables(text, source)
     try:
@@ -43,9 +43,10 @@ def _known_checks(silenced: tuple[str, ...], source: str) -> None:
 
 
 def load_machine(path: Path | None = None) -> Machine:
-    """Return the machine that the file ``path`` describes, or the shipped simulated lathe for None.
+    """Return the machine that the file ``path`` describes, or the shipped simulated lathe if ``path`` is
+    None.
 
-    Raises MachineFileError with every finding, also if the file cannot be read.
+    Raises MachineFileError that lists every finding, or if the file cannot be read.
     """
     if path is None:
         return _shipped(DEFAULT_MACHINE_FILE)
@@ -53,9 +54,9 @@ def load_machine(path: Path | None = None) -> Machine:
 
 
 def load_named_machine(name: str | None) -> Machine:
-    """Return the machine of a file or a shipped machine by name, or the shipped lathe for None.
+    """Return the machine for a file or for the name of a shipped machine, or the shipped lathe for None.
 
-    Raises MachineFileError with every finding.
+    Raises MachineFileError that lists every finding.
     """
     if _is_shipped(name):
         return load_shipped_machine(name)

@@ -1,4 +1,4 @@
-"""Selection of a shipped machine that can run a program, if no machine is specified."""
+"""Selection of a shipped machine that can run a program, used if no machine is specified."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _ROTARY_PATTERN = re.compile(r"(?<![A-Z])I?([ABC])(?=\s*[+-]?\s*[0-9.Q])", re.IG
 def select_machine(source: ProgramSource) -> str:
     """Return the name of the first shipped mill that can run a Klartext program.
 
-    If none can, the result is the first mill with the program's rotary axes. For other languages the result
-    is empty, because the shipped lathe reads them.
+    If no mill can run the program, the result is the first mill with the program's rotary axes. For other
+    languages the result is empty, because the shipped lathe runs them.
     """
     if source.dialect is not Dialect.KLARTEXT:
         return ""
@@ -36,7 +36,7 @@ def list_mills_with(axes: frozenset[str]) -> tuple[str, ...]:
 
 
 def find_rotary_axes(source: ProgramSource) -> frozenset[str]:
-    """Return the rotary axes that the program moves by name in L and PLANE AXIAL."""
+    """Return the rotary axes that the program names in L and PLANE AXIAL blocks."""
     moved = (match.group(1) for text in source.lines if (match := _MOVE_PATTERN.match(text.split(";", 1)[0])))
     return frozenset(axis.upper() for words in moved for axis in _ROTARY_PATTERN.findall(words))
 

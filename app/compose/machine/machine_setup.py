@@ -1,4 +1,4 @@
-"""The machine file, and the context in which a program is executed.
+"""Reading of the machine file, and creation of the setup in which a program is executed.
 
 The machine in use is the machine for which the operator screen was last opened. Commands about offsets use
 its travel.
@@ -27,9 +27,9 @@ _SETTINGS_KEY = (
 
 
 def read_machine(path: str | None) -> Machine:
-    """Return the machine of a file, a shipped machine by name, or the shipped lathe for None.
+    """Return the machine for a file or for the name of a shipped machine, or the shipped lathe for None.
 
-    Raises CommandError with every finding.
+    Raises CommandError that lists every finding.
     """
     from app.compose.machine.machine_files import load_named_machine
     from core.table_schema import MachineFileError
@@ -72,12 +72,12 @@ def get_control_limits(machine: Machine) -> ControlLimits:
 
 @dataclass(frozen=True, slots=True)
 class InputStates:
-    """States of inputs by name for conditional calls; an unknown input is open. The object can be pickled."""
+    """Picklable states of inputs by name for conditional calls. An unknown input is open."""
 
     states: Mapping[str, bool]
 
     def __call__(self, terminal: str) -> bool:
-        """Return whether the input is closed."""
+        """Return whether the input of this terminal is closed."""
         return self.states.get(terminal, False)
 
 
@@ -92,7 +92,7 @@ def create_setup(
     block_delete: bool = False,
     strict: bool = False,
 ) -> Setup:
-    """Return the context of a program after power-up at machine home; unspecified inputs are open."""
+    """Return the setup of a program after power-up at machine home. Unspecified inputs are open."""
     return Setup(
         start=(0.0,) * len(machine.axes),
         kinematics=_read_kinematics(machine),
@@ -110,7 +110,7 @@ def create_setup(
 
 
 def _read_kinematics(machine: Machine) -> Kinematics | None:
-    """Return the kinematic chain of a mill, or None."""
+    """Return the kinematic chain of a mill, or None for other machines."""
     if machine.kinematics is None:
         return None
     from app.compose.machine.kinematics_chain import build_kinematics
@@ -119,7 +119,7 @@ def _read_kinematics(machine: Machine) -> Kinematics | None:
 
 
 def store_machine(machine_file: str | None, persistence: Persistence) -> None:
-    """Store which machine is in use; None means the shipped lathe."""
+    """Store which machine file is in use. None means the shipped lathe."""
     path = Path(machine_file) if machine_file else None
     place = str(path.resolve()) if path is not None and path.exists() else machine_file
     if persistence.read_setting(_SETTINGS_KEY) != place:
@@ -127,7 +127,9 @@ def store_machine(machine_file: str | None, persistence: Persistence) -> None:
 
 
 def machine_file_in_use(settings: SettingsReader) -> str | None:
-    """Return the path of the machine file in use, or the name of a shipped one, or None."""
+    """Return the path of the machine file in use, the name of a shipped machine, or None if neither is
+    stored.
+    """
     place = settings.read_setting(_SETTINGS_KEY)
     return place if isinstance(place, str) else None
 

@@ -1,6 +1,6 @@
-"""Extraction of a setup archive with limits and checks of every file.
+"""Extraction of a setup archive, with size limits and a check of every file.
 
-No size that the archive states is trusted; bytes are counted while they are extracted.
+Sizes that the archive declares are not trusted. Bytes are counted during extraction.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ DISK_FULL_ERRORS = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def unpack_archive(source: Path, folder: Path) -> list[str]:
-    """Extract the checked members of the archive to ``folder``; return their names. Raises CommandError."""
+    """Extract the checked members of the archive to ``folder`` and return their names.
+
+    Raises CommandError if the archive is invalid or too large.
+    """
     with (
         convert_exceptions(lambda error: _not_unpacked(source, folder, error)),
         open_input_file(source, _MAX_PACKED_BYTES) as raw,
@@ -90,7 +93,7 @@ def _not_unpacked(source: Path, folder: Path, error: Exception) -> CommandError:
 
 
 def describe_problem(name: str, path: Path) -> CodedError | None:
-    """Return the reason why a file cannot be a member called ``name``, or None. Raises OSError."""
+    """Return the reason why a file cannot be a member called ``name``, or None if it can. Raises OSError."""
     top = name.partition("/")[0]
     try:
         _check_path(name)
@@ -106,19 +109,19 @@ def describe_problem(name: str, path: Path) -> CodedError | None:
 
 
 def is_machine_file(path: Path) -> bool:
-    """Return whether a file in a machine's folder is the machine file itself."""
+    """Return whether a file is a machine file and not one of the HAL or EtherCAT files in its folder."""
     return path.suffix not in COMPANION_SUFFIXES
 
 
 class _Extraction:
-    """Extraction of one archive, with the number of bytes extracted so far."""
+    """Extraction of one archive that counts the extracted bytes."""
 
     def __init__(self, source: Path, file: zipfile.ZipFile, folder: Path) -> None:
         self._source, self._file, self._folder = source, file, folder
         self._bytes = 0
 
     def extract_all(self) -> list[str]:
-        """Extract every member that the manifest lists; return their names."""
+        """Extract every member that the manifest lists, and return the members' names."""
         self._extract(MANIFEST)
         hashes = _parse_hashes(self._source, json.loads((self._folder / MANIFEST).read_bytes()))
         self._check_names(list(hashes))
@@ -153,7 +156,7 @@ class _Extraction:
             )
 
     def _extract(self, name: str) -> str:
-        """Extract one member; return the SHA-256 of its bytes."""
+        """Extract one member and return the SHA-256 hash of its bytes."""
         info = self._file.getinfo(name)
         if info.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
             raise NotImplementedError(Message("{name} is compressed with an unsupported method", name=name))
@@ -178,7 +181,7 @@ class _Extraction:
 
 
 def _check_directory(source: Path, raw: BinaryIO) -> None:
-    """Raise CommandError for a central directory that is too large, before zipfile reads it."""
+    """Raise CommandError if the central directory is too large, before zipfile reads it."""
     size = raw.seek(0, 2)
     raw.seek(max(0, size - _END - _END_64))
     tail = raw.read()
@@ -196,9 +199,9 @@ def _check_directory(source: Path, raw: BinaryIO) -> None:
 
 
 def _parse_hashes(source: Path, manifest: object) -> dict[str, str]:
-    """Return the SHA-256 of every member from the manifest.
+    """Return the SHA-256 hash of every member from the manifest.
 
-    Raises CommandError if the manifest is invalid or from another version.
+    Raises CommandError if the manifest is invalid or was written by a different version.
     """
     form = manifest.get("format") if isinstance(manifest, dict) else None
     if isinstance(form, str) and form.startswith(_FORMAT_PREFIX) and form != ARCHIVE_FORMAT:
@@ -231,7 +234,7 @@ def _no_place() -> CommandError:
 
 
 def _check_path(name: str) -> None:
-    """Raise CommandError or StoreError for a name that is not allowed in a setup."""
+    """Raise CommandError or StoreError if a setup must not contain this name."""
     parts = PurePosixPath(name).parts
     if name == STORE:
         return
@@ -262,7 +265,7 @@ def _check_store(source: Path, store: Path) -> None:
 
 
 def _check_program(path: Path) -> None:
-    """Raise SourceError if a file is neither program text nor a drawing. Empty files are accepted."""
+    """Raise SourceError if a file is neither a program text nor a drawing. Empty files are accepted."""
     data = read_input_bytes(path, MAX_BYTES_BY_KIND[PROGRAMS])
     drawing = path.name.lower().endswith(list_drawing_suffixes())
     if data and not (drawing and b"\0" not in data):

@@ -1,4 +1,7 @@
-"""Setup of a machine in one file: store, settings, programs and machine file, for another control."""
+"""Setup of a machine in one file that another control can load.
+
+The file contains the store with its settings, the programs and the machine file.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,7 @@ from core.store.store_file import STORE_FILE_NAME
 
 @dataclass(frozen=True, slots=True)
 class SetupContents:
-    """Contents of a setup file; ``placed`` is the path at which its machine file was saved.
+    """Contents of a setup file. ``machine_path`` is the path at which its machine file was saved.
 
     ``omitted_files`` are files of the program folder that are neither programs nor drawings.
     """
@@ -52,7 +55,10 @@ class SetupContents:
 
 
 def save_setup(target: Path, machine_file: str | None) -> SetupContents:
-    """Write the setup of this control. Raises CommandError; no file remains after an error."""
+    """Write the setup of this control to a file and return its contents.
+
+    Raises CommandError if the setup cannot be saved. No file remains after an error.
+    """
     folder, machine = find_data_folder(), _list_machine_members(machine_file)
     if target.is_file() and not zipfile.is_zipfile(target):
         raise CommandError(
@@ -78,7 +84,7 @@ def save_setup(target: Path, machine_file: str | None) -> SetupContents:
 
 
 def _copy_store(folder: Path, staging: Path) -> Path:
-    """Copy the store without the interrupted job and the users, which belong to one machine."""
+    """Copy the store without the interrupted job and the users, because these belong to one machine."""
     home = staging / "home"
     home.mkdir()
     with convert_to_command_error(StoreError):
@@ -97,7 +103,10 @@ def _programs(folder: Path) -> list[str]:
 
 
 def _list_machine_members(named: str | None) -> dict[str, Path]:
-    """Return the valid machine file and the files of the same name next to it."""
+    """Return the machine file and the files with the same stem in its folder.
+
+    Raises CommandError if the machine file is invalid.
+    """
     if named is None:
         return {}
     path = Path(named)
@@ -112,7 +121,7 @@ def _list_machine_members(named: str | None) -> dict[str, Path]:
 
 
 def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
-    """Write the archive; return the omitted programs. Raises CommandError if a file cannot be read."""
+    """Write the archive and return the omitted programs. Raises CommandError if a file cannot be read."""
     try:
         left_out = [
             each
@@ -166,16 +175,16 @@ def _told(names: list[str], placed: Path | None = None) -> SetupContents:
 
 
 def check_setup(source: Path) -> SetupContents:
-    """Check a setup file without changing anything. Raises CommandError with the first error."""
+    """Check a setup file without changing data. Raises CommandError for the first error."""
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name:
         return _told(unpack_archive(source, Path(name)))
 
 
 def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
-    """Load a setup completely or not at all; also return the path of the saved old store, or None.
+    """Load a complete setup, and return its contents and the path of the saved old store, or None.
 
-    All files are written next to their final places before the store is changed, so a write error changes
-    nothing. Raises CommandError if the file is damaged, and while TurnDesk is running here.
+    All files are written to temporary paths before the store is changed, so that a write error changes
+    nothing. Raises CommandError if the file is damaged, or while TurnDesk is running on this computer.
     """
     folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
     with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as beside:
@@ -195,7 +204,10 @@ def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
 
 
 class _StagedFiles:
-    """Files written next to their final places until all are complete; unfinished files are deleted."""
+    """Files that have temporary names in their final folders until all files are complete.
+
+    Incomplete files are deleted.
+    """
 
     def __init__(self, stamp: str) -> None:
         self._stamp = stamp
@@ -212,13 +224,16 @@ class _StagedFiles:
 
     @property
     def machine(self) -> Path | None:
-        """Final path of the machine file, or None."""
+        """Return the final path of the machine file, or None if the setup has no machine file."""
         return next(
             (at for at in self._places.values() if at.parent.name == "machines" and is_machine_file(at)), None
         )
 
     def stage_file(self, source: Path, target: Path) -> None:
-        """Write a file next to its final place; save a different existing file under another name."""
+        """Write a file under a temporary name in its final folder.
+
+        A different existing file is saved under a new name.
+        """
         data = source.read_bytes()
         create_synced_folder(target.parent)
         if target.exists() and (old := target.read_bytes()) != data:
@@ -232,6 +247,6 @@ class _StagedFiles:
             os.fsync(file.fileno())
 
     def move_to_targets(self) -> None:
-        """Move all files to their final places."""
+        """Move all files to their final paths."""
         for draft, target in self._places.items():
             replace_atomically(draft, target)

@@ -1,1 +1,1 @@
-"""Services and records of a run: journal, event log and error log."""
+"""Services and records of a run, which are the journal, the event log and the error log."""

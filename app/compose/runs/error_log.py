@@ -1,4 +1,4 @@
-"""Log of TurnDesk's internal errors: a file in the data folder, written through a queue."""
+"""Log of TurnDesk's internal errors, saved through a queue to a file in the data folder."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ _FORMAT = "%(asctime)s %(levelname)s %(threadName)s %(name)s: %(message)s"
 
 
 class ErrorLog:
-    """Log file in the folder ``logs`` to which all loggers write until it is closed.
+    """Log file in the folder ``logs`` to which all loggers write until the log is closed.
 
-    Nothing is written if the file cannot be created. Records go through a queue, because no thread of the
-    machine may wait for the disk.
+    Nothing is written if the file cannot be created. Log records are queued, because the machine's threads
+    must not wait for the disk.
     """
 
     def __init__(self, name: str = "turndesk.log") -> None:
@@ -44,7 +44,10 @@ class ErrorLog:
 
     @property
     def error_text(self) -> str:
-        """Reason why the log cannot be written, or empty. Reading it tries to write again after a delay."""
+        """Return the reason why the log cannot be written, or an empty text.
+
+        Reading this property also retries the write after a delay.
+        """
         found = self._file.error_text if self._file else ""
         if found and time.monotonic() >= self._next:
             self._next = time.monotonic() + _RETRY_INTERVAL_S
@@ -76,7 +79,7 @@ class ErrorLog:
 
 
 class _File(logging.handlers.RotatingFileHandler):
-    """A log file that records write errors instead of printing a traceback."""
+    """A log file that stores the text of a write error instead of printing a traceback."""
 
     error_text = ""
 
@@ -85,14 +88,14 @@ class _File(logging.handlers.RotatingFileHandler):
         return super()._open()
 
     def emit(self, record: logging.LogRecord) -> None:
-        """Write a record; a success clears the recorded error."""
+        """Write a log record, and clear the stored error if the write succeeds."""
         self.has_failed = False
         super().emit(record)
         if not self.has_failed:
             self.error_text = ""
 
     def handleError(self, _record: logging.LogRecord) -> None:  # noqa: N802  logging's own name
-        """Record the reason of a write error."""
+        """Store the reason of a write error."""
         error = sys.exc_info()[1]
         what = error.strerror if isinstance(error, OSError) else error
         self.has_failed, self.error_text = (

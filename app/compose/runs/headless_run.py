@@ -1,6 +1,6 @@
-"""A run without a screen: the executor, by default on the simulated lathe with the fastest possible clock.
+"""A run without a screen, which by default uses the simulated lathe and the fastest possible clock.
 
-Tool life is counted and reported as on the screen, and no part starts with a worn insert.
+Tool life is counted and reported as on the screen. A part does not start with a worn insert.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from drivers.wakeups import ManualClock, RealClock
 
 
 class HeadlessToolLife:
-    """Tool life during a run without a screen. ``see`` is called at every step of the run.
+    """Tool life during a run without a screen. ``update`` is called at every step of the run.
 
-    Without a store nothing is counted, and a message is printed.
+    Without a store, nothing is counted and a message is printed.
     """
 
     def __init__(
@@ -66,7 +66,9 @@ class HeadlessToolLife:
         book.load_count = 1
 
     def update(self, snapshot: Snapshot, proof: Proof) -> None:
-        """Count the use of tools, report tools that are due, and lock the next part."""
+        """Count the use of tools, report tools that must be replaced, and block the next part if
+        necessary.
+        """
         if not self._book.load_count:
             return
         self._watch.observe(snapshot, self._say)
@@ -76,7 +78,7 @@ class HeadlessToolLife:
         self._barred = wanted
 
     def save(self) -> None:
-        """Save the use counted since the last save."""
+        """Save the tool use counted since the last save."""
         self._watch.save_all()
         self._book.close()
 
@@ -95,11 +97,11 @@ def run_headless(
 ) -> Iterator[HeadlessRun]:
     """Yield a run without a screen on the machine, with these inputs and with automatic button presses.
 
-    A machine that is not simulated runs in real time. A start after an interrupted job must be permitted
-    explicitly. The scope's record is saved in the folder of records and has at least the last ``duration_s``
-    s of samples. A run in real time counts for tool life, parts and cycles as on the screen; a faster run
-    counts nothing. Raises CommandError if the machine does not respond, if inputs do not exist or are wired,
-    or if a job was interrupted.
+    A machine that is not simulated runs in real time. ``discard_interrupted`` permits a start after an
+    interrupted job. The scope record is saved in the folder of records and contains at least the last
+    ``duration_s`` seconds of samples. A run in real time counts tool life, parts and cycles as on the
+    screen, but a faster run counts nothing. Raises CommandError if the machine does not respond, if inputs
+    do not exist or are wired, or if a job was interrupted.
     """
     paced = _is_real_time(machine, real_time)
     with (
@@ -152,14 +154,14 @@ def run_headless(
 
 
 def _is_real_time(machine: Machine, realtime: bool) -> bool:
-    """Return whether the run takes as long as on the machine."""
+    """Return whether the run takes as long as on the real machine."""
     sim = machine.hardware.find_driver_table(SimulatedTable)
     return realtime or (sim is not None and sim.realtime) or needs_real_time(machine)
 
 
 @contextmanager
 def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | ManualClock, ConnectedMachine]]:
-    """Yield the connected machine and its clock."""
+    """Yield the clock and the connected machine, and close the machine afterwards."""
     clock = RealClock() if real_time else ManualClock()
     with convert_to_command_error(DriverError):
         connected = connect_machine(machine, clock)
@@ -173,9 +175,9 @@ def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | Ma
 def _open_journal(
     machine: Machine, *, discard_interrupted: bool, real_time: bool, print_line: Callable[[str], None]
 ) -> Iterator[tuple[Journal | None, StoreInterruptedJob]]:
-    """Yield the journal of the run, or None, and the function that notes the interrupted job.
+    """Yield the journal of the run, or None, and the function that saves the interrupted job.
 
-    A simulated machine leaves no interrupted job.
+    A simulated machine does not save an interrupted job.
     """
     if is_simulated(machine) and discard_interrupted:
         raise CommandError(
@@ -228,9 +230,10 @@ def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
 def _start_function(
     machine: Machine, connected: ConnectedMachine, print_line: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Return the function that starts a cycle if no command may start it, or None.
+    """Return the function that starts a cycle, or None if a command may start the cycle.
 
-    It presses the palm buttons of the screen's station, or asks the user to press them.
+    The function presses the palm buttons of the screen's station, or asks the user to press the real
+    buttons.
     """
     panel = connected.on_screen_station
     if machine.backend == "sim" or not machine.interlocks.two_hand_start:

@@ -1,4 +1,6 @@
-"""Journal of the operator screen: events, part counts and executed program versions, saved in the store."""
+"""Journal of the operator screen, which saves events, part counts and executed program versions in the
+store.
+"""
 
 from __future__ import annotations
 
@@ -46,19 +48,20 @@ RETRY_INTERVAL_S = 5.0  # s between two attempts to open a store
 
 
 def _do_nothing() -> None:
-    """Do nothing, because no function waits for a store that opens late."""
+    """Do nothing when a store opens late, because no callback is set."""
 
 
 class Journal(Persistence):
-    """Access of the operator screen to the store; writes use the store's thread, so no caller waits.
+    """Access of the operator screen to the store. The store's thread writes, so that callers do not wait.
 
-    The machine also works if the store cannot be opened. Events are then buffered in memory. If the reason is
-    temporary, such as a full disk, the store is opened as soon as possible.
+    The machine also works if the store cannot be opened. Events are then buffered in memory. If the cause
+    is temporary, such as a full disk, the store is opened as soon as possible.
     """
 
     def __init__(self, folder: Path, *, control_running: bool = False) -> None:
-        """Open the store. ``control_running`` means that the control is still running, so no job was
-        interrupted.
+        """Open the store.
+
+        ``control_running`` means that the control is still running, and therefore no job was interrupted.
         """
         self._folder, self._goes_on = folder, control_running
         self.who: Callable[[], str] = str  # returns the name of the user who is logged in
@@ -93,9 +96,9 @@ class Journal(Persistence):
                 self._opener.start()
 
     def _open(self) -> Store:
-        """Open the store and read, once, the data that the last control has left.
+        """Open the store, and on the first call read the data that the last control has left.
 
-        Raises StoreError and then releases the store, because its lock would prevent later attempts.
+        Raises StoreError. The store is released first, because its lock would prevent later attempts.
         """
         store = Store.open(self._folder)
         try:
@@ -107,7 +110,7 @@ class Journal(Persistence):
         return store
 
     def _read_interrupted(self, store: Store) -> None:
-        """Read damage, runs without an end and the interrupted job. Raises StoreError."""
+        """Read reports of damage, the interrupted job, and runs without an end. Raises StoreError."""
         self.damage = (*store.repair_messages, *store.find_damaged_rows())
         self._last_origin = store.runs.read_last_origin()
         left = None
@@ -120,7 +123,7 @@ class Journal(Persistence):
                 self.left = self._noted = left
 
     def _take_interrupted(self, store: Store) -> InterruptedJob | None:
-        """Store the events of a control without a screen; return its interrupted job."""
+        """Store the events of a control that ran without a screen, and return its interrupted job."""
         program, rows, origins = pop_events(self._folder)
         for row, origin in zip(rows, origins, strict=True):
             if not self.has_stored(origin):
@@ -141,12 +144,15 @@ class Journal(Persistence):
 
     @property
     def trouble(self) -> str:
-        """Reason why nothing is saved or why the last write failed; empty if the last write succeeded."""
+        """Return the reason why nothing is saved or why the last write failed.
+
+        The text is empty if the last write succeeded.
+        """
         return self._trouble or (self._store.trouble if self._store else "")
 
     @property
     def held(self) -> str:
-        """Description of the entries that wait in memory; empty if there are none."""
+        """Return a description of the entries that wait in memory, or an empty text if no entries wait."""
         store, held = self._store, self._held
         if store is not None:
             return store.pending_entries.description if store.pending_entries is not None else ""
@@ -156,7 +162,7 @@ class Journal(Persistence):
         return PendingEntries("", event_count=len(held), part_count=parts).description
 
     def note(self, job: InterruptedJob | None) -> None:
-        """Save the job that a power failure would interrupt now, or None."""
+        """Save the job that a power failure would interrupt now, or None if no job is running."""
         with self._lock:
             self._noted, self._has_noted = job, True
         self._post_noted()
@@ -166,7 +172,7 @@ class Journal(Persistence):
         self._post(lambda store: store.settings.save_setting(INTERRUPTED_JOB_KEY, value))
 
     def book(self) -> OffsetBook:
-        """Return the offsets of the store for the screen to show and change."""
+        """Return the stored offsets, which the screen can show and change."""
         store = self._store
         book = OffsetBook(
             store, "" if store else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=self.trouble)
@@ -179,7 +185,7 @@ class Journal(Persistence):
         return book
 
     def _read_other_rows(self) -> OffsetRows | None:
-        """Return the offsets of a store that another process writes; None if they cannot be read."""
+        """Return the offsets of a store that another process writes, or None if they cannot be read."""
         if not has_store(self._folder):
             return None
         try:
@@ -189,23 +195,29 @@ class Journal(Persistence):
             return None
 
     def create_parts_book(self, tools: OffsetKind = OffsetKind.TOOL) -> PartsBook:
-        """Return measured parts and tool lives of the store; ``tools`` is the tool table of this machine."""
+        """Return the measured parts and the tool lives in the store.
+
+        ``tools`` is the tool table of this machine.
+        """
         store = self._store
         book = PartsBook(store, "" if store else self.trouble, tools)
         self._attach_book(book, store)
         return book
 
     def _attach_book(self, book: OffsetBook | PartsBook, store: Store | None) -> None:
-        """Register a book that must follow changes of the store, including one during its creation."""
+        """Register a book that must use a new store after each change.
+
+        This includes a change of the store while the book is being created.
+        """
         self._books.append(book)
         if self._store is not store:
             book.use_store(self._store, self._trouble)
 
     def hear(self, event: LogEvent, receipt: Receipt | None = None) -> None:
-        """Save an event; a finished part is counted for its program.
+        """Save an event, and count a finished part for its program.
 
         The receipt is confirmed when the event is on the disk. An event that waits in memory is confirmed
-        together with the next event that the disk accepts.
+        together with the next event that is written to the disk.
         """
         with self._lock:
             if event.kind == "load":
@@ -221,7 +233,7 @@ class Journal(Persistence):
         return last is not None and origin.control == last.control and origin.number <= last.number
 
     def resume_recording(self, snapshot: Snapshot) -> None:
-        """Continue with a control that ran without this process, before its events are received."""
+        """Resume the recording of a control that ran without this process, before its events are received."""
         with self._lock:
             self._program = snapshot.program
             if snapshot.state in CYCLE_STATES and self._store is not None:
@@ -241,7 +253,7 @@ class Journal(Persistence):
         stored.add_done_callback(lambda done: receipt.confirm() if done.exception() is None else None)
 
     def keep(self, source: ProgramSource) -> None:
-        """Save the text that is about to be proved and run as a version of its program."""
+        """Save the program text that will be proved and run, as a version of its program."""
         if self._store is not None:
             name = Path(source.name).name
             self._store.programs.save_loaded_version(
@@ -249,61 +261,64 @@ class Journal(Persistence):
             )
 
     def versions(self, name: str) -> tuple[VersionRow, ...]:
-        """Return every version of a program, newest first.
+        """Return all versions of a program, with the newest version first.
 
-        Raises StoreError. Do not call in the screen's thread.
+        Raises StoreError. Do not call this method in the screen's thread.
         """
         return self.require_store().programs.list_versions(name)
 
     def read_version_text(self, name: str, version: int) -> bytes:
-        """Return the text of a saved version. Raises StoreError. Do not call it in the screen's thread."""
+        """Return the text of a saved version.
+
+        Raises StoreError. Do not call this method in the screen's thread.
+        """
         return self.require_store().programs.load_version(name, version)
 
     def save_version(self, name: str, text: bytes, reason: str) -> int:
-        """Save a version and return its number when it is on the disk.
+        """Save a version, wait until it is on the disk, and return its number.
 
-        Raises StoreError. Do not call it in the screen's thread.
+        Raises StoreError. Do not call this method in the screen's thread.
         """
         return self.require_store().programs.save_version(name, text, reason, author=self.who()).result()
 
     def read_setting(self, key: str) -> object:
-        """Return a setting; None if it is not set or no store is open."""
+        """Return a setting, or None if the setting does not exist or no store is open."""
         store = self._store
         return store.settings.read_setting(key) if store else None
 
     def save_setting(self, key: str, value: object) -> None:
-        """Save a setting without waiting."""
+        """Save a setting without waiting for the disk."""
         self._post(lambda store: store.settings.save_setting(key, value))
 
     def save_settings(self, values: Mapping[str, object]) -> None:
         """Save settings and wait until they are on the disk.
 
-        Raises StoreError. Do not call it in the screen's thread.
+        Raises StoreError. Do not call this method in the screen's thread.
         """
         store = self.require_store()
         for written in [store.settings.save_setting(key, value) for key, value in values.items()]:
             written.result()
 
     def log_change(self, text: str, user_name: str = "") -> None:
-        """Log a change, if users log in."""
+        """Log a change if a user is logged in."""
         now = self.who()
         if now:
             self._post(lambda store: store.events.log_event("change", text, author=user_name or now))
 
     def log_access(self, text: str, user_name: str) -> None:
-        """Log an access event; without a store it goes to the error log."""
+        """Log an access event. Without a store, the event is written to the error log."""
         if self._store is None:
             _log.warning("access: %s (%s)", text, user_name)
         self._post(lambda store: store.events.log_event("access", text, author=user_name))
 
     @property
     def runs(self) -> RunRecords | NullRunRecords:
-        """Run records of the open store."""
+        """Return the run records of the open store, or an empty substitute without a store."""
         store = self._store
         return store.runs if store is not None else NullRunRecords(self._trouble or STORE_CLOSED_TEXT)
 
     def people(self) -> UserList:
-        """Return the users, also from a store that another process writes. Raises StoreError."""
+        """Return the users, even from a store that another process writes. Raises StoreError."""
         store = self._store
         if store is not None:
             return store.people.read_users()
@@ -311,13 +326,14 @@ class Journal(Persistence):
             return other.people.read_users()
 
     def events(self, search: str, kinds: Collection[str], limit: int) -> tuple[EventRow, ...]:
-        """Return the latest events, newest first. Raises StoreError without a store."""
+        """Return the latest events, with the newest event first. Raises StoreError without a store."""
         return self.require_store().events.read_events(search, limit, kinds)
 
     def read_last_run_tools(self, program: str) -> tuple[str, dict[int, ToolRow]]:
-        """Return the start time of the program's last run (UTC), and its tools at that time.
+        """Return the UTC start time of the program's last run, and the tool offsets at that time.
 
-        Raises StoreError. Call it in a worker thread.
+        The result is empty if the program has not run. Raises StoreError. Call this method in a worker
+        thread.
         """
         store = self.require_store()
         started = next((row.started for row in store.runs.read_records() if row.program == program), None)
@@ -326,26 +342,30 @@ class Journal(Persistence):
         )
 
     def move_program_data(self, old: str, new: str) -> None:
-        """Rename a program with its versions, counts and records; return when this is on the disk."""
+        """Rename a program with its versions, counts and records, and wait until the change is
+        on the disk.
+        """
         store = self._store
         if store is not None:
             store.programs.rename_program(old, new).result()
 
     def backup(self, target: Path) -> None:
-        """Copy the store to ``target``, even while it is being written. Raises StoreError."""
+        """Copy the store to ``target``, even while the store is being written. Raises StoreError."""
         self.require_store()
         backup.back_up_store(self._folder, target)
 
     def check_backup(self, source: Path) -> BackupVerdict:
-        """Check a backup and compare it with the store. Raises StoreError."""
+        """Check a backup, compare it with the store, and return the result. Raises StoreError."""
         self.require_store()
         with closing(store_connection.connect_store(self._folder / STORE_FILE_NAME, read_only=True)) as now:
             return check_backup(now, source)
 
     def restore(self, source: Path) -> Path | None:
-        """Replace the store by a backup; write the events of the meantime to it. Raises StoreError.
+        """Replace the store with a backup, and add the events that occurred during the restore.
 
-        Afterwards a store is open in any case: the restored store, or the old one.
+        Raises StoreError.
+
+        Afterwards a store is open in any case, either the restored store or the old store.
         """
         with self._lock:
             store, self._store = self.require_store(), None
@@ -359,7 +379,7 @@ class Journal(Persistence):
     def _reopen(self) -> None:
         """Reopen the store and write the buffered events.
 
-        The interrupted job remains that of this machine and not that of a backup.
+        The interrupted job of this machine is retained. The interrupted job of a backup is ignored.
         """
         late = self._unread
         try:
@@ -386,10 +406,10 @@ class Journal(Persistence):
             self._tell_late()
 
     def on_late_open(self, callback: Callable[[], None]) -> None:
-        """Set the function that is called when a store that was unavailable at the start has been read.
+        """Set the function to call when a store that was unavailable at startup has been read.
 
-        The function runs in another thread, or immediately if the store has already been read late. ``left``
-        and ``damage`` are then known.
+        The function is called in a different thread, or immediately if the store has already been read
+        late. ``left`` and ``damage`` are then known.
         """
         self._tell_late = callback
         if self._late:
@@ -397,11 +417,11 @@ class Journal(Persistence):
 
     @property
     def waiting(self) -> bool:
-        """Whether the store could not be opened for a temporary reason, so that opening is tried again."""
+        """Return whether a temporary error prevented opening the store, so that opening is retried."""
         return self._store is None and self._opener is not None
 
     def _retry_open(self) -> None:
-        """Try to open the store again until it is open, for example when the disk has space again."""
+        """Retry opening the store until it succeeds, for example when the disk has space again."""
         while not self._closing.wait(RETRY_INTERVAL_S):
             self._reopen()
             if self._store is not None:
@@ -413,7 +433,7 @@ class Journal(Persistence):
             write(store)
 
     def require_store(self) -> Store:
-        """Return the store that is open now, which changes after a restore.
+        """Return the open store, which is a different object after a restore.
 
         Raises StoreError if no store is open.
         """
@@ -423,7 +443,7 @@ class Journal(Persistence):
         return store
 
     def close(self) -> str:
-        """Write the queued entries and close the store; return a description of the lost entries."""
+        """Write the queued entries, close the store, and return a description of the lost entries."""
         self._closing.set()
         if self._store is None:
             return self.held

@@ -1,4 +1,4 @@
-"""Receipt of an event: its origin in a control process, and the confirmation that it is stored."""
+"""Receipt of an event, with its origin in a control process and the function that confirms its storage."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from core.store.store_rows import EventOrigin
 
 
 class Receipt(NamedTuple):
-    """``confirm`` is called, from any thread, when the event is on the disk or need not be stored."""
+    """Origin of an event, and the function that confirms its storage.
+
+    ``confirm`` is called from any thread when the event is on the disk, or when it need not be stored.
+    """
 
     origin: EventOrigin
     confirm: Callable[[], None]

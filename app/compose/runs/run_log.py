@@ -1,4 +1,4 @@
-"""Event log file of one run, and limits for the files in the log folder."""
+"""Event log file of one run, and limits on the files in the log folder."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class _LogFile(NamedTuple):
 
 
 class EventLog:
-    """Events of one run as JSON objects, one per line. A disk error never stops the machine."""
+    """Event log of one run, with one JSON object per line. A disk error never stops the machine."""
 
     def __init__(self, path: Path, file: TextIO) -> None:
         self.path = path
@@ -40,7 +40,10 @@ class EventLog:
     @classmethod
     @contextmanager
     def create(cls, program: str) -> Iterator[EventLog]:
-        """Yield a log in the data folder, named after the time and the program. Raises CommandError."""
+        """Yield a log in the data folder that is named after the time and the program.
+
+        Raises CommandError if the file cannot be created.
+        """
         folder = find_data_folder() / "logs"
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%f")
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
@@ -61,7 +64,7 @@ class EventLog:
             log._kept(file.close)
 
     def write_event(self, event: LogEvent) -> None:
-        """Write an event."""
+        """Write an event as one line of the log."""
         line = {"t": round(event.time_s, 4), "kind": event.kind, "text": event.text, "line": event.line}
         if event.record_name:
             line["record"] = event.record_name
@@ -79,7 +82,7 @@ class EventLog:
 def delete_oldest(folder: Path, newest: Path) -> None:
     """Delete the oldest run and crash files beyond ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``.
 
-    ``newest`` is being written and remains. Files that cannot be deleted are ignored.
+    The file ``newest`` is being written and is not deleted. Files that cannot be deleted are ignored.
     """
     with suppress(OSError):
         kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]
@@ -94,7 +97,7 @@ def _kept(path: Path) -> _LogFile:
 
 
 def _list_excess(files: Sequence[_LogFile]) -> list[_LogFile]:
-    """Return the files to delete, from the files other than the one being written."""
+    """Return the files that exceed the limits. ``files`` excludes the file that is being written."""
     gone, size = [], 0
     for place, each in enumerate(sorted(files, key=lambda one: (one.age, one.path.name)), start=1):
         size += each.size

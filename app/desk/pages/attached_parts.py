@@ -1,4 +1,6 @@
-"""Interfaces of pages, start handlers and watchers attached to TurnDesk, and the order of closing."""
+"""Interfaces of pages, start handlers and watchers attached to TurnDesk, and the order in which
+they close.
+"""
 
 from __future__ import annotations
 
@@ -14,36 +16,36 @@ DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a dri
 
 
 class AttachedModel(Protocol):
-    """The model of a page or a background worker, which is closed with TurnDesk."""
+    """Model of a page or of a background worker, which closes together with TurnDesk."""
 
     def close(self) -> None: ...
 
 
 class StartHandler(Protocol):
-    """A page that uses the start buttons while it is open, such as MDI or restart."""
+    """Page that uses the start buttons while it is open, such as MDI or restart."""
 
     is_open: bool
 
     def barred(self) -> str:
-        """Return why the start buttons have no effect now. Empty if they can start a cycle."""
+        """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
         ...
 
 
 class FrameWatcher(Protocol):
-    """An object that sees every frame and may add a reminder to the prompt line."""
+    """Object that observes every frame and may add a reminder to the prompt line."""
 
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None: ...
 
     def due_reminder(self) -> str:
-        """Return what the operator must do soon. Empty if there is nothing to do."""
+        """Return a reminder of what the operator must do soon, or an empty text without a reminder."""
         ...
 
 
 @dataclass(slots=True)
 class ClosingSequence:
-    """The steps that close TurnDesk.
+    """Steps that close TurnDesk.
 
-    Every step has a time limit, and no step depends on another. See ``core/closing_steps.py``.
+    Every step has a time limit, and the steps do not depend on each other. See ``core/closing_steps.py``.
     """
 
     stop_steps: list[ClosingStep] = field(default_factory=list)  # Close the machine before everything else.
@@ -55,7 +57,7 @@ class ClosingSequence:
     wait_for_step: WaitFunction = wait_for_end  # Waits for one closing step.
 
     def close(self, model_steps: Iterable[ClosingStep]) -> None:
-        """Stop the machine and close its drivers, then close all workers at once, then execute
+        """Stop the machine and close its drivers, close all workers together, and then execute
         ``final_steps``.
         """
         close_in_order(

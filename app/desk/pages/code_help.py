@@ -1,4 +1,6 @@
-"""Code help of the editor and the MDI page: the meaning of a code, and completions while typing."""
+"""Code help of the editor and the MDI page, which shows the meaning of a code and completions
+while typing.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class CodeHelp:
-    """Help for the code at the cursor, and a list of choices to insert.
+    """Help for the code at the cursor, with a list of choices to insert.
 
     ``current_entry`` is the code at the cursor. ``choices`` are the listed codes, and ``marked`` is the
     index of the selected choice. ``start_column`` is the column where the typed part of the code begins, or
@@ -27,16 +29,17 @@ class CodeHelp:
     _asked: tuple[str, int] = field(default=("", 0))
 
     def update_for_cursor(self, code_book: CodeBook | None, line: str, column: int) -> None:
-        """Update the help for the cursor position. Without a book, no code is known yet."""
+        """Update the help for the cursor position. Without a code book, no code is known yet."""
         if code_book is self._book and (line, column) == self._asked:
             return
         self._book, self._asked = code_book, (line, column)
         self.current_entry = None if code_book is None else code_book.at(line, column)
 
     def open_choices(self) -> bool:
-        """List the completions of the typed text, or else the chapter of the code at the cursor.
+        """List the completions of the typed text, or without completions, the chapter of the code at the
+        cursor.
 
-        Return False without a book, because the text is still being proved for the first time.
+        Return False without a code book, because the text is still being proved for the first time.
         """
         if self._book is None:
             return False
@@ -52,28 +55,31 @@ class CodeHelp:
         return True
 
     def _show_chapter(self, number: int) -> None:
-        """List a chapter of the book. Numbers past the end continue at the beginning."""
+        """List a chapter of the code book. Numbers past the end continue at the beginning."""
         assert self._book is not None  # The caller has checked that a book exists.
         self.title, self.choices = self._book.chapters[number % len(self._book.chapters)]
         self.marked = self.choices.index(self.current_entry) if self.current_entry in self.choices else 0
         self.start_column = 0
 
     def move_chapters(self, chapters: int) -> None:
-        """Move by ``chapters`` chapters, forward or backward."""
+        """Move forward by ``chapters`` chapters, or backward if the number is negative."""
         if self._book is not None and self.choices:
             self._show_chapter(self._book.find_chapter(self.selected_entry) + chapters)
 
     def mark(self, number: int) -> None:
-        """Select another choice. Numbers outside the list select the first or the last choice."""
+        """Select the choice with this index.
+
+        An index outside the list selects the first or the last choice.
+        """
         self.marked = max(0, min(len(self.choices) - 1, number))
 
     @property
     def words(self) -> tuple[tuple[str, str], ...]:
-        """The words of the selected choice with their meanings."""
+        """Return the words of the selected choice with their meanings."""
         chosen = self.selected_entry
         return self._book.list_words(chosen) if self._book is not None and chosen is not None else ()
 
     @property
     def selected_entry(self) -> CodeBookEntry | None:
-        """The selected choice, or None if there are no choices."""
+        """Return the selected choice, or None if there are no choices."""
         return self.choices[self.marked] if self.choices else None

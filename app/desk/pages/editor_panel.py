@@ -1,4 +1,4 @@
-"""Interface between the editor and a panel of an optional feature that writes program lines by forms."""
+"""Interface between the editor and a panel of an optional feature that writes program lines with forms."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from app.desk.pages.table_content import FunctionKey
 
 
 class PanelModel:
-    """A panel that does nothing, for an editor without such a feature. A feature overrides all members.
+    """Panel without functions, for an editor without such a feature. A feature overrides all members.
 
     ``text`` is the program with the lines that the panel writes. ``text_number`` counts the texts to prove.
-    ``write_count`` counts the texts that replace the editor's text; the cursor then moves to line
-    ``cursor_line``.
+    ``write_count`` counts the texts that replace the editor's text. After each replacement, the cursor
+    moves to line ``cursor_line``.
     """
 
     text: str = ""
@@ -22,22 +22,22 @@ class PanelModel:
 
     @property
     def path_line(self) -> int:
-        """The line, counted from 1, up to which the path is drawn."""
+        """Return the line, counted from 1, up to which the path is drawn."""
         return 0
 
     @property
     def is_list_shown(self) -> bool:
-        """Whether the page can be left without losing input."""
+        """Return whether the page can be left without losing input."""
         return True
 
     def open_file(self, file: Path) -> None:
         """Open the form that makes a program from this file."""
 
     def poll(self) -> None:
-        """Accept the results of the workers; called once a frame."""
+        """Process the results of the workers. The editor calls this method once per frame."""
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys."""
+        """Return the function keys of the panel by number."""
         return {}
 
     def prompt_text(self) -> str:
@@ -45,13 +45,13 @@ class PanelModel:
         return ""
 
     def handle_key(self, key: str) -> bool:  # noqa: ARG002
-        """Handle a key. Return False if the key has no meaning here."""
+        """Handle a key, and return False if the panel does not use the key."""
         return False
 
     def accepts_key(self, key: str) -> bool:  # noqa: ARG002
-        """Return whether this character is text input for the panel."""
+        """Return whether the panel accepts this character as text input."""
         return False
 
     def handle_escape(self) -> bool:
-        """Cancel the last step. Return False if there is nothing left to cancel."""
+        """Cancel the last step, and return False if no step can be canceled."""
         return False

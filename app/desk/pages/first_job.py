@@ -1,4 +1,4 @@
-"""A card that guides the operator through the first job, from choosing a program to the first part."""
+"""Card that guides the operator through the first job, from choosing a program to the first part."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _NO_END = CYCLE_STATES | {
 
 
 class FirstJobStep(NamedTuple):
-    """One step of the first job: its title, instructions and keys."""
+    """One step of the first job, with its title, instructions and keys."""
 
     title: str
     instructions: str
@@ -53,7 +53,7 @@ FIRST_JOB_STEPS = (
 
 @dataclass(slots=True)
 class FirstJobCard:
-    """The progress of the first job. A completed step remains completed until the card is shown again."""
+    """Progress of the first job. A completed step remains completed until the card is shown again."""
 
     step_index: int = 0
     _dry: bool = False  # A cycle that counts no part is running.
@@ -62,7 +62,7 @@ class FirstJobCard:
 
     @classmethod
     def from_store(cls, persistence: Persistence) -> FirstJobCard:
-        """Return the card at the step at which TurnDesk was closed. Raises StoreError."""
+        """Return the card at the step that was current when TurnDesk was closed. Raises StoreError."""
         at = persistence.read_setting(STEP_SETTING)
         return cls(at, _saved=at) if isinstance(at, int) and 0 <= at <= len(FIRST_JOB_STEPS) else cls()
 
@@ -73,7 +73,10 @@ class FirstJobCard:
             persistence.save_setting(STEP_SETTING, self.step_index)
 
     def advance(self, snapshot: Snapshot, loaded: LoadedProgram, part_count: int) -> None:
-        """Advance past all completed steps; called once a frame. ``parts`` is the number of parts made."""
+        """Advance past all completed steps. The screen calls this method once per frame.
+
+        ``part_count`` is the number of parts made.
+        """
         while self.step_index < len(FIRST_JOB_STEPS) and self._done(snapshot, loaded, part_count):
             self.step_index += 1
 
@@ -93,7 +96,7 @@ class FirstJobCard:
 
     @property
     def notice_row(self) -> NoticeRow:
-        """The card's text and keys for the present step."""
+        """Return the card's text and keys for the current step."""
         keys = ((CLOSE_KEY, tr("CLOSE")),)
         if self.step_index >= len(FIRST_JOB_STEPS):
             return NoticeRow(

@@ -1,4 +1,4 @@
-"""The pages and watchers that are attached to TurnDesk."""
+"""Registry of the pages and watchers that are attached to TurnDesk."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ AttachedT = TypeVar("AttachedT", bound=AttachedModel)
 
 @dataclass(slots=True)
 class PageRegistry:
-    """Models of pages by class, with their start handlers, watchers, notices and program keys."""
+    """Page models by class, with start handlers, watchers, notices and program keys."""
 
     _attached: dict[type[AttachedModel], AttachedModel] = field(default_factory=dict)
     _made_later: dict[str, Callable[[], AttachedModel]] = field(default_factory=dict)  # By class name.
@@ -32,11 +32,11 @@ class PageRegistry:
     # --- models --------------------------------------------------------------------------------------
 
     def attach_model(self, model: AttachedModel) -> None:
-        """Register the model of a page by its class. The model is closed with TurnDesk."""
+        """Register the model of a page by its class. The model closes together with TurnDesk."""
         self._attached[type(model)] = model
 
     def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
-        """Register a model that is created at the first ``find``.
+        """Register a model that the first ``find`` creates.
 
         ``model_class`` is the class name with its module, for example
         ``app.editor.editor_model.EditorModel``.
@@ -62,11 +62,11 @@ class PageRegistry:
         self._starts.append(page)
 
     def add_run_watcher(self, watcher: FrameWatcher) -> None:
-        """Register a watcher that sees each frame except the frames of an MDI line."""
+        """Register a watcher that observes each frame except the frames of an MDI line."""
         self._run_watchers.append(watcher)
 
     def add_frame_watcher(self, watcher: Callable[[Snapshot], None]) -> None:
-        """Register a function that is called once a frame."""
+        """Register a function that is called once per frame."""
         self._frame_watchers.append(watcher)
 
     def add_program_key(self, name: str, key: ProgramKey) -> None:
@@ -74,7 +74,7 @@ class PageRegistry:
         self._program_keys[name] = key
 
     def set_notice(self, notice: Callable[[Snapshot], NoticeRow | None]) -> None:
-        """Set the function that returns a notice between cycles, for example for the next job."""
+        """Set the function that returns a notice between cycles, for example about the next job."""
         self._notice = notice
 
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
@@ -85,31 +85,31 @@ class PageRegistry:
 
     @property
     def active_start_handler(self) -> StartHandler | None:
-        """The page that uses the start buttons now. None: they start the program."""
+        """Return the page that uses the start buttons now, or None if the buttons start the program."""
         return next((page for page in self._starts if page.is_open), None)
 
     @property
     def program_keys(self) -> Mapping[str, ProgramKey]:
-        """The function keys that features add to the program list, by name."""
+        """Return the function keys that features add to the program list, by name."""
         return self._program_keys
 
     @property
     def run_watchers(self) -> Sequence[FrameWatcher]:
-        """The watchers of runs, in the order of registration."""
+        """Return the run watchers in the order of registration."""
         return self._run_watchers
 
     def notify_run_watchers(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Pass a frame of a program run to the run watchers."""
+        """Notify the run watchers of a frame of a program run."""
         for watcher in self._run_watchers:
             watcher.observe(snapshot, loaded)
 
     def notify_frame_watchers(self, snapshot: Snapshot) -> None:
-        """Pass a frame to the frame watchers."""
+        """Notify the frame watchers of a frame."""
         for see in self._frame_watchers:
             see(snapshot)
 
     def find_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice that a feature offers between cycles, or None."""
+        """Return the notice that a feature shows between cycles, or None."""
         return self._notice(snapshot)
 
     def open_recording(self, name: str) -> None:

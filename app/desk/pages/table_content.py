@@ -1,4 +1,4 @@
-"""Tables with an entry line and function keys, as the list pages of TurnDesk use them."""
+"""Tables with an entry line and function keys, which the list pages of TurnDesk use."""
 
 from __future__ import annotations
 
@@ -17,24 +17,30 @@ ROW_STEPS = {"Up": -1, "Down": 1, "Page up": -10, "Page down": 10}  # Rows that 
 
 
 def following(choices: Iterable[T], current: T) -> T:
-    """Return the choice after ``current``, in a cycle. An unknown ``current`` gives the first choice."""
+    """Return the choice after ``current``.
+
+    The first choice follows the last choice or an unknown ``current``.
+    """
     order = list(choices)
     return order[(order.index(current) + 1) % len(order) if current in order else 0]
 
 
 class RejectedText(str):
-    """A rejected value: the next character replaces it, and Back edits it."""
+    """Text of a rejected value, which the next character replaces and the key Back edits."""
 
     __slots__ = ()
 
 
 def refused(text: str) -> str:
-    """Return a rejected text as RefusedText, unless it is a name, which is edited and not retyped."""
+    """Return a rejected value as RejectedText, or unchanged if it is a name.
+
+    An operator edits a rejected name instead of typing it again.
+    """
     return text if set(text) - EXPRESSION_CHARACTERS else RejectedText(text)
 
 
 def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
-    """Return an input text after one more key: a character, ``Back`` or ``Delete``."""
+    """Return an input text after one more key, which is a character, ``Back`` or ``Delete``."""
     if key == "Back":
         return text[:-1]
     if key == "Delete":
@@ -46,8 +52,8 @@ def edit_text(text: str, key: str, max_length: int = MAX_LENGTH) -> str:
 class TableRow:
     """One row of a table.
 
-    ``is_lit`` draws a lamp, filled if True and hollow if False; None draws no lamp. A cell may have two
-    lines if the table is ``has_tall_rows``. ``outline`` is drawn in the last cell.
+    ``is_lit`` draws a lamp, which is filled if True and hollow if False. None draws no lamp. A cell may
+    have two lines if the table has ``has_tall_rows`` set. ``outline`` is drawn in the last cell.
     """
 
     cells: tuple[str, ...]
@@ -59,11 +65,11 @@ class TableRow:
 
 @dataclass(frozen=True, slots=True)
 class TableContent:
-    """A table with a title, column heads and an entry line.
+    """Content of a table with a title, column heads and an entry line.
 
-    ``column_shares`` divide the table's width. ``marked`` is the index of the selected row, -1 for none.
-    ``question`` and ``text`` are the entry line. Cells of the columns ``raw_columns`` contain names and user
-    texts, which are not translated.
+    ``column_shares`` divide the table's width. ``marked`` is the index of the selected row, or -1 without a
+    selection. ``question`` and ``text`` are the entry line. Cells of the columns ``raw_columns`` contain
+    names and user texts, which are not translated.
     """
 
     title: str
@@ -84,7 +90,7 @@ class TableContent:
 
 
 class FunctionKey(NamedTuple):
-    """A function key of a page: its label of up to eight characters, and its action."""
+    """Function key of a page, with its label of up to eight characters and its action."""
 
     label: str
     action: Callable[[], None]
@@ -93,14 +99,16 @@ class FunctionKey(NamedTuple):
 
 @dataclass(slots=True)
 class InputField:
-    """An input field. With ``words``, it accepts any character, otherwise only characters of numbers."""
+    """Input field that accepts any character if ``words`` is True, and otherwise only characters of
+    numbers.
+    """
 
     words: bool = False
     text: str = ""
     proposed_text: str = ""  # A proposed text that the first character replaces and Back edits.
 
     def propose(self, text: str) -> None:
-        """Set a proposed text, which the first character replaces."""
+        """Set a proposed text, which the first typed character replaces."""
         self.text = self.proposed_text = text
 
     def accepts_key(self, key: str) -> bool:
@@ -108,7 +116,7 @@ class InputField:
         return len(key) == 1 and (self.words or key in EXPRESSION_CHARACTERS)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False if the key has no meaning here. The caller handles Return."""
+        """Handle a key, and return False if the field does not use it. The caller handles Return."""
         taken = self.accepts_key(key) or key in {"Back", "Delete"}
         if taken:
             replaced = self.accepts_key(key) and self.text == self.proposed_text

@@ -1,4 +1,4 @@
-"""Choice of the program that is loaded when the screen opens."""
+"""Selection of the program that is loaded when the screen opens."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def load_first_program(desk: Desk, name: str | None) -> None:
-    """Load the first program: the running or interrupted program, or else the program ``named``."""
+    """Load the running or interrupted program, or without such a program, the program ``name``."""
     if desk.read_snapshot().state in CYCLE_STATES:
         _show_running_program(desk, name)
         return
@@ -42,7 +42,7 @@ def load_first_program(desk: Desk, name: str | None) -> None:
 
 
 def _show_running_program(desk: Desk, named: str | None) -> None:
-    """Load the program that the control is already running, because the screen was restarted."""
+    """Load the program that the control is already running after a restart of the screen."""
     now = desk.read_snapshot()
     last = desk.settings_store.persistence.read_setting(LAST_PROGRAM_SETTING)
     known = (Path(each) for each in (named, last) if isinstance(each, str))

@@ -1,4 +1,7 @@
-"""An MDI line, typed or chosen on the Jog page, that is proved on a worker and prepared for Cycle Start."""
+"""MDI line that is proved on a worker and prepared for Cycle Start.
+
+The operator types the line or chooses it on the Jog page.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ ProveLine = Callable[[str, Snapshot, ProgressCallback], tuple[Job, ProvedJob]]
 
 
 def find_unset_tools(job: Job, proved: ProvedJob) -> tuple[Diagnostic, ...]:
-    """Return an error for each tool that the line calls and that has no measured offset."""
+    """Return an error for each tool that the line calls and that does not have a measured offset."""
     missing = proved.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
@@ -32,7 +35,7 @@ def find_unset_tools(job: Job, proved: ProvedJob) -> tuple[Diagnostic, ...]:
 
 @dataclass(slots=True)
 class PreparedMdiLine:
-    """One MDI line between the key that requests it and the start buttons that run it. A line runs once.
+    """One MDI line, from the key that requests it to the start buttons that run it. A line runs once.
 
     Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
@@ -48,7 +51,7 @@ class PreparedMdiLine:
     _begun: int = 0  # Number of lines that the executor had started at the last update.
 
     def prove_line(self, text: str, snapshot: Snapshot, on_failed: Callable[[str], None]) -> None:
-        """Prove this line from the present machine state. A line that was ready is canceled.
+        """Prove this line from the current machine state. A line that was ready is canceled.
 
         ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """
@@ -71,17 +74,20 @@ class PreparedMdiLine:
         self.ready_job, self.diagnostics = None, ()
 
     def renew_line_mode(self, snapshot: Snapshot) -> None:
-        """Make Cycle Start run lines only; called once a frame while the MDI page is open.
+        """Make Cycle Start run only lines. The MDI page calls this method once per frame while it is open.
 
-        The command is repeated until the snapshot shows it. The executor rejects it during a program, which
-        may have started after the snapshot was made.
+        The command is repeated until the snapshot shows its effect. The executor rejects the command during
+        a program, which may have started after the snapshot was made.
         """
         if snapshot.state in CYCLE_STATES or snapshot.starts is StartAction.MDI_LINE:
             return
         self._prepare()
 
     def update(self, snapshot: Snapshot) -> bool:
-        """Accept the results of the worker; called once a frame. Return True if the line has just started."""
+        """Process the results of the worker, and return whether the line has just started.
+
+        The page calls this method once per frame.
+        """
         begun, self._begun = snapshot.lines > self._begun, snapshot.lines
         started = self.ready_job is not None and begun
         if started:
@@ -91,19 +97,22 @@ class PreparedMdiLine:
 
     @property
     def is_proving(self) -> bool:
-        """Whether a line is being proved."""
+        """Return whether a line is being proved."""
         return self.worker.is_busy
 
     @property
     def first_move_result(self) -> FirstMoveResult | None:
-        """The first move of the ready line. None if no line is ready or the move was not checked."""
+        """Return the result of the first-move check of the ready line.
+
+        The result is None if no line is ready or the move was not checked.
+        """
         return (
             self._proof.first_move_result if self.ready_job is not None and self._proof is not None else None
         )
 
     @property
     def blocking_errors(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics that prevent the line from running."""
+        """Return the diagnostics that prevent the line from running."""
         return tuple(each for each in self.diagnostics if each.severity is Severity.ERROR)
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The choice of the program that is loaded."""
+"""Selection of the program to load."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LAST_PROGRAM_SETTING = "last_program"  # Setting with the path of the program th
 
 @dataclass(frozen=True, slots=True)
 class ProgramChoice:
-    """Finds programs in ``program_folders`` and loads them with ``program_loader``.
+    """Selection of programs from ``program_folders``, which ``program_loader`` loads.
 
     ``save_path`` stores the path for the next start of TurnDesk.
     """
@@ -31,13 +31,13 @@ class ProgramChoice:
     save_path: Callable[[str], None]
 
     def can_choose(self) -> bool:
-        """Return whether a program can be chosen now. The prompt line shows why not."""
+        """Return whether a program can be chosen now, and if not, show the reason on the prompt line."""
         if why := find_program_refusal(self.read_snapshot()):
             self.prompt_answers.say(why)
         return not why
 
     def load_by_name(self, name: str) -> bool:
-        """Load the program that was typed or selected. Return False if no program has that name."""
+        """Load the program that the operator typed or selected, and return False if it does not exist."""
         path = self.program_folders.find_path(name)
         if path is None:
             return False
@@ -45,7 +45,7 @@ class ProgramChoice:
         return True
 
     def load_path(self, path: Path) -> None:
-        """Load a program. Ask first if the program would replace an interrupted job."""
+        """Load a program, but ask the operator first if it would replace an interrupted job."""
         found = self.read_snapshot().interrupted
         self.prompt_answers.withdraw()
         if found is not None and found.program != path.name:
@@ -61,7 +61,7 @@ class ProgramChoice:
             self.save_path(str(path))
 
     def toggle_block_delete(self) -> None:
-        """Toggle Block Delete, and load the program again because Block Delete is part of the proved job."""
+        """Toggle Block Delete, and reload the program because Block Delete is part of the proved job."""
         loaded = self.program_loader.loaded
         if loaded.path is None:
             self.prompt_answers.say("F2: CHOOSE A PROGRAM BEFORE CHANGING BLOCK DELETE")

@@ -1,7 +1,7 @@
-"""Program folders, and a watch for changes of the loaded program's file.
+"""Program folders, and a monitor for changes of the loaded program's file.
 
-``FILE TO BE PROCESSED`` lists the programs of these folders. Cycle Start runs the loaded text. An operator
-who changes the file on another computer must see that the new text is not loaded.
+``FILE TO BE PROCESSED`` lists the programs of these folders. Cycle Start runs the loaded text. If the file
+is changed on another computer, the operator must see that the new text is not loaded.
 """
 
 from __future__ import annotations
@@ -34,16 +34,17 @@ def is_program_name(name: str) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ListedProgram:
-    """One program of the list, with its displayed name and its path."""
+    """One program in the list, with its displayed name and its path."""
 
     name: str
     path: Path
 
 
 class ProgramFolders:
-    """Program folders in order of preference. A program in an earlier folder hides programs of the same name.
+    """Program folders in order of preference.
 
-    ``drawing_extensions`` are the file extensions of drawings from which a program can be made.
+    A program in an earlier folder hides programs of the same name in later folders. ``drawing_extensions``
+    are the file extensions of drawings from which a program can be made.
     """
 
     def __init__(self, folders: Sequence[Path], drawing_extensions: tuple[str, ...] = ()) -> None:
@@ -79,7 +80,7 @@ class ProgramFolders:
         return tuple(sorted(seen.values(), key=lambda entry: entry.name.lower()))
 
     def find_path(self, typed_name: str) -> Path | None:
-        """Return the path of the program that a typed name refers to, or None if there is no such file.
+        """Return the path of the program with the typed name, or None if the file does not exist.
 
         The name may be in upper or lower case, with or without its extension. It may also be a path.
         """
@@ -124,7 +125,9 @@ _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an
 
 
 class ProgramFileMonitor:
-    """Compares the file with the loaded program on its own thread, because a network drive may hang."""
+    """Monitor that compares the file with the loaded program in a separate thread, because a network drive
+    may hang.
+    """
 
     def __init__(
         self, read_loaded: Callable[[], LoadedProgram], clock: Callable[[], float] = time.monotonic
@@ -143,9 +146,10 @@ class ProgramFileMonitor:
 
     @property
     def difference_text(self) -> str:
-        """The message about the difference between the files and the loaded text. Empty if they are equal.
+        """Return the message about the difference between the files and the loaded text, or an empty text
+        if they are equal.
 
-        A file that cannot be read also gives a message.
+        If a file cannot be read, the message says so.
         """
         loaded, since = self._loaded(), self._since
         if loaded.source is None:
@@ -160,16 +164,16 @@ class ProgramFileMonitor:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop checking. A check that hangs in the operating system remains on the daemon thread."""
+        """Stop checking. A check that hangs in the operating system continues on the daemon thread."""
         self._closing.set()
         self._wanted.set()
 
     def check_soon(self) -> None:
-        """Check the file immediately, because TurnDesk has just written it."""
+        """Request an immediate check of the file, because TurnDesk has just written it."""
         self._wanted.set()
 
     def compare_files(self) -> None:
-        """Compare the files with the loaded text if a file has been modified since the last check."""
+        """Compare the files with the loaded text if a file was modified after the last check."""
         loaded = self._loaded()
         source, path = loaded.source, loaded.path
         if source is None or path is None:
@@ -218,7 +222,7 @@ def _stamp(file: Path) -> _FileStamp:
 
 
 def _find_difference(file: Path, read: ProgramSource) -> str:
-    """Return the message about this file. Empty if the file contains the loaded text."""
+    """Return the message about this file, or an empty text if the file contains the loaded text."""
     try:
         now = load_source(file)
     except SourceError as error:
@@ -227,7 +231,7 @@ def _find_difference(file: Path, read: ProgramSource) -> str:
 
 
 def _describe_read_error(error: SourceError) -> str:
-    """Return the message about a file from which no program text could be read."""
+    """Return the message about a file whose program text cannot be read."""
     cause = error.__cause__
     if not isinstance(cause, OSError):
         return FILE_CHANGED  # The file could be read, but is not a program.

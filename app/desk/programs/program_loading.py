@@ -1,4 +1,7 @@
-"""Loading, proving and drawing of a program on a worker thread. The screen reads the result from ``now``."""
+"""Loading, proving and drawing of a program on a worker thread.
+
+The screen reads the result from ``ProgramLoader.loaded``.
+"""
 
 from __future__ import annotations
 
@@ -26,10 +29,11 @@ ApproachLegs = tuple[tuple[float, float, bool], ...]
 
 
 class FirstMoveResult(NamedTuple):
-    """The result of checking the first move, with a verdict for the start here and one for Cycle Repeat.
+    """Result of the first-move check, with a verdict for a start at the current position and a verdict for
+    Cycle Repeat.
 
-    ``legs`` is the path that is drawn. ``zero_position`` is the machine X and Z in mm at which the tip is on
-    part zero.
+    ``legs`` is the path that is drawn. ``zero_position`` is the machine position X and Z in mm at which the
+    tool tip is at part zero.
     """
 
     verdicts: tuple[Clearance, ...]
@@ -38,12 +42,12 @@ class FirstMoveResult(NamedTuple):
 
     @property
     def start_clearance(self) -> Clearance:
-        """The verdict on a start from the present position of the axes."""
+        """Return the verdict on a start from the current position of the axes."""
         return self.verdicts[0]
 
 
 class LoadingPhase(StrEnum):
-    """The progress of loading a program."""
+    """Phase of loading a program."""
 
     EMPTY = "EMPTY"
     READING = "READING"
@@ -57,10 +61,11 @@ class LoadingPhase(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class ProvedJob:
-    """A proof with its diagnostics.
+    """Proof of a job with its diagnostics.
 
-    ``waits_for_part``: the start must wait for the proof of the part, because a part error may refuse the
-    start. ``first_move_result`` is the result of the first-move check of an MDI line or a restart.
+    If ``waits_for_part`` is True, the start must wait for the proof of the part, because an error of the
+    part may prevent the start. ``first_move_result`` is the result of the first-move check of an MDI line
+    or a restart.
     """
 
     proof: Proof
@@ -70,17 +75,17 @@ class ProvedJob:
 
     @property
     def first_move_clearance(self) -> Clearance | None:
-        """The verdict on the first move. None if the move was not checked."""
+        """Return the verdict on the first move, or None if the move was not checked."""
         return self.first_move_result.start_clearance if self.first_move_result is not None else None
 
 
 @dataclass(frozen=True, slots=True)
 class PartProof:
-    """The result of proving the part.
+    """Result of proving the part.
 
-    ``diagnostics`` are the findings with their severity for this machine. ``warned`` contains short warnings
-    that are shown before a start because they rest on assumptions. ``report`` is None if the part could not
-    be calculated; ``error_text`` then gives the reason.
+    ``diagnostics`` are the findings with their severity for this machine. ``warning_texts`` are short
+    warnings that are shown before a start because they depend on assumptions. If the part could not be
+    calculated, ``report`` is None and ``error_text`` gives the reason.
     """
 
     diagnostics: tuple[Diagnostic, ...] = ()
@@ -94,7 +99,9 @@ class PartProof:
         return replace(proof, errors=(*proof.errors, *errors), warnings=self.warning_texts)
 
     def merge_diagnostics(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        """Return these and the given diagnostics without duplicates, sorted by line and column."""
+        """Return these diagnostics and the given diagnostics without duplicates, sorted by line
+        and column.
+        """
         known = {(each.line, each.code) for each in diagnostics}
         own = (each for each in self.diagnostics if (each.line, each.code) not in known)
         return tuple(sorted((*diagnostics, *own), key=lambda each: (each.line, each.column)))
@@ -106,9 +113,10 @@ def _no_part(_picture: ProgramPicture, _watch: ProgressCallback) -> PartProof | 
 
 @dataclass(frozen=True, slots=True)
 class LoadingSteps:
-    """Functions that loading needs from other rooms. They are called on the worker thread only.
+    """Functions of other packages that loading needs. They are called only on the worker thread.
 
-    ``watch`` gets the progress. It may raise AbandonedError, which the functions must not catch.
+    The ``ProgressCallback`` receives the progress. It may raise AbandonedError, which the functions must
+    not catch.
     """
 
     read_source: Callable[[Path], ProgramSource]  # Raises OSError or ValueError with an error message.
@@ -123,7 +131,7 @@ class LoadingSteps:
 
 @dataclass(frozen=True, slots=True)
 class LoadedProgram:
-    """The loaded program and the progress of loading. Objects are replaced and never changed."""
+    """The loaded program and the progress of loading. Objects are replaced instead of changed."""
 
     phase: LoadingPhase = LoadingPhase.EMPTY
     path: Path | None = None
@@ -139,17 +147,17 @@ class LoadedProgram:
 
     @property
     def name(self) -> str:
-        """The file name of the program. Empty if no program is loaded."""
+        """Return the file name of the program, or an empty text if no program is loaded."""
         return self.path.name if self.path else ""
 
     @property
     def blocking_errors(self) -> tuple[Diagnostic, ...]:
-        """The diagnostics that prevent the program from running."""
+        """Return the diagnostics that prevent the program from running."""
         return tuple(d for d in self.diagnostics if d.severity is Severity.ERROR)
 
     @property
     def is_busy(self) -> bool:
-        """Whether the worker is still loading the program."""
+        """Return whether the worker is still loading the program."""
         return self.phase in {
             LoadingPhase.READING,
             LoadingPhase.PROVING,
@@ -160,8 +168,9 @@ class LoadedProgram:
 
 @dataclass(slots=True)
 class ProgramLoader:
-    """Loads one program at a time. ``post_command`` sends commands to the executor, also from the worker
-    thread.
+    """Loader that loads one program at a time.
+
+    ``post_command`` sends commands to the executor. The worker thread also calls it.
     """
 
     steps: LoadingSteps
@@ -172,25 +181,26 @@ class ProgramLoader:
 
     @property
     def loaded(self) -> LoadedProgram:
-        """The loaded program. If loading fails, the phase is UNREADABLE and ``error_text`` gives the
-        reason.
+        """Return the loaded program.
+
+        If loading fails, its phase is UNREADABLE and its ``error_text`` gives the reason.
         """
         self.worker.poll()
         return self._now
 
     def start_loading(self, path: Path, block_delete: bool = False) -> None:
-        """Start loading a program. Loading in progress is canceled."""
+        """Start loading a program, and cancel loading that is in progress."""
         with self.worker.lock:
             self.load_count += 1
             self._now = LoadedProgram(LoadingPhase.READING, path, block_delete)
             self.worker.request(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def replace_loaded(self, loaded: LoadedProgram) -> None:
-        """Replace the loaded program by the same program with another proof or progress."""
+        """Replace the loaded program with the same program that has a new proof or progress."""
         self._now = loaded
 
     def wait_until_loaded(self, timeout_s: float) -> LoadedProgram:
-        """Wait until loading is finished, and return the program. For scripts and tests only."""
+        """Wait until loading is finished, and return the program. Only scripts and tests use this method."""
         self.worker.wait_for_results(timeout_s)
         return self.loaded
 
@@ -221,7 +231,10 @@ class ProgramLoader:
         _freeze_garbage()
 
     def _prove_part(self, job: Job, proved: ProvedJob, picture: ProgramPicture, request: WorkRequest) -> None:
-        """Prove the part. A program that did not wait for this proof may already be running."""
+        """Prove the part, possibly while its program is already running.
+
+        A program can run before this proof if it need not wait for the proof.
+        """
         watch = partial(self._reached, request) if proved.waits_for_part else request
         part = self.steps.prove_part(picture, watch)
         found, whole = proved.diagnostics, proved.proof
@@ -255,8 +268,8 @@ def find_final_phase(proof: Proof) -> LoadingPhase:
 def _freeze_garbage() -> None:
     """Exclude the loaded program from garbage collection.
 
-    A scan of 200,000 blocks would stop every thread for 40 ms, including the executor, again and again. The
-    objects are freed by reference counting.
+    Each scan of 200,000 blocks would stop every thread for 40 ms, including the executor. Reference
+    counting still frees the objects.
     """
     gc.collect(1)
     gc.freeze()

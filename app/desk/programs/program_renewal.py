@@ -1,7 +1,7 @@
 """Renewal of the loaded program's proof after a change of offsets or units.
 
-Between two programs, the program is loaded again. During a run, the program is proved with the new offsets,
-and the executor applies them at the end of the part.
+Between two program runs, the program is loaded again. During a run, the program is proved with the new
+offsets, and the executor applies the offsets at the end of the part.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from core.message import Message
 class RunningRenewal:
     """One renewal of the proof during a run. A newer renewal or a newly loaded program replaces it.
 
-    The renewal uses the text of the running program and not the file on the disk. The screen shows the old
-    program until the executor uses the new one.
+    The renewal uses the text of the running program, and not the file on the disk. The screen shows the old
+    program until the executor uses the new program.
     """
 
     program_loader: ProgramLoader
@@ -47,7 +47,7 @@ class RunningRenewal:
         self.worker = LatestRequestWorker("renewing", thread_owner=self.program_loader.worker)
 
     def begin_renewal(self) -> bool:
-        """Announce the renewal to the executor and begin proving. Return False if no program is loaded.
+        """Announce the renewal to the executor and begin proving, or return False if no program is loaded.
 
         After the announcement, the executor does not start a part with the old offsets.
         """
@@ -61,7 +61,7 @@ class RunningRenewal:
         return True
 
     def is_in_use(self, snapshot: Snapshot) -> bool:
-        """Return whether the executor uses the renewed program. The screen then shows it, too."""
+        """Return whether the executor uses the renewed program. The screen then also shows that program."""
         ready = self._next
         if ready is None or ready.job is None or self.program_loader.load_count != self._loads:
             return False
@@ -77,9 +77,9 @@ class RunningRenewal:
         return True
 
     def poll_error(self) -> str:
-        """Return once why the next part will not start. Empty if there is no new reason.
+        """Return the reason why the next part will not start, once for each reason, or an empty text.
 
-        If the renewed proof could not be made, the executor is informed.
+        If the program could not be proved again, the executor is informed.
         """
         self.worker.poll()
         if self._trouble:
@@ -151,10 +151,10 @@ class RunningRenewal:
 
 @dataclass(slots=True)
 class ProgramRenewal:
-    """Renews the proof after a change of tool offsets, secondary offsets or the modal unit.
+    """Renewal of the proof after a change of tool offsets, secondary offsets or the modal unit.
 
-    Between two programs, the program is read, proved and drawn again. During a run, the program is proved
-    with the new offsets, and the executor applies them at the end of the part.
+    Between two program runs, the program is read, proved and drawn again. During a run, the program is
+    proved with the new offsets, and the executor applies the offsets at the end of the part.
     """
 
     program_loader: ProgramLoader
@@ -170,7 +170,10 @@ class ProgramRenewal:
     def update(
         self, snapshot: Snapshot, offset_book: OffsetBook, post_command: Callable[[Command], None]
     ) -> None:
-        """Detect changes of the offsets and begin a renewal when possible; called once a frame."""
+        """Detect changes of the offsets, and begin a renewal when possible.
+
+        The screen calls this method once per frame.
+        """
         trouble, before = offset_book.poll_saving(), self._changes
         self._changes = offset_book.changes
         if trouble:
@@ -204,9 +207,9 @@ class ProgramRenewal:
             )
 
     def _is_outdated(self, snapshot: Snapshot) -> bool:
-        """Return whether the machine's modal unit differs from the unit of the proof.
+        """Return whether the machine's modal unit is different from the unit of the proof.
 
-        This matters only if the program does not specify the unit.
+        The difference matters only if the program does not specify the unit.
         """
         now = self.program_loader.loaded
         at_rest = (

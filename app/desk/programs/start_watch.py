@@ -1,9 +1,9 @@
-"""Check of the first move of the next start against the part. A collision refuses the start.
+"""Check of the first move of the next start against the part. A collision prevents the start.
 
-A program is checked on a worker whenever the axes rest at another position. An MDI line and a restart are
-checked by the worker that proves them. The executor gets the verdict and refuses a start without one. The
-geometry is in ``core/proving/start_check.py``. Any worker may use ``StartJudge``, because it reads no clock
-and does not wait for the machine.
+A program is checked on a worker each time the axes stop at a new position. The worker that proves an MDI
+line or a restart also checks its first move. The executor receives the verdict, and rejects a start without
+a verdict. The geometry is in ``core/proving/start_check.py``. Any worker may use ``FirstMoveChecker``,
+because it does not read a clock or wait for the machine.
 """
 
 from __future__ import annotations
@@ -42,7 +42,9 @@ if TYPE_CHECKING:
 
 
 class PreviousPart(NamedTuple):
-    """The program that made the part in the chuck, and the interrupted job if it was interrupted."""
+    """The program that made the part in the chuck, with the interrupted job if the program was
+    interrupted.
+    """
 
     job: Job
     picture: ProgramPicture
@@ -50,7 +52,9 @@ class PreviousPart(NamedTuple):
 
 
 class FirstMoveQuery(NamedTuple):
-    """The data of one first-move check: job, kind of start, axis position and tool in use."""
+    """Data for one first-move check, such as the job, the kind of start, the axis positions and the active
+    tool.
+    """
 
     job: Job
     start_kind: StartAction
@@ -64,7 +68,7 @@ class FirstMoveQuery(NamedTuple):
 
     @property
     def key(self) -> tuple[object, ...]:
-        """The values on which the verdict depends."""
+        """Return the values on which the verdict depends."""
         part = self.previous_part
         known = None if part is None else (id(part.picture), part.job.digest, part.interrupted_job)
         return (
@@ -79,7 +83,7 @@ class FirstMoveQuery(NamedTuple):
 
 
 def add_verdict(proved: ProvedJob, result: FirstMoveResult) -> ProvedJob:
-    """Return the proof of a line or a restart with this verdict added. A refused first move is an error."""
+    """Return the proof of a line or a restart with this verdict added. A rejected first move is an error."""
     found = result.start_clearance
     if not found.code:
         return replace(proved, first_move_result=result)
@@ -90,13 +94,13 @@ def add_verdict(proved: ProvedJob, result: FirstMoveResult) -> ProvedJob:
 
 @dataclass(slots=True)
 class FirstMoveChecker:
-    """Checks first moves. The last part history is cached for the next check."""
+    """Checker of first moves that caches the last part history for the next check."""
 
     _lock: Lock = field(default_factory=Lock)
     _history: tuple[ProgramPicture, PartHistory] | None = None
 
     def check_first_move(self, query: FirstMoveQuery, progress: ProgressCallback) -> FirstMoveResult:
-        """Return the verdict on this start. Raises AbandonedError if ``watch`` does."""
+        """Return the verdict on this start. Raises AbandonedError if ``progress`` raises it."""
         with self._lock:
             return self._judge(query, progress)
 
@@ -142,7 +146,7 @@ class FirstMoveChecker:
 
 
 def _make_pass_finder(job: Job) -> Callable[[tuple[float, ...]], Iterable[Block]]:
-    """Return a function that interprets a job from a given axis position. All inputs count as off."""
+    """Return a function that interprets a job from a given axis position, with all inputs off."""
 
     def passes(at: tuple[float, ...]) -> Iterable[Block]:
         return start_program_pass(job, replace(job.setup, start=at, inputs=lambda _terminal: False)).blocks
@@ -171,7 +175,7 @@ def _now(asked: FirstMoveQuery, part: PreviousPart) -> StartState:
 def _make_verdict(plain: Clearance, found: FirstMove, part: PreviousPart) -> Clearance:
     """Return the verdict with its text.
 
-    A finding that rests on an assumption is a warning. Any other finding refuses the start.
+    A finding that depends on an assumption is a warning. Any other finding prevents the start.
     """
     if found.hit_body is None:
         warned = _not_known() if not found.is_part_known and found.path else ""
@@ -219,7 +223,10 @@ _REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
 
 @dataclass(slots=True)
 class FirstMoveWatch:
-    """Checks the first move of the next program start. ``post_command`` sends commands to the executor."""
+    """Service that checks the first move of the next program start.
+
+    ``post_command`` sends commands to the executor.
+    """
 
     post_command: Callable[[Command], None]
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("start-check"))
@@ -230,7 +237,10 @@ class FirstMoveWatch:
     _loaded: PreviousPart | None = None  # Part of the loaded program.
 
     def update(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Request a new check when the job, position or part has changed; called once a frame."""
+        """Request a new check if the job, the position or the part has changed.
+
+        The screen calls this method once per frame.
+        """
         self.worker.poll()
         self._track_part(snapshot, loaded)
         question = self._question(snapshot, loaded)
@@ -245,21 +255,21 @@ class FirstMoveWatch:
             )
 
     def close(self) -> None:
-        """End the worker."""
+        """End the worker that checks first moves."""
         self.worker.close()
 
     def make_start_legs(self, snapshot: Snapshot) -> tuple[DrawnLeg, ...]:
-        """Return the first move of the next program start for drawing. Empty while a cycle runs."""
+        """Return the first move of the next program start for drawing, or () while a cycle runs."""
         return make_drawn_legs(self.first_move_result) if snapshot.state in _REST_STATES else ()
 
     @property
     def start_refusal(self) -> str:
-        """The reason why the first move prevents a start of the program. Empty if it does not."""
+        """Return why the first move prevents a start of the program, or an empty text if it does not."""
         return self.first_move_result.start_clearance.why if self.first_move_result is not None else ""
 
     @property
     def is_checking(self) -> bool:
-        """Whether the verdict is pending, so that the program cannot start yet."""
+        """Return whether the verdict is pending, so that the program cannot start yet."""
         return self._asked is not None and self.first_move_result is None
 
     # =
@@ -324,7 +334,7 @@ class FirstMoveWatch:
         self.post_command(ReplaceClearances(seen.verdicts))
 
     def _handle_failure(self, asked: FirstMoveQuery, reason: str) -> None:
-        """Announce that the first move could not be checked."""
+        """Report that the first move could not be checked."""
         warned = tr(Message("THE FIRST MOVE COULD NOT BE CHECKED: {why}", why=reason))
         self._found(
             FirstMoveResult(
@@ -334,7 +344,7 @@ class FirstMoveWatch:
 
 
 def make_drawn_legs(result: FirstMoveResult | None) -> tuple[DrawnLeg, ...]:
-    """Return the first move as drawn legs for the path view. The end of the move has a label."""
+    """Return the first move as drawn legs for the path view, with a label at its end."""
     if result is None:
         return ()
     (zero_x, zero_z), last = result.zero_position, len(result.legs) - 1

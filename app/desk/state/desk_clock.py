@@ -1,4 +1,4 @@
-"""The clocks of the operator screen."""
+"""Clocks of the operator screen."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from functools import partial
 
 @dataclass(slots=True)
 class DeskClock:
-    """Monotonic time in seconds, and the local time of day as text."""
+    """Clock that returns monotonic time in seconds, and the local time of day as text."""
 
     read_seconds: Callable[[], float] = time.monotonic
     format_local_time: Callable[[], str] = field(default=partial(time.strftime, "%H:%M:%S"))

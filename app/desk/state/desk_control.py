@@ -1,4 +1,4 @@
-"""The control as the screen uses it, in the same process or in another process."""
+"""Interface of the control for the screen, with the control in the same process or in another process."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class DeskControl:
-    """Access to the control: its commands, its snapshots and its simulated station.
+    """Access to the control, which includes its commands, its snapshots and its simulated station.
 
-    ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input of
-    a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a recorder.
-    ``open_stop_channel`` opens a connection that sends stop keys to the control without the screen.
-    ``restart`` starts another control in place of one that is silent, or is None if this is not possible.
-    ``identity`` returns the identity of a control process, and an empty text for a control in this process.
+    ``station_panel`` is None if the machine has its own operator station. ``set_input`` switches an input
+    of a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a
+    recorder. ``open_stop_channel`` opens a connection that sends stop keys to the control without the
+    screen. ``restart`` replaces a silent control with a new control, or is None if this is not possible.
+    ``identity`` returns the identity of a control process, or an empty text for a control in this process.
     """
 
     post: Callable[[Command], None]

@@ -1,4 +1,4 @@
-"""The machine as the screen presents it."""
+"""Machine data that the screen shows."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ class DeskMachine:
 
     @property
     def language(self) -> str:
-        """The programming language of the machine, which MDI also uses."""
+        """Return the program language of the machine, which MDI also uses."""
         return self.machine.language if self.machine is not None else "omniturn"
 
     @property
     def third_axis_name(self) -> str:
-        """The name of the third axis."""
+        """Return the name of the third axis."""
         return self.machine.third_axis if self.machine is not None else "C"
 
     @property
     def is_table_rotary(self) -> bool:
-        """Whether the rotary axes turn the table and not the head."""
+        """Return whether the rotary axes turn the table instead of the head."""
         return self.machine is None or self.machine.has_rotary_table

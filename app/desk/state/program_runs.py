@@ -1,4 +1,4 @@
-"""Records of program runs: parts, proofs and runs, and the steps of the first job."""
+"""Records of program runs, which are the part counter, the run history and the steps of the first job."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from core.store.store_errors import StoreError
 
 
 class ProgramRuns:
-    """The part counter, the run history and the card of the first job, stored by ``persistence``."""
+    """Part counter, run history and card of the first job, which ``persistence`` stores."""
 
     def __init__(self, persistence: Persistence) -> None:
         self.part_counter = PartCounter(persistence)
@@ -29,11 +29,11 @@ class ProgramRuns:
 
     @property
     def first_job_card(self) -> FirstJobCard:
-        """The card of the first job."""
+        """Return the card of the first job."""
         return self._first_job
 
     def restart_first_job(self) -> None:
-        """Start the first job again at its first step."""
+        """Restart the first job at its first step."""
         self._first_job = FirstJobCard()
 
     def record_frame(
@@ -43,7 +43,10 @@ class ProgramRuns:
         post_command: Callable[[Command], None],
         show_message: Callable[[str], None],
     ) -> None:
-        """Record one frame of a program. Do not call this for MDI lines, which are not program runs."""
+        """Record one frame of a program run.
+
+        Do not call this method for MDI lines, which are not program runs.
+        """
         text = loaded.job.text_digest if loaded.job is not None else self.part_counter.text_digest
         self.part_counter.observe(snapshot, post_command, show_message, text)
         self.run_history.observe(snapshot, loaded)
@@ -54,9 +57,9 @@ class ProgramRuns:
         self._first_job.save_step(self._persistence)
 
     def pop_part_warning(self, snapshot: Snapshot, loaded: LoadedProgram) -> str:
-        """Return the first warning about a part that was proved while its program runs.
+        """Return the first warning about a part that was proved while its program was running.
 
-        Each warning is returned once; otherwise the text is empty.
+        Each warning is returned only once. Without a new warning, the text is empty.
         """
         part, seen = loaded.part_proof, self._part_seen
         self._part_seen = part

@@ -1,4 +1,4 @@
-"""The keys and touch targets of the operator station."""
+"""Keys and touch targets of the operator station on the screen."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class StationKeys:
     def press_estop(self, press: int = 0) -> None:
         """Press the E-stop of the simulated station.
 
-        At a machine with a real station, start feed hold and show that the key is not an E-stop. ``press`` is
-        the number of the key press.
+        For a machine with a real station, start feed hold and show that the key is not an E-stop. ``press``
+        is the number of the key press.
         """
         if self.desk_control.station_panel is None:
             self.start_feed_hold(press)
@@ -63,13 +63,14 @@ class StationKeys:
             self.desk_control.post(CycleStart())
 
     def toggle_spindle_switch(self) -> None:
-        """Turn the spindle switch to its other position."""
+        """Turn the spindle switch from AUTO to OFF, or from OFF to AUTO."""
         self.station_controls.set_spindle_auto(not self.desk_control.read_snapshot().spindle_auto)
 
     def step_override(self, steps: int) -> None:
         """Change the feed override by a number of steps of ten percent.
 
-        With a simulated station, this turns its pot, so that knob and value never differ.
+        With a simulated station, this method turns the pot of the station, so that knob and value are
+        always equal.
         """
         if self.desk_control.station_panel is not None:
             self.station_controls.turn_feed_pot(steps)

@@ -1,4 +1,4 @@
-"""State of the stored data and of the loaded program's file."""
+"""State of the data store and of the loaded program's file."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(slots=True)
 class StorageState:
-    """State of the store and of the program file. Without a store, nothing is unsaved."""
+    """State of the store and of the program file. Without a store, there is no unsaved data."""
 
     _problem: Callable[[], str] = str
     _waiting: Callable[[], str] = str
@@ -17,38 +17,42 @@ class StorageState:
     _restoring: bool = False
 
     def set_store_readers(self, problem: Callable[[], str] = str, waiting: Callable[[], str] = str) -> None:
-        """Set the functions that report the state of a store. See ``problem`` and ``waiting``."""
+        """Set the functions that report the state of a store, for ``read_problem`` and ``read_unsaved``."""
         self._problem, self._waiting = problem, waiting
 
     def set_file_readers(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
-        """Set the functions of the program file monitor. See ``difference`` and ``recheck_file``."""
+        """Set the functions of the program file monitor, for ``read_file_difference`` and
+        ``recheck_file``.
+        """
         self._difference, self._recheck_file = difference, recheck
 
     def read_problem(self) -> str:
-        """Return why events, parts and versions are not saved. Empty if they are saved."""
+        """Return why events, parts and versions are not saved, or an empty text if they are saved."""
         return self._problem()
 
     def read_unsaved(self) -> str:
-        """Return a text that lists the data waiting in memory to be saved. Empty if no data waits."""
+        """Return a text that lists the data waiting in memory to be saved, or an empty text if no data
+        waits.
+        """
         return self._waiting()
 
     def read_file_difference(self) -> str:
-        """Return how the program file differs from the loaded program. Empty if they are equal."""
+        """Return how the program file differs from the loaded program, or an empty text if they are equal."""
         return self._difference()
 
     def recheck_file(self) -> None:
-        """Compare the program file again soon, because the editor has written it."""
+        """Request a new comparison of the program file, because the editor has written the file."""
         self._recheck_file()
 
     @property
     def is_restoring(self) -> bool:
-        """Whether a backup is replacing the data."""
+        """Return whether a restore of a backup is in progress."""
         return self._restoring
 
     def begin_restore(self) -> None:
-        """Prevent starts while a backup replaces the data."""
+        """Prevent starts while a backup replaces the stored data."""
         self._restoring = True
 
     def end_restore(self) -> None:
-        """Allow starts again after a restore, successful or not."""
+        """Permit starts again after a restore, successful or not."""
         self._restoring = False

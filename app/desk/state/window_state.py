@@ -1,4 +1,4 @@
-"""The part of the window's state on which starts and prompts depend."""
+"""State of the main window on which starts and prompts depend."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from app.desk.late_presses import LatePresses
 
 @dataclass(slots=True)
 class WindowState:
-    """State of the main window. Without a window, cycles can be started from anywhere.
+    """State of the main window. Without a window, the current page does not prevent a start.
 
-    ``late_presses`` drops key presses that would start something after a stall of the screen.
+    ``late_presses`` drops key presses that would start an action after a stall of the screen.
     """
 
     late_presses: LatePresses
@@ -28,31 +28,31 @@ class WindowState:
     def connect_window(
         self, wake: Callable[[], None], is_stop_held: Callable[[], bool], press_age: Callable[[], float]
     ) -> None:
-        """Use the functions of this window. They replace those of an earlier window."""
+        """Use the functions of this window in place of the functions of an earlier window."""
         self._wake, self._is_stop_held, self._press_age = wake, is_stop_held, press_age
 
     def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
         """Set the properties of the current page.
 
-        ``can_start`` is whether cycles can be started there. ``has_field`` returns whether a text field
-        accepts letters.
+        ``can_start`` is True if cycles can be started from this page. ``has_field`` returns whether a text
+        field accepts letters.
         """
         self._starts_here, self._has_field = can_start, has_field
 
     def set_keyboard_lost(self, is_lost: bool) -> None:
-        """Set whether another window has the keyboard, so that no key reaches this one."""
+        """Set whether another window has the keyboard focus, so that this window receives no keys."""
         self._keyboard_away = is_lost
 
     # --- read by the model ---------------------------------------------------------------------------
 
     @property
     def can_start_here(self) -> bool:
-        """Whether cycles can be started from the current page."""
+        """Return whether cycles can be started from the current page."""
         return self._starts_here
 
     @property
     def is_keyboard_lost(self) -> bool:
-        """Whether another window has the keyboard."""
+        """Return whether another window has the keyboard focus."""
         return self._keyboard_away
 
     def has_text_field(self) -> bool:
@@ -64,9 +64,9 @@ class WindowState:
         return self._is_stop_held()
 
     def find_press_age(self) -> float:
-        """Return the time in seconds since the key press that is being handled."""
+        """Return the time in seconds since the key press that is being processed."""
         return self._press_age()
 
     def wake_window(self) -> None:
-        """Make the window poll the machine, which has changed while at rest. Any thread may call this."""
+        """Make the window poll a machine whose state has changed at rest. Any thread may call this method."""
         self._wake()

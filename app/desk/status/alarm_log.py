@@ -1,4 +1,4 @@
-"""The alarm log, which F7 shows: alarms, E-stops and stops, newest first, with cause and remedy.
+"""Alarm log that F7 shows, with alarms, E-stops and stops, newest first, and their causes and remedies.
 
 Entries of this session come from the executor's events. Older entries come from the store's event log.
 """
@@ -35,9 +35,9 @@ class LoggedStop:
 
 
 class AlarmLog:
-    """The list of logged alarms and stops.
+    """List of logged alarms and stops.
 
-    ``hear`` may be called from the executor's thread. All other methods belong to the screen's thread.
+    The executor's thread may call ``hear``. Only the screen's thread may call the other methods.
     """
 
     def __init__(self, clock: Callable[[], str]) -> None:
@@ -51,7 +51,7 @@ class AlarmLog:
             self._heard.append(LoggedStop(self._clock(), event.alarm, event.record_name))
 
     def add_stored(self, log_rows: Iterable[EventRow]) -> None:
-        """Add older entries from the store, newest first, after the entries of this session."""
+        """Append older entries from the store, newest first, to the entries of this session."""
         kept = tuple(
             LoggedStop(format_wall_time(row.at, "%H:%M:%S"), alarm, row.record)
             for row in log_rows
@@ -61,7 +61,7 @@ class AlarmLog:
 
     @property
     def entries(self) -> tuple[LoggedStop, ...]:
-        """All entries, newest first."""
+        """Return all entries, newest first."""
         new: list[LoggedStop] = []
         while self._heard:
             new.append(self._heard.popleft())
@@ -71,7 +71,7 @@ class AlarmLog:
 
 
 def parse_alarm(row: EventRow) -> Alarm | None:
-    """Return the alarm of a log row, or None if the row contains no alarm with a known number."""
+    """Return the alarm of a log row, or None if the row does not contain an alarm with a known number."""
     found = _LOG_TEXT.fullmatch(row.text) if row.kind in LOGGED_KINDS else None
     code = _CODES_BY_NUMBER.get(int(found[1])) if found is not None else None
     if found is None or code is None:

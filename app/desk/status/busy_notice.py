@@ -1,4 +1,4 @@
-"""A message to the operator if a busy computer delays feed hold."""
+"""Message to the operator when a busy computer delays feed hold."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.message import Message
 
 
 class BusyNotice:
-    """Shows a message when feed hold reacts late. ``show_message`` shows a text on the prompt line.
+    """Message that is shown when feed hold reacts late. ``show_message`` shows a text on the prompt line.
 
     The message appears once in each busy period, and again if the delay has doubled.
     """
@@ -20,7 +20,10 @@ class BusyNotice:
         self._told = 0.0  # s
 
     def check_snapshot(self, snapshot: Snapshot) -> None:
-        """Check a snapshot and show the message if necessary; called once a frame."""
+        """Check a snapshot, and show the message if necessary.
+
+        The screen calls this method once per frame.
+        """
         later = snapshot.hold_delay_s
         if later == 0.0:
             self._told = 0.0

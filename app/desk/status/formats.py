@@ -1,4 +1,4 @@
-"""Number formats for the operator: inches with 5 decimals, mm with 4, and never a negative zero."""
+"""Number formats for the operator, with 5 decimals in inches, 4 decimals in mm, and no negative zero."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ ANGLE_DECIMALS = 2
 
 
 def format_fixed(value: float, decimals: int) -> str:
-    """Return a value with a fixed number of decimals.
+    """Return a value as text with a fixed number of decimals.
 
-    A value that rounds to zero has no sign. A value that is not finite gives a dash.
+    A value that rounds to zero has no sign. The text of a value that is not finite is a dash.
     """
     if not math.isfinite(value):
         return NO_VALUE
@@ -27,7 +27,9 @@ def format_fixed(value: float, decimals: int) -> str:
 
 
 def format_length(mm: float, metric: bool) -> str:
-    """Return a length or coordinate in mm as text, with 5 decimals in inches or 4 in mm."""
+    """Return a length or coordinate in mm as text, with 4 decimals if ``metric``, and otherwise 5 decimals
+    in inches.
+    """
     return format_fixed(mm, 4) if metric else format_fixed(mm / MM_PER_INCH, 5)
 
 
@@ -37,12 +39,12 @@ def format_angle(degrees: float) -> str:
 
 
 def find_rotary_feed_unit(per_rev: bool) -> str:
-    """Return the unit of a feed of the C axis alone."""
+    """Return the unit of a feed for a move of only the C axis."""
     return f"°/{'rev' if per_rev else 'min'}"
 
 
 def find_feed_unit(metric: bool, per_rev: bool) -> str:
-    """Return the unit of a feed."""
+    """Return the unit of a linear feed, such as ``mm/rev`` or ``in/min``."""
     return f"{'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
 
 
@@ -54,24 +56,26 @@ def format_feed(value: float, metric: bool, per_rev: bool) -> str:
 
 
 def format_surface_speed(mm_s: float, metric: bool) -> str:
-    """Return an unsigned surface speed as text, in m/min or ft/min."""
+    """Return a surface speed in mm/s as text without a sign, in m/min if ``metric``, and otherwise in
+    ft/min.
+    """
     return format_fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
 
 
 def rpm(value: float) -> str:
-    """Return a spindle speed as text without a sign."""
+    """Return a spindle speed in rpm as text without a sign or unit."""
     return format_fixed(abs(value), 0)
 
 
 def format_percent(fraction: float) -> str:
-    """Return an override fraction as a percentage."""
+    """Return an override fraction as text in percent."""
     return f"{format_fixed(fraction * 100, 0)} %"
 
 
 def format_duration(seconds: float) -> str:
-    """Return a time as ``m:ss``, or ``h:mm:ss`` from one hour on, rounded down.
+    """Return a time in seconds as ``m:ss``, or as ``h:mm:ss`` from one hour, rounded down.
 
-    An unknown or negative time gives a dash.
+    The text of an unknown or negative time is a dash.
     """
     if not math.isfinite(seconds) or seconds < 0:
         return NO_VALUE
@@ -82,7 +86,7 @@ def format_duration(seconds: float) -> str:
 
 
 def format_file_size(size_bytes: int) -> str:
-    """Return a size in bytes as text, in a unit that gives one to three digits before the point."""
+    """Return a size in bytes as text, in a unit that gives one to three digits before the decimal point."""
     for unit, most in (("B", 1e3), ("KB", 1e6), ("MB", 1e9)):
         if size_bytes < most:
             return f"{size_bytes / (most / 1e3):.{0 if unit == 'B' else 1}f} {unit}"
@@ -90,7 +94,7 @@ def format_file_size(size_bytes: int) -> str:
 
 
 def format_wall_time(utc_time: str, today: str = "%H:%M") -> str:
-    """Return a UTC time of the store as local time. A time of another day includes the date.
+    """Return a UTC time of the store as local time, with the date unless it is today.
 
     ``today`` is the format for times of today. An invalid time is returned unchanged.
     """
@@ -103,5 +107,7 @@ def format_wall_time(utc_time: str, today: str = "%H:%M") -> str:
 
 
 def format_local_time(utc_time: str, *, seconds: bool = True) -> str:
-    """Return a UTC time of the store (ISO 8601) as local date and time."""
+    """Return a UTC time of the store (ISO 8601) as local date and time, with seconds if ``seconds`` is
+    true.
+    """
     return datetime.fromisoformat(utc_time).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

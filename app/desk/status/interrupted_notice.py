@@ -1,7 +1,7 @@
-"""Notices about an interrupted job and about parts of the machine that do not respond.
+"""Notices about an interrupted job, and about parts of the machine that do not respond.
 
-The notice of an interrupted job contains the program, the line, and the tool's position then and now. The
-other notice appears if the connection is lost, because the machine may continue to move.
+The notice of an interrupted job contains the program, the line, and the tool's position at the stop and
+now. The other notice appears if the connection is lost, because the machine may continue to move.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ _POSITION_TOLERANCE = 0.05  # Tolerance in mm or degrees within which the positi
 
 @dataclass(frozen=True, slots=True)
 class NoticeRow:
-    """A notice that remains until the operator acts: a text, values below it, and keys with labels.
+    """A notice that remains until the operator acts, with a text, values below the text, and labeled keys.
 
-    ``color_name`` is the name of its background color.
+    ``color_name`` is the name of the background color.
     """
 
     text: str
@@ -37,7 +37,7 @@ class NoticeRow:
 def make_interrupted_notice(
     snapshot: Snapshot, loaded: LoadedProgram, units: DisplayUnits
 ) -> NoticeRow | None:
-    """Return the notice about the interrupted job, or None if there is no interrupted job."""
+    """Return the notice about the interrupted job, or None without an interrupted job."""
     found = snapshot.interrupted
     if found is None:
         return None
@@ -60,8 +60,8 @@ def make_interrupted_notice(
 def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
     """Return the prompt for an interrupted job on the Automatic page.
 
-    The prompt is empty if the loaded program was not interrupted. ``start`` is the instruction for starting a
-    cycle.
+    The prompt is empty if the loaded program was not interrupted. ``start`` is the instruction that says
+    how to start a cycle.
     """
     line = snapshot.interrupted_line
     if not line or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
@@ -81,7 +81,7 @@ def can_restart(loaded: LoadedProgram) -> bool:
 
 
 def make_replace_question(interrupted_job: InterruptedJob, name: str) -> str:
-    """Return the question that is asked before a program replaces an interrupted job."""
+    """Return the question that the screen asks before a program replaces an interrupted job."""
     words = tr(
         "T{tool} MAY BE IN THE PART ({program}, LINE {line}). PRESS Y TO CANCEL THE "
         "INTERRUPTED JOB AND LOAD {name}, N TO KEEP THE INTERRUPTED JOB"
@@ -108,7 +108,10 @@ def _changed(found: InterruptedJob, loaded: LoadedProgram) -> bool:
 
 
 def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
-    """Return which execution of the line was interrupted, for a line that runs more than once per part."""
+    """Return a text that says which repetition of the line was interrupted.
+
+    The text is empty unless the line runs more than once per part.
+    """
     picture, job = loaded.picture, loaded.job
     if picture is None or job is None or job.text_digest != found.text:
         return ""
@@ -120,7 +123,10 @@ def _describe_pass(found: InterruptedJob, loaded: LoadedProgram) -> str:
 
 
 def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: DisplayUnits) -> str:
-    """Return the tool's position at the stop and now, from home, as the readout FROM HOME shows it."""
+    """Return the tool's positions at the stop and now as text.
+
+    The positions are measured from home, as in the readout FROM HOME.
+    """
     stood = _format_positions(found.axes, found.where, snapshot, units)
     if not all(snapshot.homed):
         return tr(Message("POSITION WAS {position} FROM HOME, NOW UNKNOWN UNTIL HOMED", position=stood))
@@ -133,9 +139,9 @@ def _describe_positions(found: InterruptedJob, snapshot: Snapshot, units: Displa
 
 
 def _describe_uncertainty(found: InterruptedJob) -> str:
-    """Return a warning about the last second before the control was lost. Empty for other causes.
+    """Return a warning that the last second before a loss of control was not recorded.
 
-    The job's state is written once a second.
+    The job's state is written once per second. The text is empty for other causes of the interruption.
     """
     if found.why != POWER_LOST_REASON:
         return ""
@@ -147,7 +153,7 @@ def _describe_uncertainty(found: InterruptedJob) -> str:
 def _format_positions(
     axes: Sequence[str], where: Sequence[float], snapshot: Snapshot, units: DisplayUnits
 ) -> str:
-    """Return the positions of the linear axes as text. The position of C is omitted."""
+    """Return the positions of the linear axes as text, without the position of C."""
     metric, twice = units.metric(snapshot.modal.metric), snapshot.shows_diameter
     found = [
         Message(

@@ -1,4 +1,4 @@
-"""Changes of the machine file since the operator accepted it. They prevent the drives from being enabled."""
+"""Changes of the machine file after the operator accepted it, which prevent enabling the drives."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from core.message import Message
 
 @dataclass(slots=True)
 class MachineFileChanges:
-    """The changes of the machine file, empty if the file is as accepted.
+    """Changes of the machine file, which are empty if the file is the accepted file.
 
-    ``file_path`` is the file's path. ``save_acceptance`` stores the present file as accepted.
+    ``file_path`` is the path of the file. ``save_acceptance`` stores the current file as accepted.
     """
 
     file_path: str = ""
@@ -23,13 +23,13 @@ class MachineFileChanges:
 
     @property
     def barred(self) -> str:
-        """The reason why the drives cannot be enabled. Empty if they can be."""
+        """Return why the drives cannot be enabled, or an empty text if they can be enabled."""
         if not self.changes:
             return ""
         text = tr("MACHINE FILE CHANGED ({count}). F10: REVIEW AND ACCEPT")
         return tr(Message(text, count=len(self.changes)))
 
     def accept_changes(self) -> None:
-        """Accept the changes after the operator has read them."""
+        """Accept the changes that the operator has reviewed."""
         self.save_acceptance()
         self.changes = ()

@@ -1,7 +1,7 @@
-"""The texts and values of one snapshot for the operator, and the detection of a silent control.
+"""Texts and values of one snapshot for the operator, and detection of a silent control.
 
-The module also describes for what a program waits (WAITING), and how the wait ends. It contains no Qt and no
-machine logic.
+The module also describes the event that a waiting program needs (WAITING), and how the wait ends. It
+contains no Qt and no machine logic.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ CANCEL_HINT = "PAUSE (FEED HOLD), THEN R: CANCEL THE PROGRAM"
 
 
 def describe_wait(snapshot: Snapshot) -> str:
-    """Return the text of the title for a wait: its cause, and for an input the expected state."""
+    """Return the title text of a wait, which names its cause and the expected state of an input."""
     name = snapshot.waiting_for
     if not name or name in _WAIT_PROMPTS:
         return name
@@ -77,14 +77,17 @@ def make_wait_prompt(snapshot: Snapshot, is_simulated: bool = False) -> str:
 def _is_input(snapshot: Snapshot) -> bool:
     """Return whether the program waits for an input.
 
-    A wait of M91 to M95 has the name of the input, which has no space. All other waits have names with a
-    space.
+    The name of a wait of M91 to M95 is the name of the input, which does not contain a space. The names of
+    all other waits contain a space.
     """
     return " " not in snapshot.waiting_for
 
 
 class Tone(StrEnum):
-    """The appearance of a state. A tone has its own color and shape, so that color is not the only sign."""
+    """Appearance of a machine state.
+
+    Each tone has a color and a shape, so that color is not the only indication.
+    """
 
     OFF = "off"
     READY = "ready"
@@ -113,7 +116,7 @@ STATE_TONES = {
 
 @dataclass(frozen=True, slots=True)
 class MachineStatus:
-    """All values on the page that come from the machine, as text."""
+    """All values on the page that come from the machine, formatted as text."""
 
     program_name: str
     state_text: str
@@ -137,13 +140,15 @@ class MachineStatus:
 
 
 def _find_tool_text(modal: ModalState) -> str:
-    """Return the name of the tool in use, or the preset on a mill with presets."""
+    """Return the name of the active tool, or the active preset on a mill with presets."""
     preset = modal.settable and modal.edge is None
     return f"G{modal.settable}" if preset else format_edge_name(get_tool_number(modal.tool))
 
 
 def _find_secondary_offset(modal: ModalState) -> str:
-    """Return the text that follows T: the secondary offset, or the cutting edge and zero offset."""
+    """Return the text that follows T, which is the secondary offset, or the cutting edge and the zero
+    offset.
+    """
     if modal.edge is not None:
         return f"D{modal.edge} G{modal.settable}" if modal.settable else f"D{modal.edge}"
     return "" if modal.settable else f"D{modal.secondary}"
@@ -160,9 +165,9 @@ def make_status(
 ) -> MachineStatus:
     """Return the texts and values of a snapshot for the operator.
 
-    ``has_c_axis`` is True if the machine has a C axis. ``language`` is the machine's programming language.
-    ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table, and not only the
-    head, turns on a mill. All values are in one unit, which follows from ``units`` and the snapshot.
+    ``has_c_axis`` is True if the machine has a C axis. ``language`` is the machine's program language.
+    ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table of a mill turns,
+    and not only the head. All values are in one unit, which depends on ``units`` and the snapshot.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
@@ -194,7 +199,7 @@ def make_status(
 
 
 def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
-    """Return the cause of an E-stop or of a feed hold that the operator did not request, or None."""
+    """Return the cause of an E-stop, or of a feed hold that the operator did not request, or None."""
     stop = snapshot.stop
     if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
         return None
@@ -202,7 +207,7 @@ def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
 
 
 def _find_state_text(snapshot: Snapshot, stop: Alarm | None) -> str:
-    """Return the state as text. An alarm or a feed hold includes its number."""
+    """Return the machine state as text, with the number of an alarm or a feed hold."""
     if snapshot.state is MachineState.WAIT and snapshot.waiting_for:
         return tr(Message("WAITING: {what}", what=describe_wait(snapshot)))
     if snapshot.state is MachineState.RUN and snapshot.waiting_for:
@@ -219,7 +224,7 @@ def _find_state_text(snapshot: Snapshot, stop: Alarm | None) -> str:
 
 
 def needs_homing(snapshot: Snapshot) -> bool:
-    """Return whether an axis is not homed, so that no cycle can start."""
+    """Return whether an axis is not homed, so that a cycle cannot start."""
     return not all(snapshot.homed)
 
 
@@ -237,14 +242,17 @@ SILENCE_TIMEOUT_S = 1.0  # Seconds without a new snapshot. The executor makes a 
 
 @dataclass(slots=True)
 class SilenceWatch:
-    """Detects a silent control by comparing the time stamps of snapshots with the screen's clock."""
+    """Detector of a silent control, which compares the time stamps of snapshots with the screen's clock."""
 
     is_silent: bool = False
     _stamp: float | None = None
     _since: float = 0.0
 
     def check_silence(self, time_stamp: float, time_s: float) -> bool:
-        """Return whether the time stamp ``time_stamp`` has not changed for more than 1 s."""
+        """Return whether ``time_stamp`` has not changed for more than 1 s.
+
+        ``time_s`` is the time of the screen's clock in seconds.
+        """
         if time_stamp != self._stamp:
             self._stamp, self._since = time_stamp, time_s
         self.is_silent = time_s - self._since > SILENCE_TIMEOUT_S

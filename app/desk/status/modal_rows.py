@@ -1,4 +1,4 @@
-"""The modal state as rows of text, one row for each group of codes, for MDI and SEARCHTO."""
+"""Modal state as rows of text, one row for each group of codes, for MDI and SEARCHTO."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NO_CODE = formats.NO_VALUE
 
 @dataclass(frozen=True, slots=True)
 class ModalRow:
-    """One row of the modal state: its label and the code in force. ``key`` is not translated."""
+    """One row of the modal state, with its label and the active code. ``key`` is not translated."""
 
     key: str
     label: str
@@ -24,7 +24,7 @@ class ModalRow:
 
 
 def make_modal_rows(modal_state: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
-    """Return the rows of the machine's language, always in the same order."""
+    """Return the rows for the machine's program language, always in the same order."""
     modal = modal_state.modal
     if language != "omniturn":
         return _make_rows(modal_state, language)
@@ -55,7 +55,7 @@ _MODAL_GROUPS = {
 
 
 def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
-    """Return the rows of Klartext or SINUMERIK from the modal state that the last pass saved.
+    """Return the rows for Klartext or SINUMERIK from the modal state that the last pass saved.
 
     Without a saved state, the rows show the state at the end of a program.
     """
@@ -186,7 +186,7 @@ def _d(modal: ModalState) -> str:
 
 
 def _format_pair(modal: ModalState, x: float, z: float) -> str:
-    """Return X and Z as text. X has the mark R because offsets are stored as a radius."""
+    """Return X and Z as text. X has the prefix R because offsets are stored as a radius."""
     if not x and not z:
         return "0"
     return f"R{formats.format_length(x, modal.metric)} Z{formats.format_length(z, modal.metric)}"

@@ -1,7 +1,7 @@
-"""The prompt line: what the operator can do now, and the response to the last key.
+"""Prompt line, which shows what the operator can do now, and the response to the last key.
 
-State, question and message have separate places. A message remains for 4 s or until the next key. The prompt
-depends on one snapshot and the loaded program.
+State, question and message have separate places on the screen. A message remains for 4 s or until the next
+key. The prompt depends on one snapshot and the loaded program.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ ACTIVE_STATES = MOVING_STATES | INTERRUPTED_STATES
 def make_prompt(
     snapshot: Snapshot, loaded: LoadedProgram, start: str, release: str, *, is_field_open: bool = False
 ) -> str:
-    """Return the prompt for the present state.
+    """Return the prompt for the current state.
 
     ``start`` and ``release`` are the instructions for starting a cycle and for releasing the E-stop.
     ``is_field_open`` is True if letters are text input.
@@ -76,15 +76,17 @@ def make_prompt(
 
 
 def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tuple[str, ...]:
-    """Return the texts about the next start, which precede all other prompts.
+    """Return the texts about the next start, which take precedence over all other prompts.
 
-    Warnings of the proof are included only where a cycle can be started.
+    Warnings of the proof are included only on a page where a cycle can be started.
     """
     return tuple(text for text in snapshot.announced if can_start_here or not text.startswith(WARNING_PREFIX))
 
 
 def make_alarm_prompt(snapshot: Snapshot, release: str, *, is_field_open: bool = False) -> str:
-    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt. Empty without either."""
+    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt, or an empty text without
+    either.
+    """
     if snapshot.state is MachineState.FAULT:
         if not snapshot.alarms:
             return "ALARM: CORRECT THE CAUSE, THEN PRESS R TO ACKNOWLEDGE"
@@ -104,7 +106,7 @@ def _estop(release: str) -> str:
 
 
 def reason(status: MachineStatus) -> str:
-    """Return the text below the prompt: the cause of a stop, and for a feed hold also the remedy."""
+    """Return the text below the prompt, which is the cause of a stop, and for a feed hold also the remedy."""
     if status.alarms:
         return Message("CAUSE: {stop}", stop=describe_cause(status.alarms[0]))
     if status.stop_cause is None:
@@ -118,7 +120,9 @@ def reason(status: MachineStatus) -> str:
 
 
 def describe_cause(alarm: Alarm) -> str:
-    """Return the cause of an alarm, followed by the most likely cause in the catalog if it differs."""
+    """Return the cause of an alarm, followed by the most likely cause in the catalog if that cause is
+    different.
+    """
     likely = alarm.causes[0] if alarm.causes else ""
     cause = translate_cause(alarm)
     return (
@@ -140,7 +144,7 @@ def _idle(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
 
 
 def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
-    """Return why the loaded program cannot start now. Empty if nothing is missing."""
+    """Return why the loaded program cannot start now, or an empty text if it can start."""
     if loaded.phase in {LoadingPhase.UNREADABLE, LoadingPhase.REFUSED}:
         return make_refusal(loaded)
     if not snapshot.program:
@@ -162,14 +166,14 @@ def find_start_obstacle(snapshot: Snapshot, loaded: LoadedProgram) -> str:
 
 
 def find_missing_tools(loaded: LoadedProgram) -> list[str]:
-    """Return the tools that the loaded program uses and that have no measured offset."""
+    """Return the tools that the loaded program uses and that do not have a measured offset."""
     if loaded.proof is None or loaded.job is None:
         return []
     return [format_edge_name(key) for key in loaded.proof.unset(loaded.job)]
 
 
 def make_refusal(loaded: LoadedProgram) -> str:
-    """Return why the loaded program will not run: the first error and the number of further errors."""
+    """Return why the loaded program will not run, with the first error and the number of further errors."""
     if loaded.phase is LoadingPhase.UNREADABLE:
         return Message(
             "{loaded} CANNOT BE LOADED: {problem}. F2: CHOOSE ANOTHER PROGRAM",
@@ -199,7 +203,7 @@ def make_refusal(loaded: LoadedProgram) -> str:
 def find_remedy(loaded: LoadedProgram, prompt: str) -> str:
     """Return the remedy for a program that will not run, if ``prompt`` shows its error.
 
-    For a program that can start, return the first warning of a check.
+    If the program can start, return the first warning of a check instead.
     """
     errors = loaded.blocking_errors
     if errors:
@@ -228,7 +232,7 @@ MAX_PENDING_EVENTS = 100  # Events that wait for the next frame. Older events ar
 
 
 class MessageKind(StrEnum):
-    """The kind of message. Each kind has its own color and sign."""
+    """Kind of a message. Each kind has a different color and symbol."""
 
     REFUSAL = "answer"  # A refusal, or an instruction for what to do first.
     SUCCESS = "done"
@@ -244,12 +248,12 @@ MESSAGE_TIME_S = 4.0  # Seconds for which a message remains without a key press.
 
 @dataclass(slots=True)
 class PromptAnswers:
-    """One message and one question of the prompt line.
+    """The message and the question on the prompt line.
 
     A message remains for ``MESSAGE_TIME_S`` seconds or until the next key. A change of the machine's state
-    does not remove it. A question is valid in the machine state in which it was asked. Y executes the
-    action, and N and Esc only remove the question. An action that loses data has its own key, which differs
-    from the key that asked. ``clock`` returns monotonic time in seconds.
+    does not remove a message. A question is valid in the machine state in which it was asked. Y executes
+    the action. N and Esc only remove the question. An action that loses data has its own key, which is
+    different from the key that caused the question. ``clock`` returns monotonic time in seconds.
     """
 
     read_snapshot: Callable[[], Snapshot]
@@ -271,20 +275,21 @@ class PromptAnswers:
 
     @property
     def notice(self) -> str:
-        """The message, or else the question."""
+        """Return the message, or the open question if there is no message."""
         return self.message or self.question
 
     @property
     def notice_kind(self) -> MessageKind:
-        """The kind of the notice."""
+        """Return the kind of the displayed notice."""
         if not self.message and self.on_confirmed is not None:
             return MessageKind.QUESTION
         return MessageKind.SUCCESS if self.is_success else MessageKind.REFUSAL
 
     def say(self, text: str, *, is_success: bool = False, is_lasting: bool = False) -> None:
-        """Show a message. ``is_success`` marks a success. No key removes a ``is_lasting`` message.
+        """Show a message, with ``is_success`` for a success message.
 
-        Until the time of a lasting message is over, only another lasting message replaces it.
+        Keys do not remove a message with ``is_lasting``. Until its time ends, only another lasting message
+        replaces it.
         """
         if (
             self.is_lasting
@@ -301,7 +306,7 @@ class PromptAnswers:
         )
 
     def ask_question(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
-        """Ask a question. Asking the same question again does not count as an answer."""
+        """Ask a question. Repeating the open question does not count as a reply."""
         if self.on_confirmed is not None and self.question == question:
             return
         self.withdraw()
@@ -309,11 +314,14 @@ class PromptAnswers:
         self._in = self.read_snapshot().state
 
     def was_read(self, time_s: float) -> bool:
-        """Return whether a question is open and was shown long enough before ``time_s`` to have been read."""
+        """Return whether the operator had enough time before ``time_s`` to read the open question.
+
+        The result is False if no question is open.
+        """
         return self.on_confirmed is not None and time_s - self._since >= READING_TIME_S
 
     def confirm(self, time_s: float) -> None:
-        """Execute the action of the question if the question was shown long enough. Remove the question.
+        """Remove the question, and execute its action if the question was shown long enough.
 
         ``time_s`` is the time of the key press.
         """
@@ -323,33 +331,33 @@ class PromptAnswers:
             asked()
 
     def withdraw(self) -> None:
-        """Remove the question, and also the message unless it is lasting."""
+        """Remove the question, and also remove the message unless it is lasting."""
         self.question, self.on_confirmed = "", None
         if not self.is_lasting:
             self.message = ""
 
     def clear_message(self) -> None:
-        """Remove the message for the previous key. A question remains."""
+        """Remove the message for the previous key, but not a question."""
         if not self.is_lasting:
             self.message = ""
 
     def remove_expired(self, snapshot: Snapshot) -> None:
-        """Remove a message whose time is over, and a question if the machine's state has changed."""
+        """Remove a message whose time has ended, and remove a question if the machine's state has changed."""
         if self.message and self.clock() - self._said_at >= MESSAGE_TIME_S:
             self.message, self.is_lasting = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
             self.question, self.on_confirmed = "", None
 
     def hear(self, event: LogEvent) -> None:
-        """Queue an event of the executor. This method may be called from the executor's thread."""
+        """Queue an event of the executor. The executor's thread may call this method."""
         self._heard.append(event)
 
     def note_start_attempt(self) -> None:
-        """Note that a start is attempted, so that the same refusal is shown again."""
+        """Record an attempt to start, so that the same refusal is shown again."""
         self._refused = ""
 
     def update(self, snapshot: Snapshot) -> None:
-        """Show refusals and other events of the executor; called once a frame."""
+        """Show refusals and other events of the executor. The screen calls this method once per frame."""
         while self._heard:
             event = self._heard.popleft()
             if event.kind == "refused" and event.text != snapshot.start_refusal:
@@ -365,7 +373,7 @@ class PromptAnswers:
         self._report_unsaved()
 
     def _report_unsaved(self) -> None:
-        """Show a new storage error once, so that the operator does not find it a day later."""
+        """Show a new storage error once, so that the operator learns about it immediately."""
         trouble = self.read_storage_problem()
         if trouble != self._not_kept:
             self._not_kept = trouble

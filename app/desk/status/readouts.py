@@ -1,4 +1,4 @@
-"""Texts and units for position, feed, spindle and lamps of one snapshot."""
+"""Texts and units of one snapshot for the position, feed and spindle readouts and for the lamps."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LATHE_AXES = ("X", "Z", "C")
 
 @dataclass(frozen=True, slots=True)
 class Lamp:
-    """A word on the screen that lights, with the key that switches it, if any."""
+    """Lamp on the screen, with its label and the key that switches it, if any."""
 
     label: str
     is_lit: bool
@@ -37,7 +37,10 @@ class Lamp:
 
 
 def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
-    """Return the lamps of the four run switches. NO COUNT is included only while it is on."""
+    """Return the lamps of the four run switches.
+
+    The lamp NO COUNT is included only while the switch is on.
+    """
     return (
         Lamp("SINGLE BLOCK", snapshot.single_block, "S"),
         Lamp("OPTIONAL STOP", snapshot.optional_stop, "O"),
@@ -48,10 +51,10 @@ def make_mode_lamps(snapshot: Snapshot) -> tuple[Lamp, ...]:
 
 
 def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lamp, ...]:
-    """Return the lamps of the spindle, coolant, collet and live tool, or of a mill's rotary axes.
+    """Return the lamps of spindle, coolant, collet and live tool, or for a mill, of its rotary axes.
 
-    The outputs are identified by their names in the machine file (coolant, collet, live1 …). ``table`` is
-    True if a rotary table turns on this mill.
+    The outputs are identified by their names in the machine file (coolant, collet, live1 …).
+    ``is_table_rotary`` is True if a rotary table turns on this mill.
     """
     if snapshot.axes != LATHE_AXES:
         return (
@@ -74,9 +77,9 @@ def make_lamps(snapshot: Snapshot, *, is_table_rotary: bool = True) -> tuple[Lam
 
 
 def make_drives_lamp(snapshot: Snapshot, key: str = "") -> Lamp:
-    """Return the lamp of the drives, which lights while the drives have power.
+    """Return the lamp of the drives, which is lit while the drives have power.
 
-    An alarm also removes the power. Without a response of the drives, the lamp shows a question mark.
+    An alarm also switches the power off. If the drives do not respond, the lamp shows a question mark.
     """
     if UnknownPart.AXES in snapshot.unknown:
         return Lamp("DRIVES ?", is_lit=True, key=key, is_warning=True)
@@ -93,7 +96,7 @@ def _make_output_lamp(snapshot: Snapshot, lamp: Lamp) -> Lamp:
 
 
 def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
-    """Return the lamps of a mill for the tilted plane and for a table or head that is not at 0."""
+    """Return the lamps of a mill for a tilted plane, and for a table or head that is not at 0 degrees."""
     tilted = snapshot.swivel is not None and snapshot.swivel.system.is_tilted
     rotary = zip(snapshot.axes, snapshot.actual, strict=True)
     turned = any(abs(math.remainder(at, 360.0)) > ZERO_TOLERANCE_DEG for name, at in rotary if name in "ABC")
@@ -103,7 +106,7 @@ def _make_rotary_lamps(snapshot: Snapshot, *, table: bool) -> tuple[Lamp, ...]:
 
 
 def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the spindle's lamp, which depends on the measured speed, so that it also shows coasting."""
+    """Return the spindle's lamp, which depends on the measured speed and therefore also shows coasting."""
     if UnknownPart.SPINDLE in snapshot.unknown:
         return Lamp("SPINDLE UNKNOWN", is_lit=True, is_warning=True)
     if snapshot.is_orienting:
@@ -119,7 +122,7 @@ def _make_spindle_lamp(snapshot: Snapshot) -> Lamp:
 
 
 def _make_collet_lamp(snapshot: Snapshot) -> Lamp:
-    """Return the collet's lamp. It depends on the output and not on the program's modal state."""
+    """Return the collet's lamp, which depends on the output instead of the program's modal state."""
     if "collet" in snapshot.absent:
         return Lamp("MANUAL COLLET", is_lit=False)
     if "collet" in snapshot.outputs:
@@ -144,12 +147,15 @@ def find_plane_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[floa
 
 
 def find_home_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the positions of the linear axes from home in mm, and the rotary axes in degrees."""
+    """Return the positions of the linear axes from home in mm, and of the rotary axes in degrees."""
     return (*_slides(snapshot.actual), *_find_shown_position(snapshot, swivel, {}))
 
 
 def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[float, ...]:
-    """Return the distance to go of the block, along the axes of the working plane and the rotary axes."""
+    """Return the distance to go of the block, along the axes of the working plane and of the rotary axes.
+
+    Values are in mm and degrees.
+    """
     end = snapshot.block_end if snapshot.block else snapshot.actual
     here, there = (swivel.system.transform.to_frame_point(_slides(at)) for at in (snapshot.actual, end))
     slides = (goal - at for goal, at in zip(there, here, strict=True))
@@ -169,7 +175,7 @@ def name_system(swivel: PlanePosition | None) -> str:
 
 
 def format_rotary_angle(degrees: float) -> str:
-    """Return the angle of a rotary axis in degrees as text."""
+    """Return the angle of a rotary axis in degrees as text with three decimals."""
     return formats.format_fixed(degrees, ROTARY_ANGLE_DECIMALS)
 
 
@@ -179,7 +185,10 @@ def _slides(at: tuple[float, ...]) -> tuple[float, float, float]:
 
 
 def _find_shown_position(snapshot: Snapshot, swivel: PlanePosition, zero: Mapping[str, float]) -> list[float]:
-    """Return the rotary axes from their zeros. A modulo axis is between 0 and 360 degrees."""
+    """Return the angles of the rotary axes from their zeros.
+
+    The angle of a modulo axis is from 0 to 360 degrees.
+    """
     found = []
     for name, at in zip(
         snapshot.axes[_LINEAR_AXIS_COUNT:], snapshot.actual[_LINEAR_AXIS_COUNT:], strict=True
@@ -194,7 +203,7 @@ ROTARY_AXES = frozenset("ABC")  # Axes in degrees.
 
 
 class ReadoutKind(StrEnum):
-    """The kind of value that the large position display shows."""
+    """Kind of value that the large position display shows."""
 
     POSITION = "POSITION"
     TO_GO = "DISTANCE TO GO"
@@ -202,7 +211,7 @@ class ReadoutKind(StrEnum):
 
     @property
     def next_kind(self) -> ReadoutKind:
-        """The next kind of value, in a cycle."""
+        """Return the next kind of value. The first kind follows the last kind."""
         order = list(ReadoutKind)
         return order[(order.index(self) + 1) % len(order)]
 
@@ -211,8 +220,8 @@ class ReadoutKind(StrEnum):
 class AxisReadout:
     """One row of the position display.
 
-    ``diameter_mark`` is Ø or R for X. ``beside`` is the second value. If ``is_known`` is False, the axis
-    does not respond, and the values are the last known ones.
+    ``diameter_mark`` is Ø or R for X. ``second_value`` is the value displayed next to ``value``. If
+    ``is_known`` is False, the axis does not respond, and the values are the last known values.
     """
 
     name: str
@@ -225,7 +234,7 @@ class AxisReadout:
 
 @dataclass(frozen=True, slots=True)
 class PositionReadout:
-    """The position display. All values have one unit and come from one snapshot."""
+    """Position display, in which all values have the same unit and come from one snapshot."""
 
     main_kind: ReadoutKind
     second_kind: ReadoutKind
@@ -258,7 +267,7 @@ _MILL_SYSTEMS = {
 
 
 def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]:
-    """Return the position with C between 0 and 360 degrees, if the modal state wraps C."""
+    """Return the position with C from 0 to 360 degrees if the modal state wraps C."""
     if not snapshot.modal.is_c_modulo:
         return at
     return (*at[:-1], round(at[-1], formats.ANGLE_DECIMALS) % 360.0)
@@ -267,9 +276,11 @@ def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]
 def make_position_readout(
     snapshot: Snapshot, readout: ReadoutKind, has_c_axis: bool, metric: bool, third_axis: str = "C"
 ) -> PositionReadout:
-    """Return both values of every axis. The second value is the distance to go, or the position.
+    """Return two values for every axis.
 
-    ``metric`` selects mm, otherwise inches. ``has_c_axis`` includes the C axis of a lathe, under the name
+    The second value is the distance to go, or the position if the first value is the distance to go.
+
+    ``metric`` selects mm instead of inches. ``has_c_axis`` includes the C axis of a lathe, which is named
     ``third_axis``.
     """
     diameter = snapshot.shows_diameter
@@ -292,7 +303,9 @@ def make_position_readout(
 
 
 def _find_x_label(snapshot: Snapshot, readout: ReadoutKind) -> str:
-    """Return whether X is a diameter or radius on a lathe, or the coordinate system on a mill."""
+    """Return a text that says whether X is a diameter or radius on a lathe, or names the coordinate system
+    on a mill.
+    """
     if snapshot.axes != LATHE_AXES:
         return name_system(None if readout is ReadoutKind.HOME else snapshot.swivel)
     words = tr("X IS A DIAMETER") if snapshot.shows_diameter else tr("X IS A RADIUS")
@@ -304,7 +317,7 @@ def _find_x_label(snapshot: Snapshot, readout: ReadoutKind) -> str:
 
 
 def _find_unit(metric: bool, control: bool) -> str:
-    """Return the unit of the values, with a note if the control uses the other unit."""
+    """Return the unit of the values, with a note if the control uses a different unit."""
     names = ("INCH", "MM")
     return (
         names[metric]
@@ -331,7 +344,7 @@ def _doubled(name: str, value: float, diameter: bool) -> float:
 
 @dataclass(frozen=True, slots=True)
 class FeedReadout:
-    """Programmed and measured feed, in the unit of the program's feed mode."""
+    """Programmed and measured feed as text, in the unit of the program's feed mode."""
 
     programmed_value: str
     programmed_unit: str
@@ -343,7 +356,9 @@ class FeedReadout:
 
 @dataclass(frozen=True, slots=True)
 class SpindleReadout:
-    """Commanded and measured speed in rpm, surface speed, override and the AUTO/OFF switch."""
+    """Commanded and measured speed in rpm, surface speed, override, and the setting of the
+    AUTO/OFF switch.
+    """
 
     direction: str
     commanded_rpm: str
@@ -357,7 +372,7 @@ class SpindleReadout:
 
 
 def make_feed_readout(snapshot: Snapshot, metric: bool) -> FeedReadout:
-    """Return the programmed and the measured feed. ``metric`` selects mm, otherwise inches."""
+    """Return the programmed and the measured feed. ``metric`` selects mm instead of inches."""
     modal = snapshot.modal
     per_rev = modal.per_rev and not snapshot.rapid
     turns = abs(snapshot.rpm_actual) / 60
@@ -395,7 +410,8 @@ def _directions(language: str) -> tuple[str, str, str]:
 def make_spindle_readout(snapshot: Snapshot, metric: bool, language: str) -> SpindleReadout:
     """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
 
-    ``language`` is the machine's programming language, because OmniTurn writes M05 and other languages M5.
+    ``language`` is the machine's program language, because OmniTurn writes M05 and other languages write
+    M5.
     """
     modal = snapshot.modal
     if UnknownPart.SPINDLE in snapshot.unknown:

@@ -1,4 +1,4 @@
-"""Sounds for program ends, stops and alarms, played by an audio program of the computer.
+"""Sounds for program ends, stops and alarms, which an audio program of the computer plays.
 
 Sounds are off until the operator sets a volume. A thread plays only the newest sound, so that no caller
 waits.
@@ -31,7 +31,10 @@ PlaySound = Callable[[bytes], None]
 
 
 def make_tone_wav(frequencies_hz: Sequence[int], volume: int) -> bytes:
-    """Return a sequence of tones in Hz as a WAV file. ``volume`` is 0…100."""
+    """Return a sequence of tones as a WAV file.
+
+    Frequencies are in Hz. ``volume`` is from 0 to 100.
+    """
     t = np.arange(round(SAMPLE_RATE_HZ * TONE)) / SAMPLE_RATE_HZ
     ramp = np.minimum(1.0, np.minimum(t, TONE - t) / RAMP).clip(0.0)
     waves = [np.sin(2.0 * np.pi * tone * t) * ramp for tone in frequencies_hz] or [np.zeros(0)]
@@ -71,7 +74,7 @@ def play_wav(sound: bytes) -> None:
 
 
 def _run_player(command: list[str]) -> str:
-    """Run a player. Return why it failed, or an empty text on success."""
+    """Run a player, and return the reason if it fails, or an empty text if it succeeds."""
     try:
         done = subprocess.run(command, capture_output=True, timeout=_PLAY_TIMEOUT_S, check=False)
     except subprocess.TimeoutExpired:
@@ -85,7 +88,10 @@ def _run_player(command: list[str]) -> str:
 
 
 class SoundPlayer:
-    """Plays sounds without waiting. ``error_text`` is why the last sound failed, or empty."""
+    """Player of sounds whose callers do not wait.
+
+    ``error_text`` is the reason why the last sound failed, or empty.
+    """
 
     def __init__(self, play_sound: PlaySound = play_wav) -> None:
         self._play = play_sound
@@ -96,7 +102,7 @@ class SoundPlayer:
         self.error_text = ""
 
     def play_tones(self, frequencies_hz: Sequence[int], volume: int) -> None:
-        """Play these tones now. A sound that waits is dropped."""
+        """Play these tones now, and drop a sound that is still waiting."""
         if volume <= 0 or not frequencies_hz:
             return
         with self._there:
@@ -107,7 +113,7 @@ class SoundPlayer:
             self._there.notify()
 
     def close(self) -> None:
-        """Stop playing new sounds. Do not wait for the last one."""
+        """Stop playing new sounds, without waiting for the end of the last sound."""
         with self._there:
             self._closing = True
             self._there.notify()

@@ -1,4 +1,4 @@
-"""The prompt for the present state, the reason why no cycle starts, and the remaining cycle time."""
+"""Prompt for the current state, the reason why no cycle starts, and the remaining cycle time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def make_page_prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page_prompt: str = "") -> str:
-    """Return the prompt for the present state. Question and message have their own places.
+    """Return the prompt for the current state. A question and a message have separate places.
 
-    ``page`` is the prompt of the current page. An alarm or an E-stop replaces it.
+    ``page_prompt`` is the prompt of the current page. An alarm or an E-stop replaces this prompt.
     """
     desk.prompt_answers.remove_expired(snapshot)
     if desk.desk_control.silence_watch.is_silent:
@@ -58,7 +58,9 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page: str) ->
 
 
 def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
-    """Return the reminders of the watchers. Empty during an alarm, an interrupted job or a refusal."""
+    """Return the reminders of the watchers, or an empty text during an alarm, an interrupted job or a
+    refusal.
+    """
     waits = snapshot.state in {MachineState.ESTOP, MachineState.FAULT} or snapshot.interrupted_line
     if waits or prompt.startswith(prompt_line.WILL_NOT_START):
         return ""
@@ -68,7 +70,7 @@ def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
 
 
 def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
-    """Return why the start buttons have no effect now. Empty if they can start a cycle."""
+    """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
     refused = desk.barred() or desk.find_first_move_refusal(snapshot)
     if refused or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return refused
@@ -76,7 +78,9 @@ def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
 
 
 def find_time_left(snapshot: Snapshot, loaded: LoadedProgram) -> float:
-    """Return the time to the end of the cycle at the present override in seconds; inf if unknown."""
+    """Return the time to the end of the cycle at the current override, in seconds, or inf if it
+    is unknown.
+    """
     picture = loaded.picture
     if picture is None or loaded.proof is None:
         return float("inf")

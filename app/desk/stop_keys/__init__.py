@@ -1,1 +1,1 @@
-"""Separate path of the keyboard's stop keys to the control, independent of the screen."""
+"""Separate connection of the keyboard's stop keys to the control, which does not depend on the screen."""

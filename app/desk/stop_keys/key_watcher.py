@@ -1,9 +1,9 @@
-"""The key watcher: ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``.
+"""Key watcher process, which is started with ``python -m app.desk.stop_keys.key_watcher LINE SCREEN``.
 
 LINE and SCREEN are file descriptors of two sockets. The watcher is a separate process, because a painting
-call of Qt holds Python's lock, and no thread of the screen's process runs in that time. The watcher sends
-every press of a stop key to the control over LINE and to the screen over SCREEN. It acts only while a window
-of TurnDesk has the keyboard, and ends with the screen.
+call of Qt holds Python's lock, which blocks all threads of the screen's process. The watcher sends every
+press of a stop key to the control over LINE and to the screen over SCREEN. It does so only while a window
+of TurnDesk has the keyboard focus, and it ends when the screen ends.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ STOP_KEY_CODES = {127: StopKind.HOLD, 78: StopKind.ESTOP}
 
 
 class KeyWatcher:
-    """Decides which key presses stop the machine, and sends them."""
+    """Watcher that decides which key presses stop the machine, and sends them."""
 
     def __init__(
         self, raw_keys: RawKeyReader, stop_channel: socket.socket, screen_channel: socket.socket
@@ -37,7 +37,7 @@ class KeyWatcher:
         self._focus = NO_FOCUS
 
     def run(self) -> None:
-        """Watch the keys until the screen ends."""
+        """Watch the keys until the screen process ends."""
         poll = select.poll()
         for each in (self._keys, self._screen):
             poll.register(each.fileno(), select.POLLIN)
@@ -49,7 +49,7 @@ class KeyWatcher:
                 self.handle_press(key)
 
     def read_focus(self) -> bool:
-        """Read the windows that the screen has sent. Return False if the screen has ended."""
+        """Read the windows that the screen has sent, and return False if the screen has ended."""
         try:
             while record := self._screen.recv(MAX_RECORD_BYTES, socket.MSG_DONTWAIT):
                 self._focus = FocusRecord.from_bytes(record)
@@ -60,7 +60,10 @@ class KeyWatcher:
         return False
 
     def handle_press(self, key: RawKey) -> None:
-        """Send a stop for a pressed key. The X server sends no raw events for key repeats."""
+        """Send a stop if the pressed key is a stop key and a window of TurnDesk has the keyboard focus.
+
+        The X server does not send raw events for key repeats.
+        """
         kind = self._kind(key.key_code)
         if kind is not None and self._keys.find_focus_window() in self._focus.window_ids:
             self._send(StopPress(kind, make_press_number(key.key_code, key.time_ms)))
@@ -79,7 +82,7 @@ class KeyWatcher:
 
 
 def main(arguments: list[str]) -> int:
-    """Watch the keys. Return 1 if the X server sends no raw events."""
+    """Watch the keys, and return 1 if the X server does not send raw events."""
     line, screen = (socket.socket(fileno=int(each)) for each in arguments)
     try:
         keys = RawKeyReader()

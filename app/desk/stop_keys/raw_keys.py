@@ -1,8 +1,8 @@
-"""Key presses directly from the X server, even if the program that has the focus hangs.
+"""Reader of key presses directly from the X server, which works even if the program with the focus hangs.
 
-XInput 2.0 sends raw events to every client that selects them, and other clients still get their events. While
-another client has grabbed the keyboard, for example a screen lock, a client of version 2.0 gets no raw
-events.
+XInput 2.0 sends raw events to every client that selects them, and other clients still receive their events.
+While another client has grabbed the keyboard, for example a screen lock, a client of version 2.0 receives
+no raw events.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class _Cookie(ctypes.Structure):
 
 
 class _RawEvent(ctypes.Structure):
-    """The first members of XIRawEvent."""
+    """First members of the C structure XIRawEvent."""
 
     _fields_ = (
         ("type", ctypes.c_int),
@@ -57,16 +57,16 @@ class _Mask(ctypes.Structure):
 
 
 class RawKey(NamedTuple):
-    """A key that was pressed. ``key_code`` is its X key code, and ``time_ms`` is the server's time in ms."""
+    """A pressed key. ``key_code`` is its X key code, and ``time_ms`` is the X server's time in ms."""
 
     key_code: int
     time_ms: int
 
 
 class RawKeyReader:
-    """A connection to the X server of ``DISPLAY`` that gets raw key events. Use it on one thread only.
+    """Connection to the X server of ``DISPLAY`` that receives raw key events. Use it only on one thread.
 
-    Raises OSError without libX11, libXi, an X server or the extension.
+    The constructor raises OSError without libX11, libXi, an X server or the XInput extension.
     """
 
     def __init__(self) -> None:
@@ -127,11 +127,11 @@ class RawKeyReader:
         return key
 
     def find_escape_code(self) -> int:
-        """Return the key code of Esc in the present keyboard layout, or 0 if the layout has no Esc."""
+        """Return the key code of Esc in the current keyboard layout, or 0 if the layout has no Esc key."""
         return int(self._x.XKeysymToKeycode(self._display, ctypes.c_ulong(_ESCAPE)))
 
     def find_focus_window(self) -> int:
-        """Return the number of the window that has the keyboard.
+        """Return the number of the window that has the keyboard focus.
 
         Without a window manager, keys may go to the window under the pointer.
         """

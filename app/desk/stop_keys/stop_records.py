@@ -1,7 +1,7 @@
-"""Binary records of the stop keys between the key watcher, the control and the screen.
+"""Binary records that the key watcher, the control and the screen exchange about stop keys.
 
-They travel over ``SOCK_SEQPACKET`` sockets, which preserve record boundaries. The module imports little,
-because the key watcher is a small process.
+The records are sent over ``SOCK_SEQPACKET`` sockets, which preserve record boundaries. The module imports
+few modules, because the key watcher is a small process.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ MAX_RECORD_BYTES = 4096  # Maximum size of a record in bytes.
 
 
 class StopKind(IntEnum):
-    """The stop that a key requests."""
+    """Kind of stop that a key requests."""
 
     HOLD = 1
     ESTOP = 2
@@ -25,20 +25,20 @@ class StopKind(IntEnum):
 
     @property
     def source_text(self) -> str:
-        """The origin of the feed hold, for the log."""
+        """Return the origin of the feed hold as text for the log."""
         return SOURCE_ESC if self is StopKind.ESC else SOURCE_SCREEN
 
 
 def make_press_number(key_code: int, time_ms: int) -> int:
-    """Return the number of a key press, from its X key code and the server's time in ms.
+    """Return the number of a key press, which combines its X key code and the server's time in ms.
 
-    An event without a time stamp has the number 0, which never equals another press.
+    An event without a time stamp has the number 0, which does not identify a press.
     """
     return key_code << 32 | time_ms & 0xFFFFFFFF if time_ms else 0
 
 
 class StopPress(NamedTuple):
-    """One press of a stop key; ``press_number`` is the number of the press."""
+    """One press of a stop key, with its kind of stop and its press number."""
 
     kind: StopKind
     press_number: int
@@ -49,7 +49,7 @@ class StopPress(NamedTuple):
 
     @classmethod
     def from_bytes(cls, record: bytes) -> StopPress:
-        """Return the stop in a record. Raises ValueError for an invalid record."""
+        """Return the stop that a record contains. Raises ValueError if the record is invalid."""
         if len(record) != _STOP.size:
             raise ValueError(f"{len(record)} bytes are not a stop")
         kind, press = _STOP.unpack(record)
@@ -57,19 +57,19 @@ class StopPress(NamedTuple):
 
 
 class FocusRecord(NamedTuple):
-    """The X window numbers of TurnDesk, and whether Esc starts feed hold now."""
+    """X window numbers of TurnDesk's windows, and whether Esc starts feed hold now."""
 
     window_ids: frozenset[int]
     is_esc_stop_key: bool
 
     def to_bytes(self) -> bytes:
-        """Return the focus as a binary record with 1000 windows at most."""
+        """Return the focus as a binary record with at most 1000 windows."""
         windows = sorted(self.window_ids)[:1000]
         return struct.pack(f"=?{len(windows)}I", self.is_esc_stop_key, *windows)
 
     @classmethod
     def from_bytes(cls, record: bytes) -> FocusRecord:
-        """Return the focus in a record. Raises ValueError for an invalid record."""
+        """Return the focus that a record contains. Raises ValueError if the record is invalid."""
         count, rest = divmod(len(record) - 1, 4)
         if rest or count < 0:
             raise ValueError(f"{len(record)} bytes are not a focus")

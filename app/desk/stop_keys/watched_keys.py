@@ -1,4 +1,7 @@
-"""The screen's side of the key watcher: start the watcher, and exchange windows and stops with it."""
+"""Client of the key watcher in the screen's process, which starts the watcher and exchanges data with it.
+
+The client sends window numbers to the watcher and receives stops.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,10 @@ class KeyWatcherClient:
         self._news: list[StopPress] = []
 
     def send_focus(self, focus: FocusRecord) -> None:
-        """Send the windows, and whether Esc starts feed hold, to the watcher if either has changed."""
+        """Send the focus record to the watcher if it has changed.
+
+        The record contains the windows, and whether Esc starts feed hold.
+        """
         if focus != self._shown:
             with suppress(OSError):
                 self._screen.send(focus.to_bytes())
@@ -64,7 +70,7 @@ class KeyWatcherClient:
                 self._news.append(stop)
 
     def close(self) -> None:
-        """End the watcher process, and wait for its end for 2 s at most before killing it."""
+        """End the watcher process, and kill it if it does not end within 2 s."""
         self._screen.close()
         try:
             self._process.wait(_END_TIMEOUT_S)

@@ -1,4 +1,4 @@
-"""Command ``turndesk access``: users, levels, PINs, service reset, and the PIN prompt of other commands."""
+"""Command ``turndesk access``, which manages users, levels and PINs, and the PIN prompt of other commands."""
 
 from __future__ import annotations
 
@@ -88,7 +88,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action. Raises CommandError."""
+    """Execute the action.
+
+    Raises CommandError.
+    """
     if args.action == "table":
         sys.stdout.write(_table(json_wanted=args.json))
         return EXIT_OK
@@ -156,7 +159,7 @@ def _pin(store: Store, args: argparse.Namespace) -> str:
 
 
 def _save_user(store: Store, args: argparse.Namespace, name: str, level: AccessLevel, done: str) -> str:
-    """Ask for the PIN twice and store the user."""
+    """Ask for the PIN twice and store the user with the PIN."""
     from app.extras.access.access_command import read_pin
     from core.extras.access.pins import PinError, check_pin, hash_pin
     from core.store import user_records
@@ -202,9 +205,9 @@ _WRONG = "wrong PINs"  # setting, shared with the operator screen
 
 
 def require_pin(store: Store, row: UserRow, remedy: str) -> None:
-    """Ask for the PIN of a user, with a wait after wrong PINs. Raises CommandError for a wrong PIN.
+    """Ask for the PIN of a user, after a delay if wrong PINs were entered before.
 
-    Wrong PINs are logged.
+    Raises CommandError for a wrong PIN. Wrong PINs are logged.
     """
     from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_outdated, matches_hash
 
@@ -240,7 +243,7 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
 
 
 def read_pin(prompt: str) -> str:
-    """Return a hidden entry from the terminal, or without a terminal a line from stdin."""
+    """Return a hidden entry from the terminal, or a line from stdin if there is no terminal."""
     if sys.stdin.isatty():
         return getpass.getpass(prompt)
     return sys.stdin.readline().strip()

@@ -1,4 +1,4 @@
-"""Access levels: signed-in user, sign-in by PIN, users, and the changes that each level permits."""
+"""Access levels: the signed-in user, sign-in by PIN, users, and the changes that each level permits."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _DOT = "●"
 
 @dataclass(slots=True)
 class _Draft:
-    """Entry in several steps: the PIN for signing in, or a user with a PIN."""
+    """Entry in several steps: the PIN of a user who signs in, or the data of a user."""
 
     step: str  # sign in, name, level, pin or again
     name: str = ""
@@ -35,9 +35,9 @@ class _Draft:
 
 
 class AccessLevelsFunction(SpecialFunction):
-    """Special function for access levels: Enter on a name asks for the PIN.
+    """Special function for access levels.
 
-    SERVICE level edits users.
+    Enter on a name asks for the PIN. A user with SERVICE level can edit users.
     """
 
     name = "ACCESS LEVELS"
@@ -53,22 +53,22 @@ class AccessLevelsFunction(SpecialFunction):
 
     @property
     def access(self) -> UserAccess:
-        """Present access of TurnDesk."""
+        """Return the present user access of TurnDesk."""
         return self.desk.user_access
 
     @property
     def row_count(self) -> int:
-        """Number of rows that can be selected."""
+        """Return the number of rows that can be selected."""
         return len(ACCESS_RULES) if self.shows_levels else len(self.access.users.rows)
 
     @property
     def selected_user(self) -> UserRow | None:
-        """Selected user, or None."""
+        """Return the selected user, or None if no user is selected."""
         rows = self.access.users.rows
         return rows[min(self.marked, len(rows) - 1)] if rows and not self.shows_levels else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of users, or of the level that each change requires."""
+        """Return the table of users, or the table of the levels that the changes require."""
         if self.shows_levels:
             rows = tuple(TableRow((act.value, rule.level.name)) for act, rule in ACCESS_RULES.items())
             heads, shares, raw = ("TYPE OF CHANGE", "LEVEL"), (0.65, 0.35), frozenset[int]()
@@ -114,7 +114,7 @@ class AccessLevelsFunction(SpecialFunction):
         }[draft.step]
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.service_reset.is_running:
             return tr("PINS WILL BE REMOVED. RELEASE E-STOP OR SIGN IN TO CANCEL")
         if self.draft is not None:
@@ -126,7 +126,7 @@ class AccessLevelsFunction(SpecialFunction):
     # --- keys ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys. Most exist only while access levels are on."""
+        """Return the function keys, most of which are available only while access levels are on."""
         keys = {
             "F3": FunctionKey("NEW", self.add_user),
             "F5": FunctionKey("USERS" if self.shows_levels else "LEVELS", self._turn),
@@ -152,7 +152,7 @@ class AccessLevelsFunction(SpecialFunction):
         return self.entry.accepts_key(key) if self.draft.step == "name" else key.isascii() and key.isdigit()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the entry, or of the list."""
+        """Handle a key of the entry or of the list."""
         if self.draft is None:
             return super().handle_key(key)
         if key == "Enter":
@@ -167,14 +167,14 @@ class AccessLevelsFunction(SpecialFunction):
         return True
 
     def execute_row(self) -> bool:
-        """Ask for the PIN of the selected user."""
+        """Ask for the PIN of the selected user and return whether a user is selected."""
         row = self.selected_user
         if row is not None:
             self._ask(_Draft("sign in", row.name))
         return row is not None
 
     def handle_escape(self) -> bool:
-        """Cancel the entry. Return False without an entry."""
+        """Cancel the entry and return whether an entry was open."""
         open_before, self.draft, self.entry = self.draft is not None, None, InputField()
         return open_before
 
@@ -253,12 +253,15 @@ class AccessLevelsFunction(SpecialFunction):
         )
 
     def _save_user(self, row: UserRow, pin: str) -> None:
-        """Store the user on the worker. Raises StoreError."""
+        """Store the user with a PIN.
+
+        This method runs on the worker. Raises StoreError.
+        """
         renewed = UserRow(row.name, row.level, *hash_pin(pin))
         self.persistence.require_store().people.save_user(renewed).result()
 
     def _change(self, work: Callable[[], None], said: str, noted: str) -> None:
-        """Change the users on the worker, reload them, report the change and log it with the user."""
+        """Change the users on the worker, reload them, report the change, and log it with the user name."""
 
         def done(_none: None) -> None:
             self.access.log_access(noted)
@@ -270,17 +273,23 @@ class AccessLevelsFunction(SpecialFunction):
     # --- users ---------------------------------------------------------------------------------------
 
     def sign_out(self) -> None:
-        """Sign out (F2)."""
+        """Sign out the user (F2)."""
         self.access.sign_out()
         self.desk.show_success(tr("SIGNED OUT: OPERATOR LEVEL IS ACTIVE"))
 
     def add_user(self) -> None:
-        """Add a user (F3). The first user has SERVICE level."""
+        """Start the entry of a new user (F3).
+
+        The first user has SERVICE level.
+        """
         if not self.desk.is_refused(ProtectedChange.PEOPLE):
             self._ask(_Draft("name"))
 
     def change_pin(self) -> None:
-        """Change the PIN of the selected user (F4). All users may change their own PIN."""
+        """Start the entry of a new PIN for the selected user (F4).
+
+        All users may change their own PIN.
+        """
         row = self.selected_user
         if row is None or (
             row.name != self.access.user_name and self.desk.is_refused(ProtectedChange.PEOPLE)
@@ -289,7 +298,10 @@ class AccessLevelsFunction(SpecialFunction):
         self._ask(_Draft("pin", row.name, AccessLevel(row.level)))
 
     def remove_user(self) -> None:
-        """Remove the selected user (F6). Removing the last user turns access levels off."""
+        """Remove the selected user after confirmation (F6).
+
+        Removing the last user turns access levels off.
+        """
         row = self.selected_user
         if row is None or self.desk.is_refused(ProtectedChange.PEOPLE):
             return
@@ -306,7 +318,7 @@ class AccessLevelsFunction(SpecialFunction):
         )
 
     def select_next_timeout(self) -> None:
-        """Select the next time for the automatic sign-out (F8)."""
+        """Select the next timeout of the automatic sign-out (F8)."""
         if not self.desk.is_refused(ProtectedChange.PEOPLE):
             self.desk.clear_prompt_line()
             self.session.set_timeout(following(TIMEOUT_CHOICES_MIN, self.session.timeout_min))
@@ -314,7 +326,10 @@ class AccessLevelsFunction(SpecialFunction):
     # --- service reset -------------------------------------------------------------------------------
 
     def ask_pin_reset(self) -> None:
-        """Start the reset of all PINs after confirmation (F9). The E-stop must stay pressed."""
+        """Ask for confirmation and start the reset of all PINs (F9).
+
+        The E-stop must stay pressed during the reset.
+        """
         why = self.service_reset.find_start_refusal(self.desk.read_snapshot())
         if why:
             self.desk.say(why)
@@ -323,7 +338,10 @@ class AccessLevelsFunction(SpecialFunction):
         self.desk.ask_operator(question, self.service_reset.start)
 
     def _remove_all_users(self) -> None:
-        """Remove all users. If the store is unreadable, levels are off until TurnDesk ends."""
+        """Remove all users.
+
+        If the store is unreadable, access levels are off until TurnDesk closes.
+        """
 
         def remove() -> None:
             if not self.access.has_read_failed:

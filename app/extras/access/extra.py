@@ -1,4 +1,4 @@
-"""Registration of users with access levels and PINs."""
+"""Registration of the optional feature for users with access levels and PINs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 class AccessExtra(OptionalFeature):
-    """Optional feature with sign-in by PIN, ACCESS LEVELS in F10 and ``turndesk access``."""
+    """Optional feature with sign-in by PIN, the ACCESS LEVELS function in F10, and ``turndesk access``."""
 
     subcommands = {
         "access": Subcommand("store", "manage users, access levels and PINs"),

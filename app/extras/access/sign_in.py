@@ -27,7 +27,7 @@ _WRONG, _MINUTES = "wrong PINs", "access minutes"  # names of settings
 class PinSignIn:
     """Implementation of ``app.desk.access.SignInSession`` with PINs.
 
-    ``note_activity`` is called for every key and touch.
+    ``note_activity`` must be called for every key and touch.
     """
 
     access: UserAccess
@@ -43,7 +43,10 @@ class PinSignIn:
         self.access.reload()
 
     def reload(self) -> None:
-        """Load the time of the automatic sign-out and the wrong PINs. Raises StoreError."""
+        """Load the timeout of the automatic sign-out and the number of wrong PINs.
+
+        Raises StoreError.
+        """
         persistence = self.access.persistence
         minutes, wrong = persistence.read_setting(_MINUTES), persistence.read_setting(_WRONG)
         self.timeout_min = (
@@ -55,7 +58,10 @@ class PinSignIn:
     # --- sign-in and sign-out ------------------------------------------------------------------------
 
     def sign_in(self, row: UserRow, pin: str) -> None:
-        """Check a PIN. The result arrives in a later frame, and each wrong PIN increases the wait."""
+        """Start checking a PIN.
+
+        The result arrives in a later frame. Each wrong PIN increases the delay before the next attempt.
+        """
         left = self.wrong_pins.get_remaining_delay(self.access.read_time_s())
         if left > 0.0:
             self.access.say(
@@ -76,7 +82,10 @@ class PinSignIn:
             )
 
     def _check_pin(self, row: UserRow, pin: str) -> bool:
-        """Return whether the PIN is correct. An outdated hash is replaced. Runs on the worker."""
+        """Return whether the PIN is correct, and replace an outdated hash.
+
+        This method runs on the worker.
+        """
         kept = PinHash(row.salt, row.hash)
         right = matches_hash(pin, kept)
         if right and is_outdated(kept):
@@ -120,11 +129,14 @@ class PinSignIn:
     # --- time ----------------------------------------------------------------------------------------
 
     def note_activity(self) -> None:
-        """Restart the time of the automatic sign-out after a key or touch."""
+        """Restart the timeout of the automatic sign-out after a key or touch."""
         self._used, self._warned = self.access.read_time_s(), False
 
     def update(self, snapshot: Snapshot) -> None:
-        """Process results, warn, and sign out after the time without input; called once per frame."""
+        """Process results, and warn and sign out when the timeout without input ends.
+
+        This method is called once per frame.
+        """
         self.worker.poll()
         self.update_reset(snapshot)
         if not self.access.user_name:
@@ -142,7 +154,7 @@ class PinSignIn:
             )
 
     def set_timeout(self, minutes: int) -> None:
-        """Set the time of the automatic sign-out in minutes."""
+        """Set the timeout of the automatic sign-out in minutes."""
         self.timeout_min = minutes
         self._keep(_MINUTES, minutes)
         self.access.log_access(
@@ -161,7 +173,7 @@ class PinSignIn:
 
 
 def get_sign_in(access: UserAccess) -> PinSignIn:
-    """Return the sign-in of TurnDesk, created if necessary."""
+    """Return the sign-in of TurnDesk, and create it if necessary."""
     return access.sign_in_session if isinstance(access.sign_in_session, PinSignIn) else PinSignIn(access)
 
 
@@ -170,7 +182,10 @@ RESET_DELAY_S = 600.0  # seconds
 
 @dataclass(slots=True)
 class AccessReset:
-    """Service reset. ``remove_all_users`` removes all users when the waiting time is over."""
+    """Service reset of the access levels.
+
+    ``remove_all_users`` is called when the waiting time is over.
+    """
 
     sign_in: PinSignIn
     show_message: Callable[[str], None]
@@ -182,12 +197,12 @@ class AccessReset:
 
     @property
     def access(self) -> UserAccess:
-        """Present access of TurnDesk."""
+        """Return the present user access of TurnDesk."""
         return self.sign_in.access
 
     @property
     def is_running(self) -> bool:
-        """Whether the waiting time is running."""
+        """Return whether the waiting time of the reset is running."""
         return self._since is not None
 
     def find_start_refusal(self, snapshot: Snapshot) -> str:
@@ -199,14 +214,14 @@ class AccessReset:
         return ""
 
     def start(self) -> None:
-        """Start the waiting time."""
+        """Start the waiting time of the reset."""
         self._since = self.access.read_time_s()
         self.access.log_access("service reset started: the E-stop must stay pressed for 10 min")
 
     def update(self, snapshot: Snapshot) -> None:
-        """Execute the reset after the waiting time, once per frame.
+        """Execute the reset when the waiting time is over.
 
-        A release of the E-stop or a sign-in cancels the reset.
+        Releasing the E-stop or signing in cancels the reset. This method is called once per frame.
         """
         if self._since is None:
             return

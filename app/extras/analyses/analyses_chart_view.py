@@ -1,4 +1,4 @@
-"""Chart of an analysis: path with magnified error, thread passes or ball-bar plot."""
+"""Chart of an analysis: a path with magnified error, thread passes or a ball-bar plot."""
 
 from __future__ import annotations
 
@@ -18,16 +18,19 @@ _ROOM = 0.06  # ratio: margin around the lines
 
 
 class AnalysisChart(Chart):
-    """Chart of an analysis. ``show_drawing`` sets its lines and scales the chart to fit."""
+    """Chart of an analysis.
+
+    ``show_drawing`` sets the lines and scales the chart to fit them.
+    """
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self.drawing = AnalysisDrawing()
 
     def show_drawing(self, drawing: AnalysisDrawing) -> bool:
-        """Draw a drawing.
+        """Show a drawing and return whether it is shown.
 
-        Return False while plots are still being created, so that the caller repeats.
+        The result is False while the plots are still being created. The caller must then try again.
         """
         if not self.prepare_plots(bool(drawing.curves) + bool(drawing.lower_curves)):
             return False
@@ -53,7 +56,7 @@ class AnalysisChart(Chart):
             set_curve_points(line, points[:, 0], points[:, 1])
 
     def resizeEvent(self, event: QResizeEvent) -> None:
-        """Scale equal axes again after a change of size."""
+        """Scale equal axes again after the size of the chart has changed."""
         super().resizeEvent(event)
         if self.isVisible() and self.plots:  # Qt also calls this method while pyqtgraph creates the chart.
             self._fit()
@@ -72,7 +75,7 @@ class AnalysisChart(Chart):
             self.show_drawing(self.drawing)
 
     def drawForeground(self, painter: QPainter, rect: QRectF) -> None:
-        """Draw a circle and a label at each mark."""
+        """Draw a circle and a label at each labeled point."""
         super().drawForeground(painter, rect)
         if not self.plots:
             return
@@ -95,7 +98,10 @@ class AnalysisChart(Chart):
 
 
 def _range(plot: ChartPlot, parts: list[FloatArray], *, equal: bool) -> None:
-    """Set the range to all points. ``equal`` uses one scale for both axes."""
+    """Set the range of the plot so that all points are visible.
+
+    ``equal`` uses the same scale for both axes.
+    """
     points = np.concatenate([each for each in parts if len(each)])
     low, high = points.min(axis=0), points.max(axis=0)
     middle, wide = 0.5 * (low + high), np.maximum((1.0 + 2.0 * _ROOM) * (high - low), 1e-6)

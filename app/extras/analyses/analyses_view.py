@@ -1,4 +1,6 @@
-"""Page of the analyses: path error, thread passes, ball bar and responses, with drawing and table."""
+"""Page of the analyses: path error, thread passes, ball bar and responses, each with a drawing
+and a table.
+"""
 
 from __future__ import annotations
 
@@ -33,14 +35,17 @@ _PLOTS = 2  # maximum number of plots in a drawing
 
 
 def _chart_class() -> type[AnalysisChart]:
-    """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
+    """Import the chart class and return it.
+
+    A worker calls this function, because importing pyqtgraph takes 0.3 s.
+    """
     from app.extras.analyses.analyses_chart_view import AnalysisChart
 
     return AnalysisChart
 
 
 class DrawingArea(QWidget):
-    """Area of the drawing, empty until the chart class is loaded."""
+    """Area of the drawing, which is empty until the chart class is loaded."""
 
     accessible_name = "CHART"
 
@@ -69,20 +74,23 @@ class DrawingArea(QWidget):
     def show_drawing(
         self, drawing_id: object, drawing: Callable[[], AnalysisDrawing], *, metric: bool
     ) -> None:
-        """Show a drawing in mm or inches, unless ``drawing_id`` identifies the present drawing."""
+        """Show a drawing in mm or inches, unless ``drawing_id`` identifies the drawing that is shown.
+
+        ``drawing`` is called to create the drawing.
+        """
         if self.chart is None or drawing_id == self._shown:
             return
         if self.chart.show_drawing(scale_drawing(drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
             self._shown = drawing_id
 
     def apply_theme(self) -> None:
-        """Draw again with the present colors and language."""
+        """Draw the chart again with the present colors and language."""
         self._shown = None
         if self.chart is not None:
             self.chart.apply_theme()
 
     def lay_out(self, place: QRect) -> None:
-        """Place the area and resize the chart, even while hidden."""
+        """Place the area and resize the chart, even while the area is hidden."""
         self.setGeometry(place)
         if self.chart is not None:
             self.chart.setGeometry(self.rect())
@@ -93,7 +101,7 @@ _TABLE, _HEAD = 50.0, 3.4  # units
 
 
 class DescriptionLine(Panel):
-    """Line with the description of the analysis, or the reason for a missing result."""
+    """Line with the description of the analysis, or with the reason why there is no result."""
 
     ground_color = "panel"
     words = RedrawingAttribute("")
@@ -105,7 +113,7 @@ class DescriptionLine(Panel):
 
 
 class AnalysesPage(ListPage):
-    """Page of the analyses: shows its model."""
+    """Page that shows the model of the analyses."""
 
     NAME = page_table.ANALYSES
     model: _Keys
@@ -118,7 +126,7 @@ class AnalysesPage(ListPage):
         self.table = TablePanel(self.theme, analyses.select_row, self)
 
     def prepare_slice(self) -> bool:
-        """Create the chart and its plots in steps, before the page is first shown."""
+        """Create a part of the chart before the page is first shown, and return whether steps remain."""
         self.analyses.worker.poll()
         return not self.drawing.is_ready()
 
@@ -144,11 +152,11 @@ class AnalysesPage(ListPage):
         self.host.open_page(page_table.SCOPE)
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the analyses and of the key that returns to the scope."""
+        """Return the labels of the keys that select an analysis and of the key that returns to the scope."""
         return self.make_labels({}, self._keys())
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of the function keys and of the magnification."""
+        """Return the actions of the function keys and of the magnification keys."""
         magnify = self.analyses.change_magnification
         return {
             **{name: key.action for name, key in self._keys().items()},
@@ -157,14 +165,14 @@ class AnalysesPage(ListPage):
         }
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Change the magnification with the wheel."""
+        """Change the magnification with the mouse wheel."""
         self.analyses.change_magnification(1 if event.angleDelta().y() > 0 else -1)
         event.accept()
 
     def handle_escape(self) -> bool:
-        """Clear the message.
+        """Clear the message and return whether there was a message.
 
-        Otherwise leave Esc to the window, which holds the feed during motion.
+        Without a message, the window handles Esc, which starts a feed hold during motion.
         """
         if self.desk.prompt_notice:
             self.desk.clear_prompt_line()
@@ -172,7 +180,7 @@ class AnalysesPage(ListPage):
         return False
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Show the present result."""
+        """Update the model and show the present result."""
         analyses = self.analyses
         analyses.update()
         self.description.words = analyses.description
@@ -186,7 +194,7 @@ class AnalysesPage(ListPage):
         self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange drawing and table."""
+        """Arrange the drawing and the table."""
         u = self.theme.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left = self.width() - side - gap
@@ -196,17 +204,17 @@ class AnalysesPage(ListPage):
 
 
 class _Keys:
-    """Adapter between the page and its model."""
+    """Adapter that passes keys of the page to the model."""
 
     def __init__(self, analyses: AnalysesModel) -> None:
         self._analyses = analyses
 
     def handle_key(self, key: str) -> bool:
-        """Select a row by arrow keys."""
+        """Select a row with the arrow keys, and return whether the key was used."""
         return self._analyses.typed(key)
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False, because this page has no entry."""
+        """Return False because this page has no entry."""
         return False
 
     def on_open(self) -> None:
@@ -214,12 +222,12 @@ class _Keys:
         self._analyses.opened()
 
     def handle_escape(self) -> bool:
-        """Return False, because there is nothing to close."""
+        """Return False because there is nothing to close."""
         return False
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         return tr("ARROWS: SELECT ROW   Z: MAGNIFY   SAME F-KEY AGAIN: UPDATE")
 
     def on_close(self) -> None:
-        """Do nothing, because there is nothing to close."""
+        """Do nothing because there is nothing to close."""

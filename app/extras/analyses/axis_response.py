@@ -1,7 +1,7 @@
 """Response of an axis to its last move: rise, overshoot, settling and lag, and the effect of other limits.
 
-The analysis uses a move from rest to rest, such as a jog step. The analysis moves no axis and writes nothing
-to a drive.
+The analysis uses a move from rest to rest, such as a jog step. It does not move an axis or write to a
+drive.
 """
 
 from __future__ import annotations
@@ -45,7 +45,8 @@ COLUMN_SHARES = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
 class AxisMotion:
     """Motion of one axis.
 
-    ``times`` (n,) are seconds from its start. ``speed`` is the highest commanded speed in mm/s.
+    The array ``times_s`` (n,) contains seconds from the start of the motion. ``max_speed_mm_s`` is the
+    highest commanded speed in mm/s.
     """
 
     axis_letter: str
@@ -58,11 +59,11 @@ class AxisMotion:
 
     @property
     def following_error(self) -> FloatArray:
-        """Following error (n,)."""
+        """Return the following error at each sample as an array (n,)."""
         return self.setpoints - self.positions
 
     def predict_error(self, factor: float) -> FloatArray:
-        """Return the expected following error at ``factor`` times the speed."""
+        """Return the following error expected at ``factor`` times the present speed."""
         return scale_error_to_speed(
             np.nan_to_num(calculate_velocity(self.times_s, self.setpoints)), self.following_error, factor
         )
@@ -78,7 +79,10 @@ class AxisResponse(AxisMotion):
 def make_motion(
     letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time: float
 ) -> AxisMotion:
-    """Return the motion of an axis in a part of a record, with times relative to ``zero`` of its clock."""
+    """Return the motion of an axis in a part of a record.
+
+    The times of the motion are relative to ``start_time``, which is on the clock of the record in seconds.
+    """
     times = record.times_s[sample_range] - start_time
     demand, actual = (
         record.values_by_channel[Message("{item} demand", item=letter)][sample_range],
@@ -90,7 +94,10 @@ def make_motion(
 
 
 def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> AxisResponse:
-    """Return the last move of one axis from rest to rest. Raises AnalysisError."""
+    """Return the last move of one axis from rest to rest.
+
+    Raises AnalysisError.
+    """
     found: tuple[int, int, str] | None = None
     for letter in linear_axes:
         demand = record.values_by_channel.get(Message("{item} demand", item=letter))
@@ -115,7 +122,7 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
 
 
 def find_moves(times: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
-    """Return the first and last sample of every completed move, oldest first."""
+    """Return the first and the last sample of every completed move, oldest move first."""
     moving = np.flatnonzero(np.abs(np.diff(setpoints)) > _STILL)
     if not len(moving):
         return []
@@ -143,7 +150,10 @@ def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: fl
 
 
 def draw_response(response: AxisMotion) -> AnalysisDrawing:
-    """Return the drawing of command and actual position above, and following error below, over seconds."""
+    """Return the drawing of a motion over time in seconds.
+
+    Commanded and actual position are above, and the following error is below.
+    """
     asked = np.column_stack([response.times_s, response.setpoints])
     done = np.column_stack([response.times_s, response.positions])
     error = np.column_stack([response.times_s, response.following_error])
@@ -155,31 +165,31 @@ def draw_response(response: AxisMotion) -> AnalysisDrawing:
 
 @dataclass(frozen=True, slots=True)
 class UnitFormat:
-    """Text format of lengths and speeds."""
+    """Text format of lengths and speeds in the selected unit."""
 
     metric: bool
 
     @property
     def length_unit(self) -> str:
-        """Unit of a length."""
+        """Return the unit of a length, mm or in."""
         return "mm" if self.metric else "in"
 
     def way(self, mm: float) -> str:
-        """Return a length as text."""
+        """Return a length in mm as text in the selected unit."""
         return f"{formats.format_length(mm, self.metric)} {self.length_unit}"
 
     def format_speed(self, mm: float) -> str:
-        """Return a speed per second as text."""
+        """Return a speed in mm/s as text in the selected unit per second."""
         return (
             f"{formats.format_fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.length_unit}/s"
         )
 
     def format_percentage(self, part: float) -> str:
-        """Return a ratio as a percentage."""
+        """Return a ratio as text in percent."""
         return f"{formats.format_fixed(100.0 * part, 2)} %"
 
     def format_milliseconds(self, seconds: float) -> str:
-        """Return a short time in milliseconds as text."""
+        """Return a time in seconds as text in milliseconds, or a dash if it is not finite."""
         return (
             Message("{seconds} ms", seconds=formats.format_fixed(1000.0 * seconds, 1))
             if math.isfinite(seconds)
@@ -188,7 +198,7 @@ class UnitFormat:
 
 
 def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tuple[str, ...]]:
-    """Return one row per value, with one cell per step."""
+    """Return table rows with one row per value and one cell per step."""
     return [
         (tr("RISE, 10 TO 90 %"), *(units.format_milliseconds(each.rise_time_s) for each in steps)),
         (tr("OVERSHOOT"), *(units.format_percentage(each.overshoot) for each in steps)),
@@ -197,7 +207,10 @@ def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tup
 
 
 def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, str, str]]:
-    """Return rows of name, verdict and value for the following-error limit, other limits and other speeds."""
+    """Return table rows about the following-error limit, other limits and other speeds.
+
+    Each row contains a name, a verdict and a value.
+    """
     axis, times, error = response.axis, response.times_s, response.following_error
 
     def trips(error: FloatArray, window: float) -> str:
@@ -235,7 +248,7 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
 
 
 def make_response_table(title: str, response: AxisResponse, metric: bool) -> TableContent:
-    """Return the table of the response, and the effect of other limits and speeds."""
+    """Return the table of the response, including the effect of other limits and speeds."""
     units = UnitFormat(metric)
     rows = [
         TableRow((tr("TRAVEL"), "", units.way(response.step_response.step_size))),

@@ -1,4 +1,4 @@
-"""Drawing of an analysis: lines and marks in internal units."""
+"""Drawing of an analysis, with lines and labeled points in internal units."""
 
 from __future__ import annotations
 
@@ -12,12 +12,13 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class AnalysisDrawing:
-    """Drawing with the command ``command_points`` (n, 2), the ``curves``, and the curves ``lower_curves`` of
-    a second plot.
+    """Drawing of an analysis in one or two plots.
 
-    ``has_equal_axes`` means that both axes are lengths with one scale. ``labeled_points`` are points with
-    labels. ``axis_labels`` are the labels of the vertical axis, the second vertical axis and the horizontal
-    axis. In a label, {unit} is replaced by the unit of length.
+    ``command_points`` (n, 2) is the commanded curve. ``curves`` belong to the first plot, and
+    ``lower_curves`` belong to the second plot. ``has_equal_axes`` means that both axes are lengths with the
+    same scale. ``labeled_points`` are points with labels. ``axis_labels`` are the labels of the vertical
+    axis, the vertical axis of the second plot, and the horizontal axis. In a label, {unit} is replaced by
+    the unit of length.
     """
 
     command_points: FloatArray = field(default_factory=lambda: np.empty((0, 2)))
@@ -31,5 +32,5 @@ class AnalysisDrawing:
 
     @property
     def is_inverted(self) -> bool:
-        """Whether the vertical axis points down, as X of a lathe does for the operator."""
+        """Return whether the vertical axis points down, as X of a lathe does for the operator."""
         return self.has_equal_axes and self.axis_labels[0].startswith("X")

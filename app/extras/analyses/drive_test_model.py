@@ -1,7 +1,7 @@
 """Model of the drive test: selection, travel, motion and results.
 
-The first press of an arrow key shows the travel. The next press of the same key moves the axis while the key
-is held down. The test writes nothing to a drive.
+The first press of an arrow key shows the travel. The next press of the same key moves the axis while the
+key is held down. The test does not write to a drive.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ TestDirection = tuple[str, int]  # axis and sign
 class HeldTestKey(HeldJog):
     """Key of a drive test that must be held down.
 
-    ``path`` returns the test path, and ``asked`` is the direction whose travel is shown.
+    ``make_path`` returns the test path, and ``requested_direction`` is the direction whose travel is shown.
     """
 
     starting_action: ClassVar[StartingAction] = StartingAction.DRIVE_TEST
@@ -83,9 +83,10 @@ class HeldTestKey(HeldJog):
 
 @dataclass(slots=True)
 class DriveTestModel:
-    """Model of the drive test page. ``drives`` are the linear axes by letter.
+    """Model of the drive test page.
 
-    ``displayed_part`` is the displayed part of the last results, or None for the selection.
+    ``linear_axes`` contains the linear axes by letter. ``displayed_part`` is the displayed part of the last
+    results, or None while the selection is displayed.
     """
 
     desk: Desk
@@ -130,15 +131,18 @@ class DriveTestModel:
 
     @property
     def is_metric(self) -> bool:
-        """Whether lengths are selected and displayed in mm."""
+        """Return whether lengths are selected and displayed in mm."""
         return self.scope.metric
 
     def _get_series_length(self, inches: tuple[float, ...], mm: tuple[float, ...], at: int) -> float:
-        """Return a length of a series in mm."""
+        """Return a length of a series in mm.
+
+        ``at`` is the index in the series of the selected unit.
+        """
         return mm[at] if self.is_metric else inches[at] * MM_PER_INCH
 
     def make_test_path(self, axis: str, sign: int) -> DriveTestPath:
-        """Return the test path for a direction."""
+        """Return the test path of the present selection for a direction."""
         if self.shape is Shape.RAMP:
             size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.way)
             return DriveTestPath(
@@ -166,7 +170,7 @@ class DriveTestModel:
         self.shape = following(Shape, self.shape)
 
     def select_next_size(self) -> None:
-        """Select the next larger size. The smallest size follows the largest (F3)."""
+        """Select the next larger size, or the smallest size after the largest (F3)."""
         self._choose()
         if self.shape is Shape.RAMP:
             self.way = (self.way + 1) % len(INCH_RAMPS)
@@ -182,7 +186,7 @@ class DriveTestModel:
             self.frequency_index = (self.frequency_index + 1) % (len(SINE_FREQUENCIES_HZ) + 1)
 
     def show_next_results(self) -> None:
-        """Show the next part of the results, or the selection (F5)."""
+        """Show the next part of the results, or the selection after the last part (F5)."""
         self.desk.clear_prompt_line()
         if self.results is None:
             self.desk.say(tr("NO TEST VALUES YET. RUN A TEST FIRST"))
@@ -192,7 +196,7 @@ class DriveTestModel:
             )
 
     def change_setting(self, row: int) -> None:
-        """Change the setting of the touched row."""
+        """Change the setting in the touched row."""
         if self.displayed_part is None:
             actions = (self.select_next_shape, self.select_next_size, self.select_next_speed)
             if row < len(actions):
@@ -206,7 +210,7 @@ class DriveTestModel:
     # --- conditions and travel -------------------------------------------------------------------------
 
     def find_test_refusal(self) -> str:
-        """Return the reason why no test is possible now, or an empty string."""
+        """Return the reason why no test can start now, or an empty string."""
         snapshot = self.desk.read_snapshot()
         if self.desk.window_state.is_stop_held():
             return tr(STOP_HELD)
@@ -219,7 +223,7 @@ class DriveTestModel:
     def find_direction_refusal(self, direction: TestDirection) -> str:
         """Return the reason why this direction cannot be tested, or an empty string.
 
-        The control checks again.
+        The control makes its own check before the motion.
         """
         axis, sign = direction
         snapshot, model = self.desk.read_snapshot(), self.machine.find_axis(axis)
@@ -238,7 +242,10 @@ class DriveTestModel:
         return ""
 
     def describe_travel(self, direction: TestDirection) -> str:
-        """Return the text about start, end and duration of the travel in machine coordinates."""
+        """Return a text with the start, end and duration of the travel.
+
+        The positions are in machine coordinates.
+        """
         axis, sign = direction
         units, snapshot = UnitFormat(self.is_metric), self.desk.read_snapshot()
         path, limits = self.make_test_path(axis, sign), self._limits(axis)
@@ -255,7 +262,7 @@ class DriveTestModel:
         )
 
     def make_travel_question(self) -> str:
-        """Return the question about the travel of the next press, or an empty string."""
+        """Return the question about the travel that the next press would start, or an empty string."""
         asked = self.held_jog.requested_direction
         if asked is None or self.held_jog.active_jog is not None:
             return ""
@@ -273,9 +280,9 @@ class DriveTestModel:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Renew the motion while the key is held down, and follow the active test.
+        """Renew the motion while the key is held down, and monitor the active test.
 
-        Called once per frame.
+        This method is called once per frame.
         """
         self.held_jog.update(snapshot)
         if snapshot.state not in MANUAL_STATES:
@@ -294,7 +301,10 @@ class DriveTestModel:
             self._ended(snapshot)
 
     def _ended(self, snapshot: Snapshot) -> None:
-        """Finish a test. A complete test is analyzed once its last samples are available."""
+        """Finish a test.
+
+        A complete test is analyzed when its last samples are available.
+        """
         assert self._begun is not None
         told, live = snapshot.drive_test, self.scope.live_samples
         if told.completed_test_count == self._whole or live is None:
@@ -333,15 +343,15 @@ class DriveTestModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def press_direction(self, source: str, axis: str, sign: int) -> None:
-        """Handle a touch or mouse press on a direction."""
+        """Handle a touch or mouse press on a direction arrow."""
         self.held_jog.press_direction(source, axis, sign, is_rapid=False)
 
     def handle_key(self, _key: str) -> bool:
-        """Return False, because this page has no entry."""
+        """Return False because this page has no entry."""
         return False
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False, because this page has no entry."""
+        """Return False because this page has no entry."""
         return False
 
     def on_open(self) -> None:
@@ -349,7 +359,7 @@ class DriveTestModel:
         self.held_jog.requested_direction = None
 
     def handle_escape(self) -> bool:
-        """Stop the motion or clear the question. Return False if the page can close."""
+        """Stop the motion or clear the question, and return False if the page can close."""
         if self.held_jog.active_jog is not None:
             self.held_jog.release_all()
             return True
@@ -358,11 +368,11 @@ class DriveTestModel:
 
     @property
     def is_active(self) -> bool:
-        """Whether a key is held down."""
+        """Return whether a test key is held down."""
         return self.held_jog.active_jog is not None
 
     def release_all(self) -> None:
-        """Stop the motion, because the keyboard, the window or the page has lost the focus."""
+        """Stop the motion because the page, the window or the keyboard has lost the focus."""
         self.held_jog.release_all(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.requested_direction = None
 
@@ -375,12 +385,12 @@ class DriveTestModel:
         self.desk.clear_prompt_line()
 
     def close(self) -> None:
-        """Do nothing, because the worker belongs to the scope."""
+        """Do nothing because the worker belongs to the scope."""
 
     # --- display -------------------------------------------------------------------------------------
 
     def prompt(self) -> str:
-        """Return the prompt for the present state."""
+        """Return the prompt that applies in the present state."""
         why = self.find_test_refusal()
         if why:
             return why
@@ -391,7 +401,7 @@ class DriveTestModel:
         return tr("PRESS ARROW: SHOW TRAVEL   HOLD ARROW: RUN TEST   F5: VALUES")
 
     def make_drawing(self) -> AnalysisDrawing:
-        """Return the drawing of command and actual position of the last test."""
+        """Return the drawing of the commanded and the actual position of the last test."""
         return draw_response(self.results.motion) if self.results is not None else AnalysisDrawing()
 
     def describe_drawing(self) -> str:
@@ -401,7 +411,7 @@ class DriveTestModel:
         return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record
 
     def make_table(self) -> TableContent:
-        """Return the table of the selection, or the results of the last test."""
+        """Return the table of the selection or of the results of the last test."""
         if self.displayed_part is not None and self.results is not None:
             return make_results_table(tr("DRIVE TEST"), self.results, self.is_metric, self.displayed_part)
         units = UnitFormat(self.is_metric)
@@ -439,7 +449,7 @@ class DriveTestModel:
         )
 
     def _axis_rows(self, units: UnitFormat) -> list[TableRow]:
-        """Return the permitted following error of each linear axis at standstill and at full speed."""
+        """Return rows with the permitted following error of each linear axis at standstill and full speed."""
         return [
             TableRow(
                 (

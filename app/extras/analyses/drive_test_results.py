@@ -1,6 +1,6 @@
 """Results of a drive test: step, ramp and sine responses, bandwidth, and the effect of other limits.
 
-The record of a test contains the commanded test path, so that a stored record gives the same results.
+The record of a test contains the commanded test path, so a stored record gives the same results.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _SHAPE_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 
 
 def encode_test_path(path: DriveTestPath) -> str:
-    """Return the test path in the form for the record."""
+    """Return the test path as a JSON text for the record."""
     told = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies)
     return json.dumps(told)
 
@@ -66,7 +66,11 @@ def find_test_path(record: ScopeRecord) -> DriveTestPath | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DriveTestResults:
-    """Results of one test: the response of the outbound and the return move, or of each frequency."""
+    """Results of one test.
+
+    A step or ramp has a response for the outbound and the return move. A sine has a response for each
+    frequency.
+    """
 
     test_path: DriveTestPath
     motion: AxisMotion
@@ -78,7 +82,10 @@ class DriveTestResults:
 def calculate_results(
     record: ScopeRecord, path: DriveTestPath, linear_axes: Mapping[str, Axis]
 ) -> DriveTestResults:
-    """Calculate the results from the record of a complete test. Raises AnalysisError."""
+    """Calculate the results from the record of a complete test.
+
+    Raises AnalysisError.
+    """
     name, axis = Message("{item} demand", item=path.axis), linear_axes.get(path.axis)
     if axis is None or name not in record.values_by_channel:
         raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
@@ -151,7 +158,7 @@ def describe_test_path(path: DriveTestPath, metric: bool) -> str:
 
 
 class ResultsPart(Enum):
-    """Displayed part of the results, because a small screen cannot show all."""
+    """Part of the results to display, because a small screen cannot show all results."""
 
     RESPONSE = "response"
     LIMITS = "window"
@@ -161,7 +168,7 @@ class ResultsPart(Enum):
 def make_results_table(
     title: str, results: DriveTestResults, metric: bool, part: ResultsPart = ResultsPart.ALL
 ) -> TableContent:
-    """Return the table of responses, followed by the effect of the limits."""
+    """Return the table of the responses, followed by the effect of other limits."""
     units = UnitFormat(metric)
     rows = [TableRow(cells) for cells in _responses(results, units)] if part is not ResultsPart.LIMITS else []
     rows += map(TableRow, make_limit_rows(results.motion, units)) if part is not ResultsPart.RESPONSE else ()
@@ -189,7 +196,7 @@ def _responses(found: DriveTestResults, units: UnitFormat) -> list[tuple[str, ..
 
 
 def _gain(ramp: RampResponse) -> str:
-    """Return the gain of the position loop, Kv = v/e, or a dash if feedforward removes the lag."""
+    """Return the gain Kv = v/e of the position loop as text, or a dash if feedforward removes the lag."""
     return (
         f"{formats.format_fixed(1.0 / abs(ramp.lag_s), 0)} /s" if abs(ramp.lag_s) > 1e-5 else formats.NO_VALUE
     )

@@ -1,4 +1,4 @@
-"""Page of the drive tests: drawing, arrow pad, selection and results."""
+"""Page of the drive test with drawing, arrow pad, selection and results."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ class DriveTestPad(JogCross):
 
 
 class DriveTestPage(HeldKeysPage):
-    """Page of the drive tests.
+    """Page of the drive test.
 
-    ``refresh`` renews the motion while a key is held down, so that a frozen screen stops the axis.
+    ``refresh`` renews the motion while a key is held down. A frozen screen therefore stops the axis.
     """
 
     NAME = "DRIVE TEST"
@@ -67,12 +67,12 @@ class DriveTestPage(HeldKeysPage):
         self.table = TablePanel(self.theme, model.change_setting, self)
 
     def prepare_slice(self) -> bool:
-        """Create the chart and its plots in steps, before the page is first shown."""
+        """Create a part of the chart before the page is first shown, and return whether steps remain."""
         self.model.scope.file_worker.poll()
         return not self.drawing.is_ready()
 
     def key_actions(self) -> KeyActions:
-        """Return the actions for the selection, the results and the related pages."""
+        """Return the actions of the keys for the selection, the results and related pages."""
         model = self.model
         return {
             "F2": model.select_next_shape,
@@ -84,11 +84,11 @@ class DriveTestPage(HeldKeysPage):
         }
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the key of the results as barred until a test has run."""
+        """Return the results key (F5) as disabled until a test has run."""
         return frozenset() if self.model.results is not None else frozenset({"F5"})
 
     def pending_question(self) -> str:
-        """Return the question about the travel of the next press."""
+        """Return the question about the travel that the next press would start."""
         return self.model.make_travel_question()
 
     def prompt_text(self) -> str:
@@ -96,11 +96,11 @@ class DriveTestPage(HeldKeysPage):
         return self.model.prompt()
 
     def is_animating(self) -> bool:
-        """Return whether a key is held down."""
+        """Return whether the page shows live measurements, because a test key is held down."""
         return self.model.is_active
 
     def try_leave(self) -> bool:
-        """Stop all motion, and return True."""
+        """Stop all motion and return True."""
         self.jog_cross.release_all()
         self.model.leave()
         return True
@@ -127,7 +127,7 @@ class DriveTestPage(HeldKeysPage):
         self.drawing.apply_theme()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange drawing and arrow pad on the left, and the table on the right."""
+        """Arrange the drawing and the arrow pad on the left, and the table on the right."""
         u = self.theme.u
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left, pad = self.width() - side - gap, round(_PAD * self.height())

@@ -1,4 +1,4 @@
-"""Registration of the analyses of scope records and of the drive tests."""
+"""Registration of the optional feature for analyses of scope records and for drive tests."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _DRIVE_TESTS = "app.extras.analyses.drive_test_model.DriveTestModel"
 
 
 class AnalysesExtra(OptionalFeature):
-    """Optional feature with the pages ANALYSES, which the scope opens, and DRIVE TEST."""
+    """Optional feature with the ANALYSES page, which the scope opens, and the DRIVE TEST page."""
 
     @property
     def pages(self) -> Sequence[PageDescription]:

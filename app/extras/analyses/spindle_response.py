@@ -1,6 +1,6 @@
-"""Response of the spindle to the last change of speed: rise, overshoot, time to settle and variation.
+"""Response of the spindle to the last change of speed: rise, overshoot, settling time and variation.
 
-The analysis uses the record of an ordinary run-up. Only programs and MDI turn the spindle.
+The analysis uses the record of an ordinary run-up. It does not turn the spindle; only programs and MDI do.
 """
 
 from __future__ import annotations
@@ -30,11 +30,12 @@ _SHARES = (0.62, 0.38)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpindleResponse:
-    """Response to one change of speed. ``times`` (n,) are seconds from the change, speeds are (n,) in rpm.
+    """Response of the spindle to one change of speed.
 
-    ``step_responses`` are the responses for the at-speed tolerance of the machine file and for each of
-    ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation and ``mean_error_rpm`` the mean
-    error in rpm over the last second.
+    ``times_s`` (n,) are seconds from the change. ``commanded_rpm`` (n,) and ``measured_rpm`` (n,) are
+    speeds in rpm. ``step_responses`` are the responses for the at-speed tolerance of the machine file and
+    for each of ``TOLERANCE_RATIOS``. ``variation_rpm`` is the peak-to-peak variation in rpm over the last
+    second, and ``mean_error_rpm`` is the mean error in rpm over the same time.
     """
 
     times_s: FloatArray
@@ -47,13 +48,19 @@ class SpindleResponse:
 
     @property
     def acceleration_rpm_s(self) -> float:
-        """Acceleration from 10 to 90 % of the change in rpm/s; inf if both are in one sample."""
+        """Return the acceleration between 10 and 90 % of the change in rpm/s.
+
+        The result is inf if both levels are reached within one sample.
+        """
         step = self.step_responses[0]
         return 0.8 * abs(step.step_size) / step.rise_time_s if step.rise_time_s > 0.0 else np.inf
 
 
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
-    """Return the response to the last change to a speed other than 0. Raises AnalysisError."""
+    """Return the response to the last change to a speed other than 0.
+
+    Raises AnalysisError.
+    """
     if model is None:
         raise AnalysisError(tr("this machine has no spindle"), "no-spindle")
     nothing = np.full(len(record.times_s), np.nan)
@@ -109,14 +116,14 @@ def _shares(model: SpindleModel) -> tuple[float, ...]:
 
 
 def _stayed(step: StepResponse, times: FloatArray, model: SpindleModel) -> StepResponse:
-    """Return the response, with settling set to nan if the speed only passed through the tolerance band."""
+    """Return the response with a settling time of nan if the speed only passed through the tolerance band."""
     if times[-1] - step.settling_time_s >= model.at_speed_time:
         return step
     return replace(step, settling_time_s=math.nan)
 
 
 def draw_spindle_response(response: SpindleResponse) -> AnalysisDrawing:
-    """Return the drawing of commanded and actual speed over seconds."""
+    """Return the drawing of the commanded and the measured speed over time in seconds."""
     asked, turned = (
         np.column_stack([response.times_s, each]) for each in (response.commanded_rpm, response.measured_rpm)
     )

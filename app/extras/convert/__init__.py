@@ -1,1 +1,1 @@
-"""Command ``turndesk convert``."""
+"""Optional feature with the command ``turndesk convert``."""

@@ -1,4 +1,6 @@
-"""Command ``turndesk convert FILE``: a turning program of another control as a proved OmniTurn program."""
+"""Command ``turndesk convert FILE``, which converts a program of another control to OmniTurn and
+proves it.
+"""
 
 from __future__ import annotations
 
@@ -67,7 +69,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _m_codes(text: str) -> frozenset[int]:
-    """Return the M codes of a list such as 41,42. Raises ArgumentTypeError."""
+    """Return the M codes in a list such as 41,42.
+
+    Raises ArgumentTypeError.
+    """
     parts = [each.strip().upper().removeprefix("M") for each in text.split(",")]
     if not all(each.isdecimal() for each in parts):
         raise argparse.ArgumentTypeError(
@@ -77,7 +82,10 @@ def _m_codes(text: str) -> frozenset[int]:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Convert and prove the program; write it only if it has no errors. Return 1 if it has errors."""
+    """Convert and prove the program, and write the result only if it has no errors.
+
+    Returns exit status 1 if there are errors.
+    """
     from app.compose.machine.machine_setup import get_control_limits, read_machine
     from core.extras.convert.conversion import convert
     from core.extras.convert.recognition import recognized
@@ -116,7 +124,10 @@ def _options(args: argparse.Namespace, control: Control, machine: Machine) -> Op
 
 
 def _may_write(args: argparse.Namespace) -> str:
-    """Return the user who may write ``--out``, or an empty string without it. Raises CommandError."""
+    """Return the user who may write the ``--out`` file, or an empty string if the option is not given.
+
+    Raises CommandError.
+    """
     if args.out is None:
         return ""
     if Path(args.out).exists():

@@ -1,4 +1,4 @@
-"""Registration of the conversion of programs of other controls."""
+"""Registration of the optional feature that converts programs of other controls."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class Convert(OptionalFeature):
-    """Optional feature with ``turndesk convert``."""
+    """Optional feature with the command ``turndesk convert``."""
 
     subcommands = {
         "convert": Subcommand("serial", "convert a turning program of another control to OmniTurn"),

@@ -1,6 +1,6 @@
-"""Form of a drawing (DXF, SVG): read, planned and tried on workers.
+"""Form that makes a program from a drawing (DXF, SVG).
 
-The form writes shapes.
+Workers read and plan the drawing and try the program. The program consists of the lines of shapes.
 """
 
 from __future__ import annotations
@@ -119,12 +119,15 @@ DRAWING_SHAPE = Shape(
 
 @dataclass(frozen=True, slots=True)
 class FilledDrawing(FilledShape):
-    """Filled form of a drawing. ``text`` contains the lines of several shapes."""
+    """Form of a drawing with its values.
+
+    ``program_lines`` contains the lines of several shapes.
+    """
 
     program_lines: tuple[str, ...] = ()
 
     def make_lines(self, settings: ProgramSettings) -> list[str]:
-        """Return the lines as the shapes have written them."""
+        """Return the program lines that the shapes have written."""
         code = CodeWriter(settings)
         self.shape.cut(self, settings, code)
         return code.lines
@@ -132,11 +135,12 @@ class FilledDrawing(FilledShape):
 
 @dataclass(slots=True)
 class DrawingForm(ShapeForm):
-    """Form of a drawing. ``files`` are the available drawings and ``preceding_lines`` is the preceding
-    program text.
+    """Form of a drawing.
 
-    ``pending_request`` is the request that is being planned. ``remarks`` are the needs of the program and
-    its uncut parts, after the trial.
+    ``drawing_files`` are the available drawings, and ``preceding_lines`` are the program lines before the
+    form. ``pending_request`` is the request that is being planned. After the trial, ``comparison`` compares
+    the part with the drawing, and ``remarks`` contains the requirements of the program and its uncut
+    sections.
     """
 
     drawing_files: Mapping[str, Path] = field(default_factory=dict)
@@ -147,7 +151,10 @@ class DrawingForm(ShapeForm):
     is_canceled: bool = False
 
     def calculate(self) -> None:
-        """Request a plan for the entries. The previous plan remains until the new plan arrives."""
+        """Request a plan for the entries.
+
+        The previous plan remains until the new plan arrives.
+        """
         self.calculation_count += 1
         self.errors, self.is_canceled = {}, False
         values: dict[str, FieldValue] = {}
@@ -167,9 +174,9 @@ class DrawingForm(ShapeForm):
         self._show()
 
     def use_settings(self, settings: ProgramSettings) -> None:
-        """Calculate again with other tool data, unless the reading was canceled.
+        """Calculate again with other tool data, unless reading was canceled.
 
-        After a cancellation, F6 starts the reading again.
+        After a cancellation, F6 starts reading the drawing again.
         """
         if self.is_canceled:
             self.settings = settings
@@ -193,7 +200,10 @@ class DrawingForm(ShapeForm):
         self.filled_shape = FilledDrawing(self.shape, {**known, **proposed, **values})
 
     def cancel(self) -> None:
-        """Cancel the reading. F6 requests a new plan."""
+        """Cancel reading the drawing.
+
+        F6 then requests a new plan.
+        """
         self.pending_request, self.is_canceled = None, True
         self.calculation_count += 1
         self.lines = []
@@ -221,7 +231,7 @@ class DrawingForm(ShapeForm):
         )
 
     def show_trial(self, comparison: DrawingComparison | None, errors: tuple[str, ...]) -> None:
-        """Show the result of the trial: the proof of the program and the comparison with the drawing."""
+        """Show the result of the trial, which consists of the proof and the comparison with the drawing."""
         plan = self.plan
         if plan is None or plan.program is None or plan.profile is None:
             return
@@ -238,7 +248,7 @@ class DrawingForm(ShapeForm):
 
     @property
     def current_sketch(self) -> Sketch:
-        """Drawing with the selected contour."""
+        """Return the sketch of the drawing with the selected contour."""
         return (
             self.plan.sketch
             if self.plan is not None and self.plan.elements
@@ -247,11 +257,11 @@ class DrawingForm(ShapeForm):
 
     @property
     def is_calculating(self) -> bool:
-        """Whether a plan is pending."""
+        """Return whether a plan is pending."""
         return self.pending_request is not None
 
     def list_choices(self, field: ShapeField) -> tuple[str, ...]:
-        """Return the choices of a field, including those of the drawing."""
+        """Return the choices of a field, including choices from the drawing."""
         if field.word == "FILE":
             return tuple(self.drawing_files)
         if field.choices or self.plan is None:
@@ -259,11 +269,14 @@ class DrawingForm(ShapeForm):
         return self.plan.choices.get(field.word, ())
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a translatable word. Names of layers are not translated."""
+        """Return whether a choice is a word that can be translated.
+
+        Layer names are not translated.
+        """
         return choice in field.choices or choice in _WORDS.get(field.word, ())
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the number of a contour, or the value of another dimension."""
+        """Return the number of a contour, or the value of another dimension as text."""
         return (
             word.removeprefix("CONTOUR ")
             if word.startswith("CONTOUR ")
@@ -271,14 +284,14 @@ class DrawingForm(ShapeForm):
         )
 
     def select_word(self, word: str) -> None:
-        """Select a field, or a contour by its number in the drawing."""
+        """Select a field, or select a contour by its number in the drawing."""
         if word.startswith("CONTOUR "):
             self._set("CONTOUR", word.removeprefix("CONTOUR "))
             word = "CONTOUR"
         ShapeForm.select_word(self, word)
 
     def handle_touch(self, point: tuple[float, float]) -> None:
-        """Select the touched contour, or the touched line while AXIS is selected."""
+        """Select the touched contour, or the touched line while the AXIS field is selected."""
         plan = self.plan
         if plan is None or not plan.elements:
             return
@@ -318,14 +331,17 @@ TrialFunction = Callable[
 def skip_trial(
     _text: str, _plan: DrawingPlan, _watch: ProgressCallback
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
-    """Return no result; used without machine data."""
+    """Return no result.
+
+    This function replaces the trial if no machine data are available.
+    """
     return None, ()
 
 
 class AddedDrawingForm(AddedForm):
-    """Added form for drawings.
+    """Form for drawings that is added to the list of shapes.
 
-    ``files`` returns the available drawings, ``attempt`` tries a program.
+    ``find_drawing_files`` returns the available drawings, and ``run_trial`` tries a program.
     """
 
     key, shape = "X", DRAWING_SHAPE
@@ -341,7 +357,7 @@ class AddedDrawingForm(AddedForm):
     def open_form(
         self, settings: ProgramSettings, preceding_lines: tuple[str, ...], requested_file: Path | None
     ) -> DrawingForm:
-        """Return a form with the available drawings, the requested drawing first."""
+        """Return a form with the available drawings, with the requested drawing first."""
         files = dict(self.find_drawing_files())
         if requested_file is not None:
             files = {
@@ -355,7 +371,7 @@ class AddedDrawingForm(AddedForm):
         return has_drawing_suffix(name)
 
     def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
-        """Plan the entries on a worker, then try the program."""
+        """Plan the program for the entries on a worker, and then try the program."""
         if not isinstance(form, DrawingForm) or form.pending_request is None:
             return
         asked = form.pending_request
@@ -374,7 +390,10 @@ class AddedDrawingForm(AddedForm):
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
     ) -> None:
-        """Try the program ``text``, or do nothing if the form has been closed (None)."""
+        """Try the program ``text``.
+
+        ``text`` is None if the form has been closed. No trial is then made.
+        """
         if not form.lines or text is None:
             return
 
@@ -385,13 +404,13 @@ class AddedDrawingForm(AddedForm):
         self.trial_worker.request(lambda watch: self.run_trial(text, plan, watch), tried, failed)
 
     def cancel(self, form: ShapeForm) -> None:
-        """Cancel the reading of a drawing (F6 or Esc) by ending its process."""
+        """Cancel reading a drawing (F6 or Esc) and end the process that reads it."""
         if isinstance(form, DrawingForm):
             self.plan_worker.cancel()
             form.cancel()
 
     def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
-        """Return F6, which cancels the reading or starts it again."""
+        """Return F6, which cancels reading the drawing or starts it again."""
 
         def read_again() -> None:
             form.calculate()
@@ -404,7 +423,7 @@ class AddedDrawingForm(AddedForm):
         )
 
     def prompt_text(self, form: ShapeForm) -> str:
-        """Return the progress of the reading, the error, or the prompt for the keys."""
+        """Return the progress of reading, the error, or the prompt that explains the keys."""
         if not form.is_calculating:
             keys = tr("LEFT/RIGHT: CHANGE   TAP DRAWING: PICK CONTOUR OR AXIS")
             return tr(form.current_error or keys)
@@ -414,7 +433,7 @@ class AddedDrawingForm(AddedForm):
         return tr(Message(words, seconds=self.plan_worker.progress))
 
     def poll(self) -> None:
-        """Process the results of planning and trials."""
+        """Process the results of planning and of trials."""
         self.plan_worker.poll()
         self.trial_worker.poll()
 

@@ -1,4 +1,7 @@
-"""Plan of a program from a drawing, calculated on a worker: proposals, choices, lines and picture."""
+"""Plan of a program from a drawing, with proposals, choices, program lines and a sketch.
+
+A worker calculates the plan.
+"""
 
 from __future__ import annotations
 
@@ -44,8 +47,9 @@ _NUMBERS = ("FROM", "STOCK", "HOLE", "ROUGH", "T", "BLADE", "COMP")
 
 @dataclass(frozen=True, slots=True)
 class PlanRequest:
-    """Request of a plan. ``entered_values`` are the entries, and ``preceding_lines`` is the preceding
-    program.
+    """Request for a plan.
+
+    ``entered_values`` are the entries of the form, and ``preceding_lines`` are the program lines before it.
     """
 
     drawing_path: Path
@@ -56,7 +60,10 @@ class PlanRequest:
 
 @dataclass(frozen=True, slots=True)
 class PlacedElement:
-    """Element of the drawing as (z, r) points from the axis, with its line number or contour, from 1."""
+    """Element of a drawing as (z, r) points relative to the axis of rotation.
+
+    ``line_number`` and ``contour_number`` count from 1. A value of 0 means that the number does not apply.
+    """
 
     points: tuple[tuple[float, float], ...]
     line_number: int = 0
@@ -65,7 +72,10 @@ class PlacedElement:
 
 @dataclass(frozen=True, slots=True)
 class DrawingPlan:
-    """Plan with ``troubles`` by field. ``made`` and ``chosen`` are None if there is an error."""
+    """Plan of a program from a drawing.
+
+    ``errors`` contains the errors by field. ``program`` and ``profile`` are None if there is an error.
+    """
 
     request: PlanRequest
     proposals: Mapping[str, FieldValue] = field(default_factory=dict)
@@ -78,9 +88,9 @@ class DrawingPlan:
 
 
 class DrawingPlanner:
-    """Planner with a cache of the last drawing, used by one worker.
+    """Planner that caches the last drawing and is used by one worker.
 
-    ``is_reading`` is set while a file is read.
+    ``is_reading`` is True while a file is being read.
     """
 
     def __init__(self, read: Callable[[Path, ProgressCallback], Drawing]) -> None:
@@ -89,7 +99,10 @@ class DrawingPlanner:
         self.is_reading = False
 
     def make_plan(self, request: PlanRequest, watch: ProgressCallback) -> DrawingPlan:
-        """Return the plan, with errors by field. ``watch`` can raise an exception to cancel."""
+        """Return the plan with its errors by field.
+
+        ``watch`` can raise an exception to cancel the work.
+        """
         try:
             drawing = self._drawing(request.drawing_path, watch)
         except DrawingError as error:
@@ -115,7 +128,10 @@ class DrawingPlanner:
 
 
 class _PlanBuilder:
-    """Calculation of one plan. Each step adds proposals and can end the plan with an error."""
+    """Calculation of one plan in steps.
+
+    Each step adds proposals and can end the plan with an error.
+    """
 
     def __init__(self, drawing: Drawing, request: PlanRequest) -> None:
         self.drawing, self.request = drawing, request
@@ -125,7 +141,7 @@ class _PlanBuilder:
         self.view: DrawingPlacement | None = None
 
     def word(self, name: str, proposed: str = "") -> str:
-        """Return the choice of a field."""
+        """Return the entry of a field, or else ``proposed``, which is also added to the proposals."""
         if proposed:
             self.proposals[name] = proposed
         value = self.request.entered_values.get(name, proposed)
@@ -277,7 +293,7 @@ _FIELDS = frozenset(
 
 
 def _find_form_field(word: str) -> str:
-    """Return the field of the form that shows a rejection by a shape."""
+    """Return the form field that shows an error of a shape in the field ``word``."""
     return word if word in _FIELDS else "CONTOUR" if word.startswith("#") else "T"
 
 
@@ -300,7 +316,7 @@ def _placed(
 
 
 def _polyline(element: Element) -> tuple[tuple[float, float], ...]:
-    """Return the (z, r) points of an element, with arcs as chords."""
+    """Return the (z, r) points of an element, with arcs divided into chords."""
     if isinstance(element, Line):
         return _turned([element.start, element.end])
     assert isinstance(element, Arc)
@@ -315,7 +331,10 @@ def _turned(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float],
 
 
 def draw_plan(plan: DrawingPlan, number: int, comparison: DrawingComparison | None = None) -> Sketch:
-    """Return the drawing with its axis and the selected contour, with uncut and wrongly cut parts in red."""
+    """Return the sketch of the drawing with its axis and the selected contour.
+
+    Sections that are uncut or cut incorrectly are red.
+    """
     drawn = [Outline(each.points, "part") for each in plan.elements if each.line_number]
     outlines = [
         *drawn,

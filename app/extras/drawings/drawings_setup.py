@@ -1,4 +1,4 @@
-"""Setup of the drawing form: available drawings and the trial with the present tools."""
+"""Setup of the drawing form with the available drawings and the trial with the present tools."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Registration of programs that are made from drawings (DXF, SVG)."""
+"""Registration of the optional feature that makes programs from drawings (DXF, SVG)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class DrawingsExtra(OptionalFeature):
-    """Optional feature with the form DRAWING, ``turndesk profile``, and drawings in the program list."""
+    """Optional feature with the DRAWING form, ``turndesk profile``, and drawings in the program list."""
 
     required_features = ("shapes",)
     subcommands = {

@@ -1,5 +1,6 @@
-"""Command ``turndesk extract_profile PART.dxf``: the contour of a drawing, its turning program, and the JSON
-keys.
+"""Command ``turndesk profile DRAWING``, which makes a turning program from a contour of a drawing.
+
+The module also declares the JSON keys of the command.
 """
 
 from __future__ import annotations
@@ -141,7 +142,7 @@ def _add_tool_options(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the program and report uncut parts of the drawing.
 
-    Return 1 if the program has errors.
+    Returns exit status 1 if the program has errors.
     """
     from core.extras.drawings.drawing import DrawingError, limit_work
 
@@ -197,7 +198,7 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, machine: Machine) -> None:
-    """Raise CommandError if the contour is too large for the machine only because of the unit of its file."""
+    """Raise CommandError if the contour fits the machine only in a unit other than that of its file."""
     from app.extras.shapes.shapes_setup import make_shop_data
     from core.extras.drawings.unit_check import detect_wrong_unit
 
@@ -215,7 +216,7 @@ def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, mac
 
 
 def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
-    """Return the language of the output file name, or else of the machine.
+    """Return the language that the output file name indicates, or else the language of the machine.
 
     Raises CommandError for Klartext.
     """

@@ -1,4 +1,4 @@
-"""Trial of a program from a drawing: proof, and comparison of the part with the drawing."""
+"""Trial of a program from a drawing, with a proof and a comparison of the part with the drawing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _HOME = ToolOffset(12.7, -76.2)
 
 @dataclass(frozen=True, slots=True)
 class TrialStock:
-    """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole."""
+    """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole diameter."""
 
     diameter: float
     face_stock_mm: float = 0.0
@@ -37,7 +37,7 @@ class TrialStock:
 class TrialResult:
     """Result of a trial.
 
-    ``comparison`` is None if the program makes no part, ``errors`` are from the proof.
+    ``comparison`` is None if the program makes no part. ``errors`` are the errors of the proof.
     """
 
     comparison: DrawingComparison | None
@@ -54,7 +54,10 @@ def run_profile_trial(
     watch: Callable[[float], None] | None = None,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> TrialResult:
-    """Prove the program with all tools at one position and the required nose offset, and compare the part."""
+    """Prove the program and compare the part with the profile.
+
+    All tools are at the same position and have the required nose offset ``nose``.
+    """
     of_edge = nose is not None and nose.quadrant
     secondary = {nose.number: SecondaryOffset(nose.x, nose.z, nose.r)} if nose and not of_edge else {}
     tools = dict.fromkeys(range(1, 33), _HOME)

@@ -1,4 +1,4 @@
-"""Registration of the job queue."""
+"""Registration of the optional feature for the job queue."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class JobsExtra(OptionalFeature):
-    """Optional feature with the page JOBS, its special function and ``turndesk jobs``."""
+    """Optional feature with the JOBS page, its special function and the command ``turndesk jobs``."""
 
     subcommands = {
         "jobs": Subcommand("parts", "manage the queue of programs to run next, with their part counts"),

@@ -1,4 +1,7 @@
-"""Command ``turndesk jobs``: queue of programs with their number of parts, and the keys of its JSON."""
+"""Command ``turndesk jobs``, which manages the queue of programs and their part counts.
+
+The module also declares the JSON keys of the command.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action. Raises CommandError."""
+    """Execute the action.
+
+    Raises CommandError.
+    """
     with open_store(read_only=args.action == "list") as store:
         who = (
             get_change_author(store, args, ProtectedChange.JOBS)

@@ -1,4 +1,4 @@
-"""Model of the page JOBS without Qt: queue, setup of the selected job, and keys."""
+"""Model of the JOBS page without Qt: the queue, the setup of the selected job, and the keys."""
 
 from __future__ import annotations
 
@@ -42,9 +42,10 @@ _WIDE = 46  # characters of a cell
 
 @dataclass(slots=True)
 class JobsModel:
-    """Model of the page JOBS.
+    """Model of the JOBS page.
 
-    ``entry_kind`` is the entry of a count or note for the selected or a new job.
+    ``entry_kind`` is the kind of value that the operator is entering, a count or a note. The value is for
+    the selected job or a new job.
     """
 
     desk: Desk
@@ -60,17 +61,17 @@ class JobsModel:
 
     @property
     def jobs(self) -> tuple[JobRow, ...]:
-        """Jobs of the queue."""
+        """Return the jobs of the queue."""
         return self.job_watch.jobs
 
     @property
     def selected_job(self) -> JobRow | None:
-        """Selected job, or None."""
+        """Return the selected job, or None if the queue is empty."""
         return self.jobs[self.selected_row] if self.selected_row < len(self.jobs) else None
 
     @property
     def lock_reason(self) -> str:
-        """Reason why jobs are not stored, or an empty string."""
+        """Return the reason why jobs cannot be stored, or an empty string."""
         book = self.job_watch.parts_watch.parts_book
         return (
             ""
@@ -79,7 +80,10 @@ class JobsModel:
         )
 
     def update(self) -> None:
-        """Limit the selection and request the proof of the selected job; called once per frame."""
+        """Keep the selection within the queue and request the proof of the selected job.
+
+        This method is called once per frame.
+        """
         self.selected_row = max(0, min(self.selected_row, len(self.jobs) - 1))
         job = self.selected_job
         self.job_watch.selected_program = (
@@ -89,11 +93,11 @@ class JobsModel:
         )
 
     def find_proof(self, job: JobRow) -> ProvedJob | str | None:
-        """Return the job's proof, the reason why proving failed, or None while it is pending."""
+        """Return the proof of a job, the reason why proving failed, or None while proving is pending."""
         return self.job_watch.proofs.find_proof(job.program, self.desk.offset_book.changes)
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
-        """Return the table of the queue with the question below."""
+        """Return the table of the queue, with the pending question below the table."""
         rows = tuple(self._row(number, job, snapshot) for number, job in enumerate(self.jobs, 1))
         question = ""
         if self.entry_kind == "count":
@@ -155,7 +159,7 @@ class JobsModel:
         )
 
     def make_setup_table(self) -> TableContent:
-        """Return the setup table of the selected job: tools, findings of the proof, and notes."""
+        """Return the setup table of the selected job with tools, findings of the proof, and notes."""
         job = self.selected_job
         title = tr("SETUP SHEET") + (f"  ·  {job.program}" if job is not None else "")
         rows = tuple(self._setup_rows(job)) if job is not None else ()
@@ -207,7 +211,7 @@ class JobsModel:
                    Tone.PAUSE if station.required_actions else Tone.RUN)  # fmt: skip
 
     def read_setup_notes(self, program: str) -> Sequence[str]:
-        """Return the notes of the program's setup sheet (F10)."""
+        """Return the notes from the setup sheet of the program (F10)."""
         if self._notes[0] != program:
             try:
                 kept = self.desk.program_runs.part_counter.persistence.read_setting(
@@ -220,7 +224,7 @@ class JobsModel:
         return self._notes[1]
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.entry_kind:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.selected_job is None:
@@ -232,7 +236,10 @@ class JobsModel:
     # --- keys ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys; none during an entry, which Enter and Esc end."""
+        """Return the function keys.
+
+        During an entry there are no function keys, because Enter or Esc ends the entry.
+        """
         if self.entry_kind:
             return {}
         none = self.selected_job is None
@@ -249,25 +256,28 @@ class JobsModel:
 
     @property
     def load_obstacle(self) -> str:
-        """Reason why the selected job cannot be loaded, or an empty string."""
+        """Return the reason why the selected job cannot be loaded, or an empty string."""
         return (
             NO_JOBS_MESSAGE if self.selected_job is None else find_program_refusal(self.desk.read_snapshot())
         )
 
     def check_loadable(self) -> bool:
-        """Return whether the selected job can be loaded, and show the reason if not."""
+        """Return whether the selected job can be loaded, and show the reason if it cannot."""
         if why := self.load_obstacle:
             self.desk.say(why)
         return not why
 
     def load_job(self) -> None:
-        """Load the selected job. Only the palm buttons start its cycle."""
+        """Load the selected job.
+
+        Only the palm buttons can start its cycle.
+        """
         job = self.selected_job
         if job is not None:
             self.job_watch.load_job(job)
 
     def add_job(self) -> None:
-        """Add a job for the loaded program. The number of parts is asked."""
+        """Start the entry of a job for the loaded program, and ask for the number of parts."""
         name = self.desk.program_loader.loaded.name
         if not name:
             self.desk.say(NO_PROGRAM_MESSAGE)
@@ -275,7 +285,7 @@ class JobsModel:
         self.add_program(name)
 
     def add_program(self, name: str) -> None:
-        """Add a job for a program. The number of parts is asked."""
+        """Start the entry of a job for a program, and ask for the number of parts."""
         self.desk.clear_prompt_line()
         self.entry_kind, self.entry_program, self.entry = "count", name, InputField()
 
@@ -295,7 +305,7 @@ class JobsModel:
             )
 
     def move_job(self, steps: int) -> None:
-        """Move the selected job up or down the queue."""
+        """Move the selected job up or down in the queue by a number of steps."""
         job, to = self.selected_job, self.selected_row + 1 + steps
         if job is None:
             self.desk.say(NO_JOBS_MESSAGE)
@@ -311,7 +321,10 @@ class JobsModel:
         self.selected_row = row
 
     def remove_job(self) -> None:
-        """Remove the selected job after confirmation. The part count of its program remains."""
+        """Remove the selected job after confirmation.
+
+        The part count of its program does not change.
+        """
         job = self.selected_job
         if job is None:
             self.desk.say(NO_JOBS_MESSAGE)
@@ -348,7 +361,10 @@ class JobsModel:
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a job, and other keys edit the entry."""
+        """Handle a key and return whether it was used.
+
+        During an entry, keys edit the entry. Otherwise the arrow keys select a job.
+        """
         if not self.entry_kind:
             if key in ROW_STEPS and self.jobs:
                 self.select_row(self.selected_row + ROW_STEPS[key])
@@ -404,7 +420,7 @@ class JobsModel:
         return bool(self.entry_kind) and self.entry.accepts_key(key)
 
     def select_row(self, row: int) -> None:
-        """Select a row."""
+        """Select a job by its row, unless an entry is open."""
         if not self.entry_kind and self.jobs:
             self.desk.clear_prompt_line()
             self.selected_row = max(0, min(len(self.jobs) - 1, row))
@@ -412,13 +428,13 @@ class JobsModel:
     def on_open(self) -> None:
         """Discard cached notes and proofs when the page opens.
 
-        Programs and shapes can have changed.
+        Programs and shapes can have changed while the page was closed.
         """
         self._notes = "", ()
         self.job_watch.proofs.clear_proofs()
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False if the page can close."""
+        """Clear the message or cancel the entry, and return False if the page can close."""
         if self.desk.prompt_notice:
             self.desk.clear_prompt_line()
         elif self.entry_kind:
@@ -428,15 +444,18 @@ class JobsModel:
         return True
 
     def on_close(self) -> None:
-        """Cancel the entry when the page closes. Then only the next job is proved."""
+        """Cancel the entry when the page closes.
+
+        While the page is closed, the selected job is no longer proved first.
+        """
         self.entry_kind, self.job_watch.selected_program = "", ""
 
     def close(self) -> None:
-        """Do nothing, because the watch is closed separately."""
+        """Do nothing because the job watch is closed separately."""
 
 
 def _folded(text: str) -> str:
-    """Return a text folded into the two lines of a cell."""
+    """Return a text divided into the two lines of a table cell."""
     first, *more = wrap(text, _WIDE) or [""]
     return f"{first}\n{' '.join(more)}" if more else first
 

@@ -27,7 +27,7 @@ LastStartReader = Callable[[str], tuple[str, dict[int, ToolRow]]]
 
 
 def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
-    """Attach the job queue, its page and its key in the program list to TurnDesk."""
+    """Attach the job queue to TurnDesk, with its page and its key in the program list."""
     parts = desk.page_registry.find(PartsWatch)
     if parts is None:
         return
@@ -53,9 +53,9 @@ def _proved(
     program: str,
     watch: ProgressCallback,
 ) -> ProvedJob:
-    """Return the setup sheet of a program with the present offsets and shapes.
+    """Prove a program with the present offsets and shapes, and return its setup sheet.
 
-    Runs on a worker. Raises ValueError if the program is not in the list.
+    This function runs on a worker. Raises ValueError if the program is not in the list.
     """
     from app.special.setup_sheet import make_setup_sheet
     from core.proving.program_tools import PartSettings

@@ -1,4 +1,4 @@
-"""Page JOBS (J or Shift+F6): queue above, setup of the selected job below."""
+"""Page JOBS (J or Shift+F6), with the queue above and the setup of the selected job below."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ PAD, LETTERS, QUEUE = 28.4, 24.0, 0.5  # units; ratio of the height
 
 
 class JobsPage(ListPage):
-    """Page JOBS: shows its model and passes the keys to it."""
+    """Page that shows the job model and passes keys to the model."""
 
     NAME = "JOBS"
     model: JobsModel
@@ -36,7 +36,7 @@ class JobsPage(ListPage):
         self._asked = ""
 
     def disabled_keys(self) -> frozenset[str]:
-        """Return the barred keys of the model, and F2 while no job can be loaded."""
+        """Return the disabled keys of the model, and F2 if no job can be loaded."""
         return super().disabled_keys() | ({"F2"} if self.model.load_obstacle else set())
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
@@ -44,7 +44,7 @@ class JobsPage(ListPage):
         return self.model.function_keys()
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of F2 and of the model."""
+        """Return the labels of F2 and of the function keys of the model."""
         return self.make_labels({"F2": "LOAD"}, self.function_keys())
 
     def key_actions(self) -> KeyActions:
@@ -56,9 +56,9 @@ class JobsPage(ListPage):
         self.function_keys()[name].action()
 
     def _load(self) -> None:
-        """Open the Automatic page, then load the job.
+        """Open the Automatic page and load the job.
 
-        A question about an interrupted job is then visible.
+        If an interrupted job causes a question, the question is then visible.
         """
         model = self.model
         if model.check_loadable() and self.host.open_page(page_table.AUTOMATIC):
@@ -68,11 +68,11 @@ class JobsPage(ListPage):
         self.model.select_row(row)
 
     def has_text_field(self) -> bool:
-        """Return whether a count or a note is being typed."""
+        """Return whether the operator is typing a count or a note."""
         return bool(self.model.entry_kind)
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update queue and setup."""
+        """Update the queue and the setup of the selected job."""
         model = self.model
         model.update()
         self.table.show_table(model.make_table(snapshot))
@@ -82,7 +82,7 @@ class JobsPage(ListPage):
             self._lay_out()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Arrange queue, setup and pads."""
+        """Arrange the queue, the setup and the keyboards."""
         self._lay_out()
 
     def _lay_out(self) -> None:

@@ -1,6 +1,6 @@
-"""Watch of the job queue: the active job, the next job and its required setup.
+"""Watch of the job queue: the active job, the next job and the setup that it requires.
 
-The next job is proved on a worker while another job runs, without affecting the executor.
+A worker proves the next job while another job runs. The proof does not affect the executor.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ _TOLD = 3  # maximum number of displayed findings
 
 @dataclass(frozen=True, slots=True)
 class ProvedJob:
-    """Program of the queue, proved with the offsets of that moment.
+    """Program of the queue that was proved with the offsets at that time.
 
-    ``tools_at_last_start`` contains the tools at its last start, and ``last_start_utc`` is the time of that
-    start (UTC), or empty if it never ran.
+    ``tools_at_last_start`` contains the tools at the last start of the program. ``last_start_utc`` is the
+    UTC time of that start, or empty if the program has never run.
     """
 
     setup_sheet: SetupSheet
@@ -54,14 +54,20 @@ class ProvedJob:
 
 @dataclass(frozen=True, slots=True)
 class JobTool:
-    """Tool that a job needs. ``required_actions`` lists the required actions as text."""
+    """Tool that a job needs.
+
+    ``required_actions`` lists the actions that the operator must perform, as text.
+    """
 
     tool: SetupTool
     required_actions: tuple[str, ...] = ()
 
 
 def list_job_tools(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> tuple[JobTool, ...]:
-    """Return the tools of a job that has ``parts`` parts to make, in the order of the gang plate."""
+    """Return the tools of a job in the order of the gang plate.
+
+    ``parts_to_make`` is the number of parts that the tool life must cover.
+    """
     return tuple(
         JobTool(tool, tuple(_lacks(tool, job, lives.get(tool.tool_number), parts_to_make)))
         for tool in job.setup_sheet.setup_tools
@@ -69,7 +75,10 @@ def list_job_tools(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make:
 
 
 def count_open_items(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
-    """Return the number of open items before the job can start: tool actions and errors of the proof."""
+    """Return the number of open items that must be solved before the job can start.
+
+    Open items are required tool actions and errors of the proof.
+    """
     return (
         sum(len(each.required_actions) for each in list_job_tools(job, lives, parts_to_make))
         + job.setup_sheet.error_count
@@ -77,7 +86,7 @@ def count_open_items(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_mak
 
 
 def select_findings(sheet: SetupSheet) -> tuple[Diagnostic, ...]:
-    """Return the first errors of the proof, followed by its first warnings."""
+    """Return the most important findings of the proof, errors before warnings."""
     worth = [each for each in sheet.diagnostics if each.severity is not Severity.NOTE]
     return tuple(sorted(worth, key=lambda each: (each.severity is not Severity.ERROR, each.line))[:_TOLD])
 
@@ -102,7 +111,10 @@ def _of_life(tool: SetupTool, life: ToolLife | None, parts: int) -> Iterator[str
 
 
 def _parts_left(life: ToolLife, seconds: float) -> int | None:
-    """Return the number of parts that the tool life covers, at the cutting time per part of this job."""
+    """Return the number of parts that the remaining tool life covers.
+
+    ``seconds`` is the cutting time per part of this job. The result is None if the tool life has no limit.
+    """
     left = [life.limit_parts - life.parts] if life.limit_parts else []
     if life.limit_seconds and seconds > 0.0:
         left.append(int((life.limit_seconds - life.seconds) / seconds + 1e-9))
@@ -110,7 +122,7 @@ def _parts_left(life: ToolLife, seconds: float) -> int | None:
 
 
 def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
-    """Yield a note if the tool tip differs from that at the last start of the program."""
+    """Yield a note if the tool tip has changed since the last start of the program."""
     then, now = job.tools_at_last_start.get(tool.tool_number), tool.tool_offset
     if then is None or now is None:
         return
@@ -145,7 +157,7 @@ JOBS_PAGE = "JOBS"  # name of the page in app.screen.page_table
 
 
 class JobsFunction(PageFunction):
-    """Special function with the number of waiting jobs and the next job."""
+    """Special function that shows the number of waiting jobs and the next job."""
 
     name = "JOBS"
     use = "next job, number of parts, setup requirements"
@@ -156,7 +168,7 @@ class JobsFunction(PageFunction):
     )
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
-        """Return the rows with the active, next and waiting jobs."""
+        """Return the rows for the active job, the next job and the number of waiting jobs."""
         watch = self.desk.page_registry.find(JobWatch)
         if watch is None:
             return ()
@@ -171,7 +183,7 @@ class JobsFunction(PageFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt that names the keys."""
+        """Return the prompt that explains the keys."""
         return "ENTER: OPEN JOBS   ESC: BACK TO THE LIST"
 
 
@@ -182,7 +194,10 @@ MAX_PROOFS = 20
 
 @dataclass(slots=True)
 class JobProofs:
-    """Proofs of jobs by program and offsets. ``request_proofs`` and ``find_proof`` never wait."""
+    """Proofs of jobs, identified by program and offsets.
+
+    ``request_proofs`` and ``find_proof`` never block.
+    """
 
     prove_program: ProveFunction
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-jobs"))
@@ -190,9 +205,9 @@ class JobProofs:
     _asked: tuple[str, int] | None = None
 
     def request_proofs(self, programs: Sequence[str], offsets: int) -> None:
-        """Request proofs, the first program first, and cancel an obsolete proof; called once per frame.
+        """Request proofs in the order of ``programs`` and cancel an obsolete proof.
 
-        ``offsets`` identifies the state of the offset tables.
+        ``offsets`` identifies the state of the offset tables. This method is called once per frame.
         """
         self.worker.poll()
         keys = [(program, offsets) for program in programs[:MAX_PROOFS]]
@@ -204,11 +219,11 @@ class JobProofs:
         self.worker.request(partial(self.prove_program, wanted[0]), done, done)
 
     def find_proof(self, program: str, offsets: int) -> ProvedJob | str | None:
-        """Return the proof of a program, the reason why proving failed, or None while it is pending."""
+        """Return the proof of a program, the reason why proving failed, or None while proving is pending."""
         return self._made.get((program, offsets))
 
     def clear_proofs(self) -> None:
-        """Discard all proofs, because files and shapes can have changed."""
+        """Discard all proofs because files and shapes can have changed."""
         self._made.clear()
         self._asked = None
 
@@ -231,7 +246,7 @@ JOBS_KEY = "Shift+F6"  # name of the key in app.screen.window.key_table
 class JobWatch:
     """Watch of the job queue.
 
-    ``observe`` is called once per frame. Only the operator loads and starts jobs.
+    ``observe`` must be called once per frame. Only the operator loads and starts jobs.
     """
 
     desk: Desk
@@ -245,31 +260,37 @@ class JobWatch:
 
     @property
     def jobs(self) -> tuple[JobRow, ...]:
-        """Stored jobs of the queue."""
+        """Return the stored jobs of the queue."""
         jobs: tuple[JobRow, ...] = self.parts_watch.parts_book.current.feature_data.get(BOOK_KEY, ())
         return jobs
 
     @property
     def active_job(self) -> JobRow | None:
-        """Active job, whose parts are counted, or None."""
+        """Return the active job, for which finished parts are counted, or None."""
         return next((row for row in self.jobs if row.is_active), None)
 
     def is_active_and_loaded(self, job: JobRow) -> bool:
-        """Return whether a job is active and its program is loaded, which may differ after a restart."""
+        """Return whether a job is active and its program is loaded.
+
+        After a restart, a job can be active although its program is not loaded.
+        """
         return job.is_active and self.desk.program_loader.loaded.name == job.program
 
     @property
     def next_job(self) -> JobRow | None:
-        """First unfinished job that is not active, or None."""
+        """Return the first unfinished job that is not active, or None."""
         return next((row for row in self.jobs if not row.is_done and not row.is_active), None)
 
     @property
     def tool_lives(self) -> Mapping[int, ToolLife]:
-        """Tool life of all tools."""
+        """Return the tool life of all tools by tool number."""
         return self.parts_watch.tool_life_watch.read_lives()
 
     def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
-        """Update the active job, its target and the proofs. Called once per frame."""
+        """Update the active job, its part target and the proofs.
+
+        This method is called once per frame.
+        """
         counter = self.desk.program_runs.part_counter
         if (counter.program, counter.count) != self._counted:
             self._counted = counter.program, counter.count
@@ -283,7 +304,10 @@ class JobWatch:
         self._prove(snapshot)
 
     def _prove(self, snapshot: Snapshot) -> None:
-        """Request the proofs of the selected and the next job, and of all jobs while no program runs."""
+        """Request the proofs of the selected job and the next job.
+
+        While no program runs, request the proofs of all waiting jobs.
+        """
         waiting = [row.program for row in self.jobs if not row.is_done and not row.is_active]
         wanted = waiting if snapshot.state not in ACTIVE_STATES else waiting[:1]
         self.proofs.request_proofs(
@@ -293,7 +317,10 @@ class JobWatch:
     # --- loading a job -----------------------------------------------------------------------------------
 
     def load_job(self, job: JobRow) -> None:
-        """Load the program of a job that the operator has selected. Its parts count after loading."""
+        """Load the program of a job that the operator has selected.
+
+        Parts count for the job after its program is loaded.
+        """
         if not self.desk.program_choice.can_choose():
             return
         path = self.desk.program_choice.program_folders.find_path(job.program)
@@ -307,9 +334,9 @@ class JobWatch:
         self._loading = job, path, loads
 
     def _begin(self, loaded: LoadedProgram) -> None:
-        """Start the job after loading.
+        """Start the job after its program is loaded.
 
-        A question about an interrupted job can still cancel the loading.
+        A question about an interrupted job can still cancel loading.
         """
         if self._loading is None:
             return
@@ -330,9 +357,9 @@ class JobWatch:
     # --- messages ------------------------------------------------------------------------------------
 
     def _report_finished(self, job: JobRow | None) -> None:
-        """Report once when the count of a job is reached.
+        """Report a finished job once, when its count is reached.
 
-        The notice shows jobs finished before the start.
+        Jobs that were finished before TurnDesk started appear only in the notice.
         """
         if not self.parts_watch.parts_book.load_count:
             return
@@ -362,7 +389,10 @@ class JobWatch:
         return Message("{words}, {job}", words=words, job=self.describe_state(job))
 
     def describe_state(self, job: JobRow) -> str:
-        """Return the state of a waiting job as text: not proved, open items or ready."""
+        """Return the state of a waiting job as text.
+
+        The text says that the job is not proved, has open items or is ready.
+        """
         made = self.proofs.find_proof(job.program, self.desk.offset_book.changes)
         if made is None:
             return tr("NOT PROVED YET")
@@ -376,7 +406,7 @@ class JobWatch:
         )
 
     def make_notice(self, snapshot: Snapshot) -> NoticeRow | None:
-        """Return the notice of the Automatic page about a finished job and the next job, or None."""
+        """Return the notice about a finished job and the next job for the Automatic page, or None."""
         job = self.active_job
         if (
             job is None
@@ -388,7 +418,7 @@ class JobWatch:
         return NoticeRow(self._done_words(job), self._next_words(), ((JOBS_KEY, "SHIFT+F6"),), "run")
 
     def due_reminder(self) -> str:
-        """Return an empty string, because the notice replaces the text on the prompt line."""
+        """Return an empty string because the notice replaces the text on the prompt line."""
         return ""
 
     def close(self) -> None:
@@ -397,4 +427,4 @@ class JobWatch:
 
 
 def _nothing() -> None:
-    """Do nothing, because the queue shows the stored change."""
+    """Do nothing because the queue shows the stored change."""

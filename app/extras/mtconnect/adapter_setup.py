@@ -1,4 +1,4 @@
-"""MTConnect adapter of a machine, and its device model."""
+"""Setup of the MTConnect adapter of a machine and of its device model."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ from drivers.wakeups import RealClock
 def start_adapter(
     machine: Machine, snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
 ) -> Callable[[], None] | None:
-    """Start to report the machine to agents, and return a function that stops it.
+    """Start to report the state of the machine to agents, and return a function that stops reporting.
 
-    A port that cannot be opened is reported, and the machine runs anyway. Returns None if the adapter is not
-    enabled or cannot run.
+    If the port cannot be opened, the error is reported and the machine runs without the adapter. Returns
+    None if the adapter is not enabled or cannot run.
     """
     model = machine.hardware.find_driver_table(MtconnectTable)
     if model is None or not model.enabled:
@@ -50,9 +50,10 @@ def start_headless_adapter(
     *,
     is_real_time: bool,
 ) -> Callable[[], None] | None:
-    """Start to report a run without a screen, and return a function that stops it.
+    """Start to report a run without a screen, and return a function that stops reporting.
 
-    A run that is faster than real time is not reported, because it would report parts that were not made.
+    A run that is faster than real time is not reported, because the reports would include parts that were
+    not made. Returns None if nothing is reported.
     """
 
     def tell(why: str) -> None:
@@ -71,7 +72,10 @@ def is_adapter_enabled(machine: Machine) -> bool:
 
 
 def check_adapter(machine: Machine, model: MtconnectTable) -> None:
-    """Check that the port can be opened and the device model can be made. Raises DriverError."""
+    """Check that the port can be opened and that the device model is valid.
+
+    Raises DriverError.
+    """
     open_listening_socket(model.bind, model.port).close()
     make_device_model(machine, get_utc_now())
 
@@ -79,7 +83,10 @@ def check_adapter(machine: Machine, model: MtconnectTable) -> None:
 def make_adapter(
     machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]
 ) -> MtconnectAdapter:
-    """Return the adapter on the real-time clock. Its data is from snapshots only."""
+    """Return the adapter, which uses the real-time clock.
+
+    All data of the adapter are from snapshots.
+    """
     device = make_device(machine, model.device)
     reader = MachineReader(machine, time.monotonic)
     return MtconnectAdapter(
@@ -88,9 +95,9 @@ def make_adapter(
 
 
 def make_device_model(machine: Machine, time: datetime) -> str:
-    """Return ``Devices.xml`` for the agent.
+    """Return the document ``Devices.xml`` for the agent.
 
-    Raises DriverError without [mtconnect] or for an invalid name.
+    Raises DriverError if the [mtconnect] table is missing or the device name is invalid.
     """
     model = machine.hardware.find_driver_table(MtconnectTable)
     if model is None:
@@ -107,9 +114,9 @@ def make_device_model(machine: Machine, time: datetime) -> str:
 
 
 def make_device(machine: Machine, name: str) -> Component:
-    """Return the device model of a machine under a name.
+    """Return the device model of a machine with the given name.
 
-    On a lathe the spindle is also the C axis, unless C has a separate drive.
+    On a lathe, the spindle is also the C axis unless C has a separate drive.
     """
     lathe = machine.kind == "lathe"
     one = lathe and machine.spindle_is_c

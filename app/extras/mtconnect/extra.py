@@ -1,4 +1,4 @@
-"""Registration of the MTConnect adapter."""
+"""Registration of the optional feature with the MTConnect adapter."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TABLE = "mtconnect"  # table whose presence loads the adapter
 
 
 class MtconnectExtra(OptionalFeature):
-    """Optional feature with the MTConnect adapter and ``turndesk machine mtconnect``."""
+    """Optional feature with the MTConnect adapter and the command ``turndesk machine mtconnect``."""
 
     machine_actions = ("mtconnect",)
     supervised_threads = {"mtconnect": "MTCONNECT"}

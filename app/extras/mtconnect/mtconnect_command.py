@@ -1,4 +1,7 @@
-"""Command ``turndesk machine mtconnect`` with the device model, and the adapter's row of machine check."""
+"""Command ``turndesk machine mtconnect``, which prints the device model.
+
+The module also adds the row of the adapter to ``turndesk machine check``.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def add_parser(actions: SubParsers) -> None:
-    """Add the action to ``turndesk machine``."""
+    """Add the action ``mtconnect`` to the command ``turndesk machine``."""
     model = actions.add_parser(
         "mtconnect", help="print the device model (Devices.xml) for an MTConnect agent"
     )
@@ -25,7 +28,10 @@ def add_parser(actions: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write ``Devices.xml`` of a machine file to stdout. Raises CommandError."""
+    """Write ``Devices.xml`` for a machine file to stdout.
+
+    Raises CommandError.
+    """
     from app.compose.machine.machine_setup import read_machine
     from app.extras.mtconnect.adapter_setup import is_adapter_enabled, make_device_model
     from core.ports import DriverError
@@ -40,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def check_mtconnect(machine: Machine, report: CheckResults) -> None:
-    """Add a row that shows whether agents can connect to the adapter and its device model is valid."""
+    """Add a row that shows whether agents can connect and whether the device model is valid."""
     from app.compose.backends.backend_entry import CheckRow
     from app.extras.mtconnect.adapter_setup import check_adapter
     from app.extras.mtconnect.driver.mtconnect_table import MtconnectTable

@@ -1,4 +1,4 @@
-"""Announcements to other systems: finished parts, stops, alarms and used-up tool life."""
+"""Announcements to other systems about finished parts, stops, alarms and used-up tool life."""
 
 from __future__ import annotations
 
@@ -19,19 +19,26 @@ _FAULTS = frozenset({"ALARM", "E-STOP", "CONTROL SILENT"})
 
 @dataclass(frozen=True, slots=True)
 class Announcement:
-    """Event with its kind (part, stop, alarm, tool-life or runs), a sentence, and the status."""
+    """Announcement of an event.
+
+    ``kind`` is part, stop, alarm, tool-life or runs. ``text`` is a sentence, and ``status`` is the status
+    at the event.
+    """
 
     kind: str
     text: str
     status: StatusDocument
 
     def make_json(self) -> bytes:
-        """Return the JSON with kind and text in addition to the keys of the status."""
+        """Return the JSON with the keys of the status, and with the kind and the text of the event."""
         return json.dumps({"event": self.kind, "text": self.text, **self.status}).encode()
 
 
 def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterator[Announcement]:
-    """Yield the events between two statuses. No events without a previous status."""
+    """Yield the events between two statuses.
+
+    Without a previous status, there are no events.
+    """
     state, was = str(current["state"]), previous.get("state")
     if was is None:
         return
@@ -52,9 +59,9 @@ def find_events(previous: Mapping[str, Any], current: StatusDocument) -> Iterato
 
 
 def _more(before: object, now: object) -> bool:
-    """Return whether parts were made since the start.
+    """Return whether the count of parts made since the start has increased.
 
-    The program's own count can also be edited.
+    The count of the program is not used, because the operator can edit it.
     """
     return isinstance(now, int) and isinstance(before, int) and now > before
 
@@ -71,20 +78,23 @@ def _changed(was: str, state: str, now: StatusDocument) -> Iterator[Announcement
 
 
 class AnnouncementReceiver(Protocol):
-    """Receiver of announcements. Neither call waits for the other side."""
+    """Receiver of announcements.
+
+    No method waits for a response of the other system.
+    """
 
     def send_status(self, status: StatusDocument) -> None:
-        """Send the status of the machine after a change."""
+        """Send the status of the machine after the status has changed."""
 
     def send_announcement(self, announcement: Announcement) -> None:
-        """Send an announcement."""
+        """Send the announcement of an event."""
 
     def close(self) -> None:
-        """Close the connection when TurnDesk ends."""
+        """Close the connection when TurnDesk closes."""
 
 
 class Announcer:
-    """Announcer that polls the status twice per second in a separate thread."""
+    """Announcer that polls the status twice per second in its own thread."""
 
     def __init__(self, look: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]) -> None:
         self._look, self._told = look, receivers
@@ -92,17 +102,23 @@ class Announcer:
         self._thread = RepeatingThread("announcer", self.poll, POLL_INTERVAL_S)
 
     def start(self) -> None:
-        """Start the thread; to be called once."""
+        """Start the thread.
+
+        This method may be called only once.
+        """
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the thread and close all receivers. MQTT then reports that TurnDesk is offline."""
+        """Stop the thread and close all receivers.
+
+        The MQTT receiver then reports that TurnDesk is offline.
+        """
         self._thread.close()
         for each in self._told:
             each.close()
 
     def poll(self) -> None:
-        """Poll the status once, and send changes and events."""
+        """Read the status once, and send changes and events to the receivers."""
         now = self._look()
         shown = {key: value for key, value in now.items() if key not in _ALWAYS_NEW}
         if shown != {key: value for key, value in self._before.items() if key not in _ALWAYS_NEW}:

@@ -1,4 +1,4 @@
-"""Registration of the office status page and of the announcements by MQTT and webhook."""
+"""Registration of the optional feature with the office status page and announcements by MQTT and webhook."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _TABLES = frozenset({"status_page", "announce"})  # tables whose presence loads 
 
 
 class OfficeExtra(OptionalFeature):
-    """Optional feature with the office status page and announcements; tables [status_page] and [announce]."""
+    """Optional feature with the office status page and announcements.
+
+    The feature declares the tables [status_page] and [announce] of the machine file.
+    """
 
     supervised_threads = {
         "status-page": "STATUS PAGE",

@@ -1,4 +1,7 @@
-"""MQTT receiver with the topics TOPIC/available (offline by last will), TOPIC/state and TOPIC/event."""
+"""MQTT receiver of announcements.
+
+The topics are TOPIC/available (set to offline by the last will), TOPIC/state and TOPIC/event.
+"""
 
 from __future__ import annotations
 
@@ -38,12 +41,15 @@ _log = logging.getLogger(__name__)
 
 
 class _Client(mqtt.Client):
-    """Paho client that reports why it could not connect."""
+    """Paho client that reports the reason if it cannot connect."""
 
     failed: Callable[[Exception], None]
 
     def reconnect(self) -> MQTTErrorCode:
-        """Reconnect; called by paho's thread, which continues only after an OSError."""
+        """Reconnect to the broker.
+
+        The thread of paho calls this method and continues only after an OSError.
+        """
         try:
             return super().reconnect()
         except (OSError, ValueError) as error:  # ValueError: an invalid name
@@ -52,7 +58,10 @@ class _Client(mqtt.Client):
 
 
 class MqttReceiver:
-    """MQTT connection, which paho's thread opens again whenever the broker was away."""
+    """Receiver that publishes to an MQTT broker.
+
+    The thread of paho reconnects after the broker was unavailable.
+    """
 
     def __init__(self, table: AnnounceTable) -> None:
         self._topic = table.topic.rstrip("/")
@@ -77,25 +86,26 @@ class MqttReceiver:
     def send_status(self, status: StatusDocument) -> None:
         """Publish the status as a retained message.
 
-        The latest status waits while the broker is away.
+        While the broker is unavailable, the latest status is stored and sent later.
         """
         self._state = json.dumps(status).encode()
         if self._client.is_connected():
             self._client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)
 
     def send_announcement(self, announcement: Announcement) -> None:
-        """Publish an announcement that is not retained.
+        """Publish an announcement as a message that is not retained.
 
-        The latest hundred wait for a broker that is away.
+        While the broker is unavailable, the latest 100 announcements are stored and sent later.
         """
         self._waiting.append(announcement)
         self._publish_waiting()
 
     def close(self) -> None:
-        """Publish offline, because a last will is sent only after a broken connection.
+        """Publish the offline status and disconnect.
 
-        If the broker does not respond, the connection is left open. The broker then publishes the last will
-        after this process has ended. Paho's thread ends with the process.
+        The status must be published because the broker sends the last will only after a broken connection.
+        If the broker does not respond, the connection remains open. The broker then publishes the last will
+        after this process has ended. The thread of paho ends with the process.
         """
         if not self._client.is_connected():
             self._client.disconnect()
@@ -112,7 +122,10 @@ class MqttReceiver:
             return True
 
     def _publish_waiting(self) -> None:
-        """Publish waiting announcements while connected, because a full queue of paho rejects the latest."""
+        """Publish waiting announcements while the client is connected.
+
+        They do not wait in the queue of paho, because a full queue rejects the latest announcement.
+        """
         with self._handing:
             while self._waiting and self._client.is_connected():
                 event = self._waiting.popleft().make_json()
@@ -145,7 +158,7 @@ class MqttReceiver:
         reason: ReasonCode,
         _more: Properties | None,
     ) -> None:
-        """Report a lost connection, including a host that accepts the connection but does not respond."""
+        """Report a lost connection, or a host that accepts the connection but does not respond."""
         answered, refused = self._answered, self._refused
         self._answered = self._refused = False
         if refused or not reason.is_failure:  # the rejection has already reported the cause

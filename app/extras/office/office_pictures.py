@@ -1,4 +1,4 @@
-"""Pictures of the office page: following errors around an alarm as SVG, and an image as PNG."""
+"""Pictures of the office page: an SVG with the following errors around an alarm, and a PNG of an image."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _ERROR = " following error"
 
 
 def make_alarm_svg(record: ScopeRecord) -> bytes:
-    """Return the following errors over time on one scale, with the text and time of the alarm, as SVG."""
+    """Return an SVG of the following errors over time, with the text and the time of the alarm.
+
+    All errors have the same scale. The result is empty if there are no data.
+    """
     curves = _curves(record)
     times = record.times_s - record.times_s[0] if len(record.times_s) else record.times_s
     lasts = float(times[-1]) if len(times) else 0.0
@@ -49,7 +52,7 @@ def make_alarm_svg(record: ScopeRecord) -> bytes:
 
 
 def _curves(record: ScopeRecord) -> dict[str, FloatArray]:
-    """Return the following errors by letter, for linear axes with data."""
+    """Return the following errors by axis letter, for the linear axes that have data."""
     found = {
         each.name.removesuffix(_ERROR): record.values_by_channel[each.name]
         for each in record.channels
@@ -59,7 +62,10 @@ def _curves(record: ScopeRecord) -> dict[str, FloatArray]:
 
 
 def _curve(at: FloatArray, height: FloatArray, ink: str) -> str:
-    """Return a curve with the minimum and maximum of each column, so that no peak is lost."""
+    """Return the SVG element of a curve.
+
+    The curve contains the minimum and maximum of each column, so no peak is lost.
+    """
     known = np.isfinite(height)
     at, height = at[known], height[known]
     chunks = np.array_split(np.arange(len(at)), min(_POINTS, len(at)))
@@ -81,7 +87,11 @@ _BITS, _RGBA = 8, 6  # bits per sample; the color type
 
 
 def encode_png(pixels: bytes, width: int, height: int) -> bytes:
-    """Return a PNG. Pixels have 32 bits (alpha, red, green, blue from the highest), rows from the top."""
+    """Return an image as a PNG file.
+
+    Pixels have 32 bits: alpha, red, green and blue, from the highest bits to the lowest. Rows start at the
+    top.
+    """
     argb = np.frombuffer(pixels, dtype=np.uint32).reshape(height, width)
     rgba = np.stack([argb >> 16, argb >> 8, argb, argb >> 24], axis=-1).astype(np.uint8)
     rows = np.zeros((height, 1 + 4 * width), dtype=np.uint8)  # each row begins with its filter type, 0

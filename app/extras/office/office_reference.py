@@ -1,4 +1,4 @@
-"""JSON keys of the office page, MQTT and webhook, for the reference and its tests."""
+"""JSON keys of the office page, MQTT and webhook, for the reference documentation and its tests."""
 
 from __future__ import annotations
 

@@ -42,9 +42,9 @@ MAX_LISTED_STOPS = 6  # number of latest stops
 
 @dataclass(frozen=True, slots=True)
 class StatusSource:
-    """Source of the status, readable from any thread.
+    """Source of the status, which can be read from any thread.
 
-    ``time_left`` returns seconds, inf while stopped.
+    ``calculate_time_left`` returns seconds, or inf while the machine is stopped.
     """
 
     machine: str
@@ -55,9 +55,9 @@ class StatusSource:
     get_current_utc: Callable[[], datetime]
 
     def read_status(self) -> StatusDocument:
-        """Return the keys of status.json and of the page.
+        """Return the values for status.json and the page by key.
 
-        Times are in seconds, and None means not known.
+        Times are in seconds. None means that a value is not known.
         """
         snapshot = self.read_snapshot()
         reading = self.floor_reader.read_snapshot(snapshot)
@@ -100,7 +100,7 @@ _NOTHING_KNOWN: StatusDocument = {
 
 
 def _words(snapshot: Snapshot) -> str:
-    """Return the reason why the machine is stopped, in the words of the screen."""
+    """Return the reason why the machine is stopped, with the wording of the screen."""
     if snapshot.alarms:
         return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
     if snapshot.message:
@@ -118,7 +118,8 @@ def start_office(
 ) -> Callable[[], None]:
     """Start the status page and the announcer, and return a function that stops them.
 
-    The machine file enables them. A failure is reported, and the machine runs anyway.
+    Each of them starts only if the machine file enables it. If one fails, the error is reported and the
+    machine runs without it.
     """
     look = _look(desk, machine)
     closing: list[Callable[[], None]] = []
@@ -221,7 +222,10 @@ def _page(
 
 @dataclass(slots=True)
 class PartPicture:
-    """PNG of the loaded program's part, drawn once per program and only while no program runs."""
+    """PNG image of the part of the loaded program.
+
+    The part is drawn once per program, and only while no program runs.
+    """
 
     get_job: Callable[[], Job | None]
     is_idle: Callable[[], bool]  # whether drawing delays nothing
@@ -229,13 +233,16 @@ class PartPicture:
     _drawn: tuple[str, bytes] = ("", b"")
 
     def update(self) -> None:
-        """Draw the part of a new program; called repeatedly by one thread."""
+        """Draw the part if the program is new and no program runs.
+
+        One thread calls this method repeatedly.
+        """
         job = self.get_job()
         if job is not None and job.digest != self._drawn[0] and self.is_idle():
             self._drawn = job.digest, self._png(job)
 
     def get_png(self) -> bytes:
-        """Return the PNG, or empty bytes if no part is drawn."""
+        """Return the PNG, or empty bytes if the part of the loaded program is not drawn yet."""
         job, (digest, png) = self.get_job(), self._drawn
         return png if job is not None and job.digest == digest else b""
 
@@ -248,14 +255,17 @@ class PartPicture:
 
 @dataclass(slots=True)
 class AlarmPicture:
-    """Drawing of the latest alarm record of the scope. ``folder`` is None without records."""
+    """Drawing of the latest alarm record of the scope.
+
+    ``folder`` is None if no records are stored.
+    """
 
     folder: Path | None
     is_idle: Callable[[], bool]
     _drawn: tuple[str, bytes] = ("", b"")
 
     def update(self) -> None:
-        """Draw a new record while no program runs."""
+        """Draw a new alarm record if no program runs."""
         from core.records.record_file import RECORD_SUFFIX
 
         names = sorted(self.folder.glob(f"*-alarm*{RECORD_SUFFIX}")) if self.folder is not None else []
@@ -263,7 +273,7 @@ class AlarmPicture:
             self._drawn = names[-1].name, _drawing(names[-1])
 
     def get_svg(self) -> bytes:
-        """Return the SVG, or empty bytes without a readable record."""
+        """Return the SVG, or empty bytes if there is no readable record."""
         return self._drawn[1]
 
 

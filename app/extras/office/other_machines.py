@@ -1,4 +1,7 @@
-"""Status of other machines, read while the page is viewed: TurnDesk systems and MTConnect agents."""
+"""Status of other machines, which are TurnDesk systems or MTConnect agents.
+
+The status is read only while the page is viewed.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +34,10 @@ _ASK = make_timed_opener(ProxyHandler({}))  # machines of one shop are accessed 
 
 
 def make_status_address(address: str) -> str:
-    """Return the address of the status of a TurnDesk page. The token remains in the query."""
+    """Return the address of the status document of a TurnDesk page.
+
+    The token remains in the query of the address.
+    """
     parts = urlsplit(address)
     return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/status.json", fragment=""))
 
@@ -39,7 +45,7 @@ def make_status_address(address: str) -> str:
 class MachineResponse(NamedTuple):
     """Part of a response that the page shows.
 
-    ``error_text`` is a stop reason or the reason for a missing status.
+    ``error_text`` is the reason why the machine is stopped, or the reason why no status is available.
     """
 
     status: Mapping[str, object] | None
@@ -47,7 +53,7 @@ class MachineResponse(NamedTuple):
 
 
 def read_turndesk_status(address: str) -> OtherMachine:
-    """Read the status of a TurnDesk system, waiting at most 2 s."""
+    """Read the status of a TurnDesk system, with a timeout of 2 s."""
     return read_status(address, make_status_address(address), _MOST, _desk_answer)
 
 
@@ -62,10 +68,11 @@ def _desk_answer(data: bytes) -> MachineResponse:
 def read_status(
     address: str, request: str, max_bytes: int, convert: Callable[[bytes], MachineResponse]
 ) -> OtherMachine:
-    """Request ``request`` and convert the response with ``convert``, which raises ValueError for invalid
-    data.
+    """Send a request to another machine and return its status.
 
-    ``max_bytes`` is the maximum number of bytes. An error is returned as the ``error_text`` of the result.
+    ``request`` is the requested address, and ``address`` names the machine. ``convert`` converts the
+    response and raises ValueError for invalid data. ``max_bytes`` limits the number of bytes that are read.
+    An error is returned as ``error_text`` of the result.
     """
     name = _name(address)
     try:
@@ -94,15 +101,19 @@ _FIGURES = frozenset({"line", "made", "time_left", "last_cycle", "spindle_load"}
 
 
 def _fits(key: str, value: object) -> bool:
-    """Return whether the page can show a value, because the other side is not trusted."""
+    """Return whether the page can show a value.
+
+    The value is checked because data of another system are not trusted.
+    """
     figure = isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < _LARGEST
     return (key in _TEXTS and isinstance(value, str)) or (key in _FIGURES and figure)
 
 
 class OtherMachines:
-    """Status of other machines. One thread per machine reads the status while ``read_states`` is called.
+    """Status of other machines.
 
-    A machine that hangs or responds slowly does not delay the others. Outdated statuses are not shown.
+    One thread per machine reads the status as long as ``read_states`` is called. A machine that does not
+    respond or responds slowly does not delay the others. An outdated status is not shown.
     """
 
     def __init__(
@@ -124,7 +135,10 @@ class OtherMachines:
         ]
 
     def start(self) -> None:
-        """Start the threads; to be called once."""
+        """Start the threads.
+
+        This method may be called only once.
+        """
         for thread in self._threads:
             thread.start()
 
@@ -139,7 +153,7 @@ class OtherMachines:
         return tuple(_if_fresh(desk, now - at) for at, desk in self._heard.values())
 
     def close(self) -> None:
-        """Stop the threads after their pending requests, without waiting for them."""
+        """Let the threads stop after their pending requests, without waiting for them."""
         self._closing.set()
         self._looked.set()
 
@@ -165,7 +179,7 @@ def _name(address: str) -> str:
 
 
 def _if_fresh(desk: OtherMachine, age: float) -> OtherMachine:
-    """Return the status, or a message if it is older than ``STALE_AFTER_S``."""
+    """Return the status, or a message if the status is older than ``STALE_AFTER_S``."""
     if age <= STALE_AFTER_S:
         return desk
     return OtherMachine(desk.address, error_text=tr(Message("no response for {age} s", age=round(age))))
@@ -183,18 +197,24 @@ _LONGEST = 15  # digits of a number
 
 
 def make_current_address(address: str) -> str:
-    """Return the address of the agent's current state. ``address`` includes the device's path."""
+    """Return the address of the current state of an agent.
+
+    ``address`` includes the path of the device.
+    """
     parts = urlsplit(address)
     return urlunsplit(parts._replace(path=parts.path.rstrip("/") + "/current", fragment=""))
 
 
 def read_agent_status(address: str) -> OtherMachine:
-    """Read the status of a machine from its agent, waiting at most 2 s."""
+    """Read the status of a machine from its agent, with a timeout of 2 s."""
     return read_status(address, make_current_address(address), _MOST_OF_AGENT, parse_streams)
 
 
 def parse_streams(data: bytes) -> MachineResponse:
-    """Return the status in an MTConnectStreams document and its faults. Raises ValueError."""
+    """Return the status and the faults in an MTConnectStreams document.
+
+    Raises ValueError.
+    """
     if b"<!DOCTYPE" in data:  # agents do not send a DOCTYPE, and entities could grow without limit
         raise ValueError(data[:40])
     try:
@@ -214,7 +234,7 @@ def parse_streams(data: bytes) -> MachineResponse:
 
 
 def _state(device: Element, *, faulty: bool) -> str:
-    """Return the state, in TurnDesk's words where possible."""
+    """Return the state of a device, in the terms of TurnDesk if possible."""
     if "TRIGGERED" in _values(device, "EmergencyStop"):
         return "E-STOP"
     if faulty:
@@ -239,7 +259,7 @@ def _whole(text: str | None) -> int | None:
 
 
 def _named(inside: Element, name: str) -> Iterator[Element]:
-    """Yield the elements with a name, independent of the version in the namespace."""
+    """Yield the elements with a name in any version of the namespace."""
     return (each for each in inside.iter() if each.tag.rpartition("}")[2] == name)
 
 

@@ -1,4 +1,4 @@
-"""Browser connections of the status page: limited in number and with a deadline per request.
+"""Browser connections of the status page, with a limited number and a time limit per request.
 
 This module is imported only if waitress is installed.
 """
@@ -22,10 +22,11 @@ _NO_HTTP = b"?\r\n\r\n"  # data that waitress rejects as a bad request
 
 
 class BrowserConnection(HTTPChannel):
-    """Browser connection. ``last_activity_s`` is the time of the connection or of the last response.
+    """Connection of a browser.
 
-    A new connection beyond a limit closes the oldest connection that is not being answered. A complete
-    request is therefore answered even while others withhold theirs.
+    ``last_activity_s`` is the time of the connection or of the last response. A new connection above the
+    limit closes the oldest connection without a request in progress. Incomplete requests of other clients
+    therefore cannot block a complete request.
     """
 
     def __init__(
@@ -43,7 +44,10 @@ class BrowserConnection(HTTPChannel):
         self._make_room()
 
     def received(self, data: bytes) -> bool:
-        """Process received bytes. Unparsable bytes become a bad request."""
+        """Process received bytes.
+
+        Bytes that cannot be parsed become a bad request.
+        """
         try:
             return bool(super().received(data))
         except ValueError:
@@ -56,7 +60,7 @@ class BrowserConnection(HTTPChannel):
         self.last_activity_s = self._clock()
 
     def end_if_late(self) -> None:
-        """Close the connection if its time is used up and no request is being answered."""
+        """Close the connection if its time limit has expired and no request is in progress."""
         if not self.requests and self._clock() - self.last_activity_s > REQUEST_DEADLINE_S:
             self.will_close = True
 

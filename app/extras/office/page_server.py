@@ -1,4 +1,4 @@
-"""Server of the status page: listening socket, and threads that answer browsers."""
+"""Server of the status page, with a listening socket and threads that respond to browsers."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ CLOSE_TIMEOUT_S = 2.0  # seconds that closing waits for its threads
 
 
 class StatusPageServer:
-    """Server that answers browsers until it is closed."""
+    """Server that responds to browsers until it is closed."""
 
     def __init__(
         self,
@@ -36,7 +36,10 @@ class StatusPageServer:
         between: Callable[[], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        """Create the server. Its thread calls ``between`` twice per second."""
+        """Create the server.
+
+        The thread of the server calls ``between`` twice per second.
+        """
         from waitress import wasyncore
         from waitress.server import create_server
         from waitress.task import ThreadedTaskDispatcher
@@ -66,11 +69,14 @@ class StatusPageServer:
         self._thread = threading.Thread(target=self._serve, name="status-page", daemon=True)
 
     def start(self) -> None:
-        """Start the thread; to be called once."""
+        """Start the thread.
+
+        This method may be called only once.
+        """
         self._thread.start()
 
     def close(self) -> None:
-        """Stop answering browsers."""
+        """Stop responding to browsers."""
         self._closing.set()
         self._thread.join(CLOSE_TIMEOUT_S)
 
@@ -88,7 +94,10 @@ class StatusPageServer:
 
 
 def open_listening_socket(bind: str, port: int) -> socket.socket:
-    """Return the listening socket for browsers. Raises DriverError."""
+    """Return the listening socket for browsers.
+
+    Raises DriverError.
+    """
     try:
         family, kind, protocol, _, address = socket.getaddrinfo(bind, port, type=socket.SOCK_STREAM)[0]
         found = socket.socket(family, kind, protocol)

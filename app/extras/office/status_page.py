@@ -1,8 +1,8 @@
-"""Status page of TurnDesk and other machines for office and phone; display only.
+"""Status page of TurnDesk and of other machines for an office computer or a phone.
 
-A WSGI application with the addresses ``/`` (the make_page), ``/now`` (its changing part), ``status.json``,
-``part.get_part_png`` and ``alarm.get_alarm_svg``. The page uses the language of the screen, and
-``status.make_status_json`` is independent of the language.
+The page only displays values. It is a WSGI application with the addresses ``/`` (the page), ``/now`` (the
+part of the page that changes), ``status.json``, ``part.png`` and ``alarm.svg``. The page uses the language
+of the screen. ``status.json`` does not depend on the language.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ HeaderList = list[tuple[str, str]]
 class OtherMachine:
     """Latest state of another machine.
 
-    ``status`` is None if not known, and ``trouble`` is the reason.
+    ``status`` is None if the status is not known. ``error_text`` is then the reason.
     """
 
     address: str
@@ -55,7 +55,11 @@ class OtherMachine:
 
 @dataclass(frozen=True, slots=True)
 class StatusPage:
-    """Status page. ``picture`` returns the part as PNG, ``alarm`` the last alarm as SVG, or empty bytes."""
+    """Status page as a WSGI application.
+
+    ``read_part_png`` returns a PNG of the part, and ``read_alarm_svg`` returns an SVG of the last alarm.
+    Both return empty bytes if there is no picture.
+    """
 
     machine: str
     token: str
@@ -65,7 +69,7 @@ class StatusPage:
     read_alarm_svg: Callable[[], bytes]
 
     def __call__(self, environ: WSGIEnvironment, start: StartResponse) -> Iterable[bytes]:
-        """Answer one WSGI request."""
+        """Respond to one WSGI request."""
         status, headers, body = self._answer(environ)
         size = ("Content-Length", str(len(body)))
         start(f"{status.value} {status.phrase}", [*headers, *_ALWAYS, size])
@@ -90,7 +94,7 @@ class StatusPage:
         return HTTPStatus.OK, [("Content-Type", kind), *kept], body
 
     def make_page(self) -> tuple[str, bytes]:
-        """Return the type and content of the whole page."""
+        """Return the content type and the content of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
             title=escape(self.machine),
@@ -110,30 +114,33 @@ class StatusPage:
         return "text/html; charset=utf-8", page.encode()
 
     def make_changing_part(self) -> tuple[str, bytes]:
-        """Return the type and content of the changing part of the page."""
+        """Return the content type and the content of the part of the page that changes."""
         return "text/html; charset=utf-8", self._now().encode()
 
     def get_style_sheet(self) -> tuple[str, bytes]:
-        """Return the type and content of the style sheet."""
+        """Return the content type and the content of the style sheet."""
         return "text/css; charset=utf-8", (_FILES / "page.css").read_bytes()
 
     def get_script(self) -> tuple[str, bytes]:
-        """Return the type and content of the script.
+        """Return the content type and the content of the script.
 
-        The script refreshes the page and reports lost connections.
+        The script refreshes the page and reports a lost connection.
         """
         return "text/javascript; charset=utf-8", (_FILES / "page.js").read_bytes()
 
     def make_status_json(self) -> tuple[str, bytes]:
-        """Return the type and content of the JSON for other machines and scripts."""
+        """Return the content type and the content of the JSON status for other machines and scripts."""
         return "application/json", (json.dumps(self.read_status(), indent=1) + "\n").encode()
 
     def get_part_png(self) -> tuple[str, bytes]:
-        """Return the type and content of the part's picture."""
+        """Return the content type and the content of the picture of the part."""
         return "image/png", self.read_part_png()
 
     def get_alarm_svg(self) -> tuple[str, bytes]:
-        """Return the type and content of the following errors before the last alarm."""
+        """Return the content type and the content of the chart for the last alarm.
+
+        The chart shows the following errors before the alarm.
+        """
         return "image/svg+xml", self.read_alarm_svg()
 
     def _now(self) -> str:
@@ -158,7 +165,7 @@ _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
 
 
 def _find_token(environ: WSGIEnvironment) -> str:
-    """Return the token of a request from the address, the bearer header or the cookie."""
+    """Return the token of a request from its address, its bearer header or its cookie."""
     query = parse_qs(environ.get("QUERY_STRING", "")).get("token", [""])[0]
     bearer = environ.get("HTTP_AUTHORIZATION", "").removeprefix("Bearer ")
     try:
@@ -180,12 +187,12 @@ def _look(state: str) -> str:
 
 
 def _mark(picture: bytes) -> str:
-    """Return a checksum by which a browser detects a new picture, or an empty string."""
+    """Return a checksum that changes with the picture, or an empty string if there is no picture."""
     return f"{crc32(picture):x}" if picture else ""
 
 
 def _picture(name: str, address: str, picture: bytes, words: str) -> str:
-    """Return a figure with its caption, hidden without a picture."""
+    """Return the HTML figure of a picture with its caption, hidden if there is no picture."""
     mark = _mark(picture)
     source = f'src="{address}?{mark}"' if mark else ""
     hidden = "" if mark else " hidden"
@@ -210,7 +217,7 @@ def _alarm(alarm: Mapping[str, Any]) -> str:
 
 
 def _head(status: Mapping[str, Any], trouble: str = "") -> str:
-    """Return the state and its reason."""
+    """Return the HTML of the state and its reason."""
     state = str(status.get("state") or status.get("execution") or "?")
     why = trouble or str(status.get("stop") or status.get("waiting_for") or "")
     said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
@@ -218,9 +225,9 @@ def _head(status: Mapping[str, Any], trouble: str = "") -> str:
 
 
 def _local(at: object, *, short: bool = False) -> str:
-    """Return an ISO 8601 time in local time, or the text unchanged if it is not a time.
+    """Return an ISO 8601 time as local time, or the text unchanged if it is not a time.
 
-    ``short`` omits today's date, and otherwise the seconds.
+    ``short`` omits the date if it is today, or else omits the seconds.
     """
     try:
         here = datetime.fromisoformat(str(at)).astimezone()

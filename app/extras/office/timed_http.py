@@ -1,4 +1,4 @@
-"""HTTP requests with a deadline for the whole exchange, and causes of failed connections."""
+"""HTTP requests with a time limit for the whole exchange, and the causes of failed connections."""
 
 from __future__ import annotations
 
@@ -28,17 +28,21 @@ Clock = Callable[[], float]
 
 
 class _TimedReader(io.RawIOBase):
-    """Reader of a socket until ``left`` returns 0 seconds. Raises TimeoutError."""
+    """Reader of a socket with a time limit.
+
+    The ``left`` parameter is a function that returns the remaining seconds. Reading raises TimeoutError
+    when no time remains.
+    """
 
     def __init__(self, raw: io.RawIOBase, sock: socket.socket, left: Callable[[], float]) -> None:
         self._raw, self._socket, self._left = raw, sock, left
 
     def readable(self) -> bool:
-        """Return True."""
+        """Return True because the reader can always be read."""
         return True
 
     def readinto(self, buffer: Any, /) -> int | None:
-        """Read some bytes, waiting at most for the remaining time."""
+        """Read some bytes, and wait no longer than the remaining time."""
         if (left := self._left()) <= 0.0:
             raise TimeoutError("timed out")
         self._socket.settimeout(left)
@@ -51,7 +55,10 @@ class _TimedReader(io.RawIOBase):
 
 
 class _TimedResponse(HTTPResponse):
-    """Response that is read within ``left`` seconds."""
+    """HTTP response that is read with a time limit.
+
+    The ``left`` parameter is a function that returns the remaining seconds.
+    """
 
     def __init__(self, sock: socket.socket, *args: Any, left: Callable[[], float], **more: Any) -> None:
         super().__init__(sock, *args, **more)
@@ -60,7 +67,7 @@ class _TimedResponse(HTTPResponse):
 
 
 def _timed(kind: Callable[..., HTTPConnection], clock: Clock, host: str, **more: Any) -> HTTPConnection:
-    """Return a connection whose time limit starts now and applies to the whole exchange."""
+    """Return a connection with a time limit for the whole exchange, which starts now."""
     connection, end = kind(host, **more), clock() + more["timeout"]
     connection.response_class = partial(_TimedResponse, left=lambda: end - clock())  # type: ignore[assignment]
     return connection
@@ -83,7 +90,7 @@ class _TimedHandler(HTTPHandler, HTTPSHandler):
 def make_timed_opener(
     *handlers: BaseHandler | type[BaseHandler], clock: Clock = time.monotonic
 ) -> OpenerDirector:
-    """Return a urllib opener whose ``timeout`` limits the whole exchange after connecting."""
+    """Return a urllib opener with a ``timeout`` that limits the whole exchange after connecting."""
     return build_opener(_TimedHandler(clock), *handlers)
 
 
@@ -95,7 +102,10 @@ _CAUSES = 10  # reported causes of one problem, because a server can respond dif
 
 
 def find_cause(error: Exception) -> str:
-    """Return the cause in the words of the system or the other side, without passwords and tokens."""
+    """Return the cause of a failed connection as text, without passwords and tokens.
+
+    The text has the wording of the operating system or of the server.
+    """
     cause = error.reason if isinstance(error, URLError) else error  # URLError wraps the error of the system.
     match cause:
         case TimeoutError() if cause.errno is None:
@@ -121,29 +131,35 @@ def find_cause(error: Exception) -> str:
 
 
 def extract_host(address: str) -> str:
-    """Return scheme, host and port of an address, without parts that can contain a password or token."""
+    """Return the scheme, host and port of an address, without parts that can contain a password or token."""
     parts = urlsplit(address)
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
 def make_one_line(words: str) -> str:
-    """Return a text from the other side without control characters, on one line and limited in length."""
+    """Return a received text as one line without control characters and with a limited length."""
     return "".join(sign for sign in words if sign.isprintable())[:MAX_CAUSE_LENGTH]
 
 
 class DeliveryErrorLog:
-    """Logger of failed deliveries: each cause is logged once until a delivery succeeds."""
+    """Log of failed deliveries.
+
+    Each cause is logged only once until a delivery succeeds.
+    """
 
     def __init__(self, log: logging.Logger, who: str) -> None:
         self._log, self._who = log, who
         self._said = set[str]()
 
     def log_cause(self, why: str) -> None:
-        """Log a cause; callable from any thread."""
+        """Log the cause of a failed delivery.
+
+        This method can be called from any thread.
+        """
         if why not in self._said and len(self._said) < _CAUSES:
             self._said.add(why)
             self._log.warning("%s cannot be told: %s", self._who, why)
 
     def reset(self) -> None:
-        """Reset the logged causes after a successful delivery."""
+        """Clear the logged causes after a successful delivery."""
         self._said.clear()

@@ -1,4 +1,4 @@
-"""Webhook receiver: each announcement is posted to an address until it is accepted or rejected."""
+"""Webhook receiver, which posts each announcement until the announcement is accepted or rejected."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ _log = logging.getLogger(__name__)
 
 
 class WebhookReceiver:
-    """Webhook that posts each announcement as JSON, in order, in a separate thread.
+    """Webhook that posts each announcement as JSON.
 
-    After a failed connection or a server error, the post is repeated after ``again`` seconds. A rejected
-    (4xx) or redirected (3xx) announcement is discarded.
+    Announcements are posted in order by a separate thread. After a failed connection or a server error, the
+    post is repeated after the retry time ``again`` in seconds. An announcement that is rejected (4xx) or
+    redirected (3xx) is discarded.
     """
 
     def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
@@ -45,15 +46,15 @@ class WebhookReceiver:
         self._thread.start()
 
     def send_status(self, status: StatusDocument) -> None:
-        """Do nothing, because a webhook receives only announcements."""
+        """Do nothing because a webhook receives only announcements."""
 
     def send_announcement(self, announcement: Announcement) -> None:
-        """Queue an announcement."""
+        """Queue an announcement for the thread."""
         self._waiting.append(announcement)
         self._there.set()
 
     def close(self) -> None:
-        """Tell the thread to end after the current post, and return at once."""
+        """Let the thread end after the present post, and return without waiting for it."""
         self._closing.set()
         self._there.set()
 
@@ -83,16 +84,19 @@ class WebhookReceiver:
 
 
 class _Stay(HTTPRedirectHandler):
-    """Handler that follows no redirection, because urllib would use GET without the data."""
+    """Handler that does not follow redirections.
+
+    To follow a redirection, urllib would send a GET request without the data.
+    """
 
     def redirect_request(self, *_request: object, **_more: object) -> None:
-        """Return None, so that the redirection counts as a rejection."""
+        """Return None so that a redirection counts as a rejection."""
 
 
 def post_json(address: str, data: bytes, clock: Clock = time.monotonic) -> None:
-    """Post JSON to an address.
+    """Post JSON data to an address.
 
-    Raises OSError, ValueError or HTTPException, also after ``_PATIENCE``.
+    Raises OSError, ValueError or HTTPException if the post fails or exceeds the time limit.
     """
     request = Request(address, data, {"Content-Type": "application/json"}, method="POST")
     try:

@@ -1,4 +1,4 @@
-"""Registration of the pendant."""
+"""Registration of the optional feature with the pendant."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pendant of a machine file: its device is opened and read in addition to the machine's ports."""
+"""Setup of the pendant of a machine file, which TurnDesk opens and reads in addition to the machine ports."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ DeviceFinder = Callable[[PendantModel, Mapping[str, PendantControl]], Sequence[E
 
 
 def remove_pendant(machine: Machine) -> Machine:
-    """Return the machine without the inputs and the handwheel of the pendant, as its backend is wired."""
+    """Return the machine without the inputs and the handwheel of the pendant.
+
+    The backend is wired to the remaining inputs.
+    """
     inputs = {name: each for name, each in machine.inputs.items() if not _at_pendant(each.terminal)}
     pots = {
         name: each for name, each in machine.hardware.analog_inputs.items() if not _at_pendant(each.terminal)
@@ -43,7 +46,10 @@ def remove_pendant(machine: Machine) -> Machine:
 def open_devices(
     model: PendantModel, required_controls: Mapping[str, PendantControl]
 ) -> Sequence[EventSource]:
-    """Open the nodes of the matching device. Raises DriverError with the remedy."""
+    """Open the nodes of the matching device and return them.
+
+    Raises DriverError with the remedy.
+    """
     if sys.platform != "linux":
         raise DriverError("a USB pendant works only on Linux; remove [pendant] from the machine file")
     devices: list[KernelDevice] = []
@@ -58,9 +64,9 @@ def open_devices(
 def add_pendant(
     machine: Machine, connected: ConnectedMachine, find_devices: DeviceFinder | None = None
 ) -> ConnectedMachine:
-    """Return the machine with its pendant, if configured.
+    """Return the machine with its pendant, if one is configured.
 
-    A missing pendant is reported and searched for.
+    If the pendant is missing, the fault is reported and the search for the pendant continues.
     """
     model = machine.hardware.find_driver_table(PendantModel)
     if model is None:

@@ -1,4 +1,4 @@
-"""Control charts with Cpk of a feature, and trends: cycle time, load, wear, stops and availability."""
+"""Control charts of the features with Cpk, and trends of cycle time, load, wear, stops and availability."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _MOST_BARS = 8
 
 
 class TrendsSection(QualitySection):
-    """Section with one row per trend and the chart of the selected trend below."""
+    """Section with one row per trend, and the chart of the selected trend below the rows."""
 
     name = "TRENDS"
     use = "cycle times, stops, availability"
@@ -75,22 +75,28 @@ class TrendsSection(QualitySection):
 
     @property
     def row_count(self) -> int:
-        """Number of trends."""
+        """Return the number of trends."""
         return len(self.trends)
 
     @property
     def selected_trend(self) -> str:
-        """Selected trend."""
+        """Return the name of the selected trend."""
         return self.trends[self.marked]
 
     @property
     def trends(self) -> tuple[str, ...]:
-        """Trends of this machine. A mill has no wear trend, because DL and DR are not recorded."""
+        """Return the names of the trends of this machine.
+
+        A mill has no wear trend, because DL and DR are not recorded.
+        """
         return tuple(each for each in TREND_NAMES if each != "WEAR" or not self.is_mill)
 
     @property
     def shift_hours(self) -> tuple[int, int]:
-        """First and last hour of the shift in local time, loaded once."""
+        """Return the first and the last hour of the shift in local time.
+
+        The hours are loaded only once.
+        """
         if self._shift is None:
             try:
                 kept = self.desk.program_runs.part_counter.persistence.read_setting(SHIFT_HOURS_SETTING)
@@ -100,7 +106,7 @@ class TrendsSection(QualitySection):
         return self._shift
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the trends with their values."""
+        """Return the table with the present value of each trend."""
         self.limit_selection()
         minute = int(self._now().timestamp() // 60)
         of = (
@@ -211,7 +217,10 @@ class TrendsSection(QualitySection):
         )
 
     def find_shift_availability(self) -> Availability | None:
-        """Return the availability of the present or last shift for all programs, or None before the first."""
+        """Return the availability of all programs in the present or last shift.
+
+        Returns None if no time of the shift has passed yet.
+        """
         now = self._now()
         shift = find_shift(self.shift_hours, now)
         ends = min(shift.end_s, now.timestamp())
@@ -253,7 +262,7 @@ class TrendsSection(QualitySection):
     def _wear_plots(self) -> tuple[Plot, ...]:
         """Return the wear charts, with X of tools as a diameter.
 
-        A correction applies until the next one.
+        A correction applies until the next correction.
         """
         unit, made = (
             self.control_unit.unit_mm,
@@ -309,7 +318,10 @@ class TrendsSection(QualitySection):
         return self.selected_trend == "AVAILABILITY" and len(key) == 1 and (key.isdigit() or key == "-")
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a trend, and other keys edit the shift hours."""
+        """Handle a key and return whether it was used.
+
+        The arrow keys select a trend. Other keys edit the shift hours.
+        """
         if self.move_selection(key):
             self.entry.text = ""
             return True
@@ -325,7 +337,10 @@ class TrendsSection(QualitySection):
         return True
 
     def take(self, text: str) -> bool:
-        """Set the first and last hour of the shift. Raises EntryError."""
+        """Set the first and the last hour of the shift, and return whether they were accepted.
+
+        Raises EntryError.
+        """
         first, _, last = text.partition("-")
         if not (first.isdigit() and last.isdigit() and int(first) < 24 and int(last) <= 24):
             raise EntryError(tr("enter the start and end hour of the shift, such as 6-14"))
@@ -342,7 +357,7 @@ class TrendsSection(QualitySection):
         return True
 
     def prompt_text(self) -> str:
-        """Return the prompt, or the reason why nothing is stored."""
+        """Return the prompt, or the reason why no data are stored."""
         return self.watch.parts_book.lock_reason or ("ARROWS: SELECT TREND   ESC: BACK TO LIST")
 
 
@@ -354,7 +369,7 @@ CHART_READING_COUNT = 100  # number of latest readings in a chart
 
 
 class ChartsSection(QualitySection):
-    """Section with one row per feature and the charts of the selected feature below."""
+    """Section with one row per feature, and the charts of the selected feature below the rows."""
 
     name = "CONTROL CHARTS"
     use = "limits, Cpk, drift"
@@ -367,23 +382,23 @@ class ChartsSection(QualitySection):
 
     @property
     def row_count(self) -> int:
-        """Number of features."""
+        """Return the number of features."""
         return len(self.parts_data.features)
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False, because this section has no entry."""
+        """Return False because this section has no entry."""
         return False
 
     def take(self, _text: str) -> bool:
-        """Return False, because this section has no entry."""
+        """Return False because this section has no entry."""
         return False
 
     def handle_key(self, key: str) -> bool:
-        """Move the selection by arrow keys."""
+        """Move the selection with the arrow keys and return whether the key was used."""
         return self.move_selection(key)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with mean, capability and drift of each feature."""
+        """Return the table with the mean, the capability and the drift of each feature."""
         self.limit_selection()
         mode = self.control_unit
         of = (self.watch.parts_book.load_count, self.program_name, mode)
@@ -437,7 +452,10 @@ class ChartsSection(QualitySection):
         return tr(late[-1].text) if late else ""
 
     def make_chart(self) -> ChartDrawing:
-        """Return the charts of location and spread of the selected feature, rebuilt after a change."""
+        """Return the charts of location and spread of the selected feature.
+
+        The charts are created again only after a change.
+        """
         row, mode = self.selected_feature, self.control_unit
         of = (self.watch.parts_book.load_count, self.program_name, row.id if row is not None else 0, mode)
         if self._made[0] != of:
@@ -463,7 +481,7 @@ class ChartsSection(QualitySection):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt, which explains the lines of the chart."""
+        """Return the prompt, which explains the lines in the chart."""
         return self.find_missing_precondition() or (
             "ARROWS: SELECT FEATURE. DASHED: CONTROL LIMITS, DOTTED: TOLERANCE, CIRCLED: RULE VIOLATIONS"
         )

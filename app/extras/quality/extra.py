@@ -1,4 +1,4 @@
-"""Registration of measured parts and the shift report."""
+"""Registration of the optional feature for measured parts and the shift report."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class QualityExtra(OptionalFeature):
-    """Optional feature with the page MEASURED PARTS, the shift report, commands and the table [gauge]."""
+    """Optional feature with the MEASURED PARTS page, the shift report, commands, and the table [gauge]."""
 
     subcommands = {
         "parts": Subcommand(

@@ -1,4 +1,4 @@
-"""Features of a program's parts: name, nominal size, tolerance, corrected offset and sampling."""
+"""Features of the parts of a program: name, nominal size, tolerance, offset to correct, and sampling."""
 
 from __future__ import annotations
 
@@ -64,7 +64,10 @@ _LENGTHS = {"NOMINAL": "nominal", "UPPER DEVIATION": "high", "LOWER DEVIATION": 
 
 @dataclass(slots=True)
 class FeatureDraft:
-    """Feature that is being edited. ``id`` is 0 for a new feature."""
+    """Feature that is being edited.
+
+    ``feature_id`` is 0 for a new feature.
+    """
 
     feature: MeasuredFeature
     feature_id: int = 0
@@ -73,11 +76,11 @@ class FeatureDraft:
 
     @property
     def selected_field(self) -> str:
-        """Selected field."""
+        """Return the name of the selected field."""
         return self.field_names[self.field_index]
 
     def get_field_text(self, field: str, mode: ValueMode) -> str:
-        """Return the text of a field."""
+        """Return the value of a field as text."""
         feature = self.feature
         if field == "NAME":
             return feature.name
@@ -93,7 +96,7 @@ class FeatureDraft:
         return format_size(value, mode) if field == "NOMINAL" else format_deviation(value, mode)
 
     def toggle_choice(self) -> None:
-        """Switch a field with two choices to the other choice."""
+        """Switch the selected field to the other of its two choices."""
         feature = self.feature
         if self.selected_field == "MEASURED":
             diameter = feature.kind is FeatureKind.DIAMETER
@@ -105,7 +108,10 @@ class FeatureDraft:
             self.feature = replace(feature, grows=-feature.grows)
 
     def set_field(self, text: str, mode: ValueMode) -> None:
-        """Set the selected field to the typed text. Raises EntryError."""
+        """Set the selected field to the typed text.
+
+        Raises EntryError.
+        """
         field = self.selected_field
         if field == "NAME":
             self.feature = replace(self.feature, name=text.strip().upper())
@@ -122,7 +128,7 @@ class FeatureDraft:
 class FeaturesSection(QualitySection):
     """Section with the list of features.
 
-    F2 adds a feature, Enter opens the selected feature, and F6 saves it.
+    F2 adds a feature, and Enter opens the selected feature. F6 saves the feature that is being edited.
     """
 
     name = "FEATURES"
@@ -135,17 +141,17 @@ class FeaturesSection(QualitySection):
 
     @property
     def field_names(self) -> tuple[str, ...]:
-        """Fields of a feature for the language of the machine."""
+        """Return the names of the fields that a feature has in the language of the machine."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
         return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.language])
 
     @property
     def row_count(self) -> int:
-        """Number of fields of the edited feature, or of features."""
+        """Return the number of fields while a feature is edited, or else the number of features."""
         return len(self.draft.field_names) if self.draft is not None else len(self.parts_data.features)
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of features, or of the fields of the edited feature."""
+        """Return the table of the fields while a feature is edited, or else the table of the features."""
         if self.draft is not None:
             return self._fields(self.draft)
         self.limit_selection()
@@ -202,7 +208,7 @@ class FeaturesSection(QualitySection):
         )  # fmt: skip
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys of the list or of the edited feature."""
+        """Return the function keys of the list or of the feature that is being edited."""
         if self.draft is not None:
             return {"F6": FunctionKey("SAVE", self.save_feature)}
         return {
@@ -213,14 +219,17 @@ class FeaturesSection(QualitySection):
         }
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of the entry: letters for a name, digits for other fields."""
+        """Return whether a character is part of the entry.
+
+        A name accepts any character, and a number accepts the characters of an expression.
+        """
         draft = self.draft
         if draft is None or draft.selected_field in _TURNED:
             return False
         return len(key) == 1 and (draft.selected_field == "NAME" or key in EXPRESSION_CHARACTERS)
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key of the edited feature or of the list."""
+        """Handle a key of the feature that is being edited, or of the list."""
         draft = self.draft
         if draft is None:
             return self.move_selection(key) or (key == "Enter" and self._opened())
@@ -242,7 +251,10 @@ class FeaturesSection(QualitySection):
         return True
 
     def take(self, text: str) -> bool:
-        """Set the selected field and go to the next one. Raises EntryError."""
+        """Set the selected field to the typed text, and select the next field.
+
+        Returns whether the entry was accepted. Raises EntryError.
+        """
         draft = self.draft
         if draft is None:
             return False
@@ -255,7 +267,10 @@ class FeaturesSection(QualitySection):
         return True
 
     def choose(self, row: int) -> None:
-        """Select the touched field. A second touch acts like Enter."""
+        """Select the touched row.
+
+        While a feature is edited, a second touch acts like Enter.
+        """
         if self.draft is None:
             super().choose(row)
         elif row != self.draft.field_index:
@@ -264,11 +279,11 @@ class FeaturesSection(QualitySection):
             self.submit_entry()
 
     def execute_row(self) -> bool:
-        """Open the selected feature."""
+        """Open the selected feature and return True."""
         return self._opened()
 
     def add_feature(self) -> None:
-        """Start a new feature (F2)."""
+        """Start the entry of a new feature (F2)."""
         if not self.program_name or self.watch.parts_book.lock_reason:
             self.desk.say(self.watch.parts_book.lock_reason or NO_PROGRAM_MESSAGE)
             return
@@ -276,7 +291,10 @@ class FeaturesSection(QualitySection):
         self.draft = FeatureDraft(EMPTY_FEATURE, field_names=self.field_names)
 
     def edit_feature(self) -> None:
-        """Edit the selected feature. Its readings remain."""
+        """Start editing the selected feature.
+
+        The readings of the feature remain stored.
+        """
         row = self.selected_feature
         if row is None:
             self.desk.say(self.find_missing_precondition())
@@ -285,7 +303,7 @@ class FeaturesSection(QualitySection):
         self.draft = FeatureDraft(make_feature(row), row.id, field_names=self.field_names)
 
     def save_feature(self) -> None:
-        """Save the edited feature (F6)."""
+        """Save the feature that is being edited (F6)."""
         draft = self.draft
         if draft is None:
             return
@@ -309,7 +327,7 @@ class FeaturesSection(QualitySection):
         self.desk.show_success(tr(Message("{name} SAVED", name=name)))
 
     def remove_feature(self) -> None:
-        """Stop measuring the selected feature after confirmation (F4)."""
+        """Ask for confirmation and stop measuring the selected feature (F4)."""
         row = self.selected_feature
         if row is None:
             self.desk.say(self.find_missing_precondition())
@@ -340,7 +358,7 @@ class FeaturesSection(QualitySection):
             self.desk.try_save(self.plan.toggle_waiting)
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.draft is not None:
             return "FILL IN THE FIELDS. F6: SAVE   ESC: CANCEL"
         return self.find_missing_precondition() or (
@@ -348,13 +366,13 @@ class FeaturesSection(QualitySection):
         )
 
     def handle_escape(self) -> bool:
-        """Cancel the entry, or else the edited feature."""
+        """Cancel the entry or the edited feature, and return whether something was canceled."""
         if super().handle_escape():
             return True
         open_one, self.draft = self.draft is not None, None
         return open_one
 
     def on_close(self) -> None:
-        """Cancel the edited feature when the section closes."""
+        """Discard the feature that is being edited when the section closes."""
         super().on_close()
         self.draft = None

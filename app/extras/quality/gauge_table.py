@@ -1,4 +1,4 @@
-"""Table [gauge] of the machine file: the serial line of a gauge."""
+"""Table [gauge] of the machine file, which configures the serial port of a gauge."""
 
 from __future__ import annotations
 
@@ -9,7 +9,10 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class GaugeModel:
-    """Settings of the gauge's serial line. ``unit`` applies to lines that do not state a unit."""
+    """Settings of the serial port of the gauge.
+
+    ``unit`` applies to received lines that do not state a unit.
+    """
 
     port: str = declare_key(meaning="Serial port of the gauge, such as `/dev/serial/by-id/…`.")
     name: str = declare_key(default="gauge", meaning="Name that is saved with each reading of the gauge.")

@@ -1,4 +1,4 @@
-"""Command ``turndesk parts``: stored counts, times, readings and corrections of parts."""
+"""Command ``turndesk parts``, which prints the stored counts, times, readings and corrections of parts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Print the stored data. Raises CommandError for a program without data."""
+    """Print the stored data.
+
+    Raises CommandError for a program that has no data.
+    """
     from app.cli.store_command import open_store
 
     with open_store(read_only=True) as store:
@@ -45,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _names(store: Store, wanted: str | None) -> list[str]:
-    """Return the programs with stored data, or the requested program."""
+    """Return the names of the programs with stored data, or only the requested program."""
     from core.store.production import measured_parts, part_cycles
 
     known = {row.program for row in store.runs.read_records()}
@@ -75,7 +78,10 @@ def _data(store: Store, name: str) -> PartsData:
 
 
 def _make_json(store: Store, names: Sequence[str]) -> dict[str, object]:
-    """Return the JSON object: lengths in mm, times in s and UTC, X of corrections as a radius."""
+    """Return the JSON object.
+
+    Lengths are in mm, durations are in seconds and times are in UTC. X of corrections is a radius.
+    """
     from core.store.production import part_cycles, tool_lives
 
     with store.read() as connection:
@@ -109,7 +115,7 @@ def _program(store: Store, name: str) -> dict[str, object]:
 
 
 def _capability(data: PartsData, number: int) -> dict[str, object] | None:
-    """Return Cp, Cpk, Pp and Ppk of all readings, or None with too few readings."""
+    """Return Cp, Cpk, Pp and Ppk of all readings, or None if there are too few readings."""
     from dataclasses import asdict
 
     from app.extras.quality.parts_data import make_feature
@@ -136,7 +142,7 @@ def _write_csv(store: Store, names: Sequence[str]) -> None:
 
 
 def _lines(store: Store, names: Sequence[str]) -> Iterator[str]:
-    """Yield one line per program and one per feature."""
+    """Yield one line per program and one line per feature."""
     if not names:
         yield "no parts are known yet\n"
     for name in names:

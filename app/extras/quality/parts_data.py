@@ -1,4 +1,7 @@
-"""Stored data of measured parts: features, readings, cycles and corrections; readings as CSV."""
+"""Stored data of measured parts: features, readings, cycles and corrections.
+
+The module also writes readings as CSV.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,10 @@ _DAYS = timedelta(days=2)
 
 @dataclass(frozen=True, slots=True)
 class PartsData:
-    """Data of one program, oldest first. ``last_corrections`` is the latest change per offset axis."""
+    """Data of one program, oldest rows first.
+
+    ``last_corrections`` is the number of the latest change of each offset axis.
+    """
 
     program: str = ""
     features: tuple[FeatureRow, ...] = ()
@@ -43,7 +49,10 @@ class PartsData:
 
     @property
     def complete_cycles(self) -> tuple[CycleRow, ...]:
-        """Cycles with a representative time: complete, and not finished by a restart."""
+        """Return the complete cycles that were not finished by a restart.
+
+        Only these cycles have a representative time.
+        """
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
     def select_readings(self, feature: int) -> tuple[ReadingRow, ...]:
@@ -51,16 +60,16 @@ class PartsData:
         return tuple(row for row in self.readings if row.feature == feature)
 
     def select_readings_since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
-        """Return the readings of parts that were started after the feature's offset was last changed.
+        """Return the readings of parts that were started after the last change of the feature's offset.
 
-        A part with an unknown start counts only if the offset was never changed.
+        A part with an unknown start is included only if the offset was never changed.
         """
         last = self.last_corrections.get((row.by_kind, row.number, make_feature(row).axis), 0)
         return tuple(each for each in self.select_readings(row.id) if not last or each.offset_change >= last)
 
 
 def make_feature(row: FeatureRow) -> MeasuredFeature:
-    """Return the feature for a stored row."""
+    """Return the measured feature that a stored row describes."""
     from core.extras.quality.measured_feature import CorrectingOffset, FeatureKind, MeasuredFeature
 
     return MeasuredFeature(
@@ -78,7 +87,10 @@ def make_feature(row: FeatureRow) -> MeasuredFeature:
 
 
 def make_feature_row(feature: MeasuredFeature, program: str, feature_id: int) -> FeatureRow:
-    """Return the stored row for a feature. ``number`` is its id, or 0 for a new feature."""
+    """Return the row to store for a feature.
+
+    ``feature_id`` is 0 for a new feature.
+    """
     return FeatureRow(
         feature_id,
         program,
@@ -96,9 +108,10 @@ def make_feature_row(feature: MeasuredFeature, program: str, feature_id: int) ->
 
 
 def read_parts_data(store: Store, program: str, limit: int = MAX_ROWS) -> PartsData:
-    """Return the stored data of a program, the latest ``limit`` rows of each kind, or all for -1.
+    """Read the stored data of a program.
 
-    The call can take a while. Raises StoreError.
+    The result contains the latest ``limit`` rows of each type, or all rows if ``limit`` is -1. The call can
+    take a long time. Raises StoreError.
     """
     with store.read() as connection:
         return PartsData(
@@ -113,7 +126,10 @@ def read_parts_data(store: Store, program: str, limit: int = MAX_ROWS) -> PartsD
 
 
 def get_loaded_parts_data(book: PartsBook) -> PartsData:
-    """Return the data of the loaded program from the book, empty until it is read."""
+    """Return the data of the loaded program from the parts book.
+
+    The data are empty until they have been read.
+    """
     found = book.current.feature_data.get(BOOK_KEY)
     if isinstance(found, PartsData) and found.program == book.current.program:
         return found
@@ -128,7 +144,7 @@ _PER = {"in": MM_PER_INCH, "mm": 1.0}
 
 
 def make_readings_csv(data: PartsData) -> str:
-    """Return the readings as CSV text, one line per reading in the order of measurement."""
+    """Return the readings as CSV text with one line per reading, in the order of measurement."""
     out = io.StringIO()
     table = csv.writer(out)
     table.writerow(CSV_COLUMNS)
@@ -149,7 +165,10 @@ def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
 
 
 def write_readings_csv(data: PartsData, folder: Path) -> Path:
-    """Write ``PROGRAM-readings.csv`` atomically and return its path. Raises OSError."""
+    """Write the file ``PROGRAM-readings.csv`` atomically and return its path.
+
+    Raises OSError.
+    """
     path = folder / f"{Path(data.program).stem}-readings.csv"
     write_atomically(path, make_readings_csv(data).encode())
     return path

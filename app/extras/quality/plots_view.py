@@ -1,4 +1,7 @@
-"""Control charts and trends drawn with pyqtgraph; imported when the first chart is opened."""
+"""Drawing of control charts and trends with pyqtgraph.
+
+This module is imported when the first chart is opened.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,10 @@ _PLOTS = 2  # usual number of plots in a drawing
 
 
 class PlotsPane(QWidget):
-    """Pane with the plots of one drawing, redrawn when the drawing, the size or the theme changes."""
+    """Pane with the plots of one drawing.
+
+    The plots are drawn again when the drawing, the size or the theme changes.
+    """
 
     accessible_name = "CHART"
 
@@ -42,11 +48,11 @@ class PlotsPane(QWidget):
         self._u = 0.0
 
     def prepare_next_plot(self) -> bool:
-        """Create one more plot in advance, and return whether all are created."""
+        """Create one more plot in advance, and return whether all plots exist."""
         return self._chart.prepare_plots(_PLOTS)
 
     def show_drawing(self, drawing: ChartDrawing) -> None:
-        """Draw a drawing if it has changed."""
+        """Show a drawing if it has changed."""
         look = self.theme
         if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):
             return
@@ -71,16 +77,16 @@ class PlotsPane(QWidget):
         self._lay_out()
 
     def apply_theme(self) -> None:
-        """Redraw the present drawing after a change of theme."""
+        """Draw the present drawing again after a change of theme."""
         if self._shown is not None:
             self.show_drawing(self._shown)
 
     def showEvent(self, _event: QShowEvent) -> None:
-        """Request a new drawing, because plots drawn while hidden have no layout."""
+        """Request a new drawing, because plots that were drawn while hidden have no layout."""
         self._shown = None
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Fill the widget and redraw after a change of size."""
+        """Fill the widget and draw the plots again after a change of size."""
         self._lay_out()
         self.apply_theme()
 
@@ -133,9 +139,9 @@ class PlotsPane(QWidget):
         drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.ChartPlot, plot: Plot, across: tuple[float, float]) -> None:
-        """Set the range to all points and levels with room for the title.
+        """Set the range so that all points and levels are visible, with space for the title.
 
-        All plots have the same x range.
+        All plots have the same horizontal range.
         """
         values = [float(each) for curve in plot.curves for each in curve.values]
         values += [level.value for level in plot.levels]
@@ -146,7 +152,10 @@ class PlotsPane(QWidget):
         drawn.vb.setXRange(across[0] - side, across[1] + side, padding=0)
 
     def _title(self, drawn: chart.ChartPlot, words: str) -> None:
-        """Draw the title in the upper corner with a background, so that no limit line crosses it."""
+        """Draw the title in the upper left corner.
+
+        The title has a background, so no limit line crosses it.
+        """
         (left, _), (_, top) = drawn.vb.viewRange()
         ground = self.theme.color("panel")
         title = pg.TextItem(words, color=self.theme.color("text"), anchor=(0.0, 0.0), fill=ground)
@@ -157,7 +166,7 @@ class PlotsPane(QWidget):
 
 
 class BarsPane(QWidget):
-    """Horizontal bars with their names, longest first, or a text if there is nothing to draw."""
+    """Pane with horizontal bars and their names, longest bar first, or a text if there is nothing to draw."""
 
     def __init__(self, theme: ScreenTheme, parent: QWidget) -> None:
         super().__init__(parent)

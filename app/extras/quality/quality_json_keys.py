@@ -1,4 +1,4 @@
-"""JSON keys of ``turndesk parts`` and ``turndesk shift``, for the reference and its tests."""
+"""JSON keys of ``turndesk parts`` and ``turndesk shift``, for the reference documentation and its tests."""
 
 from __future__ import annotations
 

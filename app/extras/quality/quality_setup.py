@@ -1,4 +1,4 @@
-"""Setup of measured parts and trends, and their entry in the special functions."""
+"""Setup of measured parts and trends, and of their entry in the special functions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MEASURED_PARTS_PAGE = "MEASURED PARTS"  # name of the page in app.screen.page_ta
 
 
 class MeasuredPartsFunction(PageFunction):
-    """Special function with the number of features and readings, and the measurements that are due."""
+    """Special function that shows the numbers of features and readings and the measurements that are due."""
 
     name = "MEASURED PARTS"
     use = "features, readings, charts, trends"
@@ -27,7 +27,7 @@ class MeasuredPartsFunction(PageFunction):
     key_hint = "Press Enter to open the page, or press W in the main menu."
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
-        """Return the rows with the numbers of features and readings, and the due measurements."""
+        """Return the rows for the numbers of features and readings and the measurements that are due."""
         watch = self.desk.page_registry.find(PartsWatch)
         if watch is None or watch.parts_book.lock_reason:
             return (
@@ -41,12 +41,12 @@ class MeasuredPartsFunction(PageFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt that names the keys."""
+        """Return the prompt that explains the keys."""
         return "ENTER: OPEN MEASURED PARTS   ESC: BACK TO LIST"
 
 
 def attach_quality(desk: Desk, machine: Machine) -> None:
-    """Attach measured parts to TurnDesk if production data is available."""
+    """Attach measured parts to TurnDesk if production data are available."""
     watch = desk.page_registry.find(PartsWatch)
     if watch is None:
         return
@@ -59,7 +59,10 @@ def attach_quality(desk: Desk, machine: Machine) -> None:
 
 
 def _sections(desk: Desk, machine: Machine, watch: PartsWatch, plan: SamplePlan) -> Sequence[SpecialFunction]:
-    """Return the sections of the page. Their import is deferred to keep the start fast."""
+    """Return the sections of the page.
+
+    The sections are imported only now, so that TurnDesk starts faster.
+    """
     from app.extras.quality.sections_setup import make_sections
 
     return make_sections(desk, machine, watch, plan)
@@ -69,9 +72,9 @@ SectionFactory = Callable[[], Sequence[SpecialFunction]]
 
 
 class QualityFunctions(SpecialFunctionList):
-    """Sections of the page.
+    """Sections of the page for measured parts.
 
-    Readings of a gauge count only while the section of readings is displayed.
+    Readings of a gauge are used only while the section of readings is displayed.
     """
 
     __slots__ = ("_made", "_make")
@@ -83,7 +86,10 @@ class QualityFunctions(SpecialFunctionList):
 
     @property
     def functions(self) -> Sequence[SpecialFunction]:
-        """Sections, created at the first access to keep the start fast."""
+        """Return the sections.
+
+        They are created at the first access, so that TurnDesk starts faster.
+        """
         if not self._made:
             self._made = tuple(self._make())
         return self._made
@@ -93,20 +99,23 @@ class QualityFunctions(SpecialFunctionList):
         """Ignore the value, because the sections are created by the getter."""
 
     def poll(self) -> None:
-        """Poll the gauge once per frame.
+        """Read the gauge once per frame.
 
-        The feature that is displayed at that time determines the meaning of a reading.
+        A reading belongs to the feature that is displayed at that time.
         """
         for section in self.functions:
             section.process_wire_input(is_displayed=section is self.shown_function)
 
     def on_open(self) -> None:
-        """Open the page and discard readings received before, because their part is unknown."""
+        """Open the page and discard earlier readings, because it is not known which part they belong to."""
         super().on_open()
         for section in self.functions:
             section.process_wire_input(is_displayed=False)
 
     def close(self) -> None:
-        """Finish pending work of the sections. The worker belongs to the parts book."""
+        """Finish pending work of the sections.
+
+        The worker is not stopped, because it belongs to the parts book.
+        """
         for function in self._made:
             function.close()

@@ -1,4 +1,7 @@
-"""Page MEASURED PARTS (W): sections on the left, the displayed section on the right with its chart below."""
+"""Page MEASURED PARTS (W), with the sections on the left and the displayed section on the right.
+
+The chart is below the displayed section.
+"""
 
 from __future__ import annotations
 
@@ -19,14 +22,20 @@ if TYPE_CHECKING:
 
 
 def _pane_class() -> type[PlotsPane]:
-    """Import the chart class on a worker, because importing pyqtgraph takes 0.3 s."""
+    """Import the class of the chart and return it.
+
+    A worker calls this function, because importing pyqtgraph takes 0.3 s.
+    """
     from app.extras.quality.plots_view import PlotsPane
 
     return PlotsPane
 
 
 class MeasuredPartsPage(SpecialPage):
-    """Page of measured parts: like the special functions, with a chart that is loaded on first use."""
+    """Page of measured parts.
+
+    The page is like that of the special functions, with a chart that is loaded on first use.
+    """
 
     NAME = "MEASURED PARTS"
     model: QualityFunctions
@@ -39,7 +48,7 @@ class MeasuredPartsPage(SpecialPage):
         self._asked = False  # whether the chart was requested
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
-        """Update table and chart."""
+        """Update the table and the chart."""
         super().refresh(snapshot, status, loaded)
         shown = self.model.shown_function
         share = shown.chart_share if isinstance(shown, QualitySection) else 0.0
@@ -52,7 +61,10 @@ class MeasuredPartsPage(SpecialPage):
             self.chart.show_drawing(shown.make_chart())
 
     def prepare_slice(self) -> bool:
-        """Create the sections, then the chart and its plots, before the page is first shown."""
+        """Create the sections, the chart and its plots in steps before the page is first shown.
+
+        Returns whether steps remain.
+        """
         self._ask_pane()
         self.model.worker.poll()
         return not self.model.functions or self.chart is None or not self.chart.prepare_next_plot()

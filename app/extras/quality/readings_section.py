@@ -1,4 +1,4 @@
-"""Readings of parts, typed or from a gauge, and the resulting wear correction."""
+"""Readings of parts, which are typed or received from a gauge, and the wear correction that they require."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ MM_PER_UNIT = {"mm": 1.0, "in": 25.4}
 
 @dataclass(frozen=True, slots=True)
 class NewReading:
-    """Reading that is to be stored."""
+    """Reading that will be stored."""
 
     feature: FeatureRow
     part_number: int
@@ -51,9 +51,9 @@ class NewReading:
 
 
 class ReadingsSection(QualitySection):
-    """Section with one row per feature.
+    """Section with one row per feature, for the entry of readings.
 
-    The typed size belongs to the selected feature and the present part.
+    A typed size belongs to the selected feature and the present part.
     """
 
     name = "READINGS"
@@ -70,18 +70,21 @@ class ReadingsSection(QualitySection):
 
     @property
     def row_count(self) -> int:
-        """Number of features."""
+        """Return the number of features."""
         return len(self.parts_data.features)
 
     @property
     def part_number(self) -> int:
-        """Number of the measured part."""
+        """Return the number of the part that is being measured."""
         return self._part or max(1, self.desk.program_runs.part_counter.count)
 
     # --- display -------------------------------------------------------------------------------------
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table with nominal size, last reading, deviation and rating per feature."""
+        """Return the table with the nominal size, last reading, deviation and rating of each feature.
+
+        While a correction is proposed, return the table of its effect instead.
+        """
         self.limit_selection()
         mode, feature = self.control_unit, self.selected_feature
         self.chart_share = CHART_HEIGHT_SHARE if self.correction_effect.is_question_open else 0.0
@@ -141,7 +144,7 @@ class ReadingsSection(QualitySection):
         return self.gauge.status_text
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for the part number, gauge, file and correction."""
+        """Return the function keys for the part number, the gauge, the file and the correction."""
         correct = {
             "F8": FunctionKey("CORRECT", self.propose_correction),
             "F4": FunctionKey("UNDO", self.undo_correction),
@@ -162,7 +165,7 @@ class ReadingsSection(QualitySection):
             self._part = 0
 
     def prompt_text(self) -> str:
-        """Return the prompt for the entry of a reading."""
+        """Return the prompt for the entry of a reading, or the missing precondition."""
         return self.find_missing_precondition() or (
             "TYPE THE MEASURED SIZE AND PRESS ENTER. ESC: BACK TO LIST"
         )
@@ -178,7 +181,10 @@ class ReadingsSection(QualitySection):
     # --- readings ------------------------------------------------------------------------------------
 
     def take(self, text: str) -> bool:
-        """Store a typed size of the selected feature. Raises EntryError."""
+        """Store the typed size of the selected feature, and return whether it was accepted.
+
+        Raises EntryError.
+        """
         feature = self.selected_feature
         if feature is None:
             self.desk.say(self.find_missing_precondition())
@@ -188,9 +194,9 @@ class ReadingsSection(QualitySection):
         return self._offer(NewReading(feature, self.part_number, value, mode.name, "typed"))
 
     def _offer(self, reading: NewReading) -> bool:
-        """Store a reading.
+        """Store a reading, after confirmation if the size is implausible.
 
-        An implausible size requires confirmation. Raises EntryError for a size of 0 or less.
+        Raises EntryError for a size of 0 or less.
         """
         row, feature = reading.feature, make_feature(reading.feature)
         if reading.value <= 0.0:
@@ -243,7 +249,7 @@ class ReadingsSection(QualitySection):
             self.marked = (self.marked + 1) % max(1, self.row_count)
 
     def remove_last_reading(self) -> None:
-        """Remove the latest reading of the selected feature after confirmation (F9)."""
+        """Ask for confirmation and remove the latest reading of the selected feature (F9)."""
         feature = self.selected_feature
         taken = self.parts_data.select_readings(feature.id) if feature is not None else ()
         if feature is None or not taken:
@@ -279,9 +285,9 @@ class ReadingsSection(QualitySection):
             self.desk.say(why)
 
     def process_wire_input(self, *, is_displayed: bool) -> None:
-        """Assign received gauge readings to the selected feature while the section is visible.
+        """Store received gauge readings for the selected feature if the section is displayed.
 
-        Called once per frame.
+        This method is called once per frame.
         """
         for found in self.gauge.fetch_readings():
             if isinstance(found, GaugeReading) and not is_displayed:
@@ -315,7 +321,7 @@ class ReadingsSection(QualitySection):
     def propose_correction(self) -> None:
         """Propose a correction from the readings of the selected feature (F8).
 
-        Y applies the correction.
+        The operator applies the correction with Y.
         """
         feature = self.selected_feature
         if feature is None:
@@ -339,9 +345,9 @@ class ReadingsSection(QualitySection):
         self.correction_effect.show_proposal(self.desk.prompt_notice, found, change, taken)
 
     def _settled(self) -> bool:
-        """Return whether all data is stored and loaded.
+        """Return whether all data are stored and loaded, and show a message if they are not.
 
-        This prevents a second proposal of a pending correction.
+        This check prevents a second proposal for a correction that is still being stored.
         """
         settled = self.watch.parts_book.is_settled and not self.desk.offset_book.is_saving
         if not settled:
@@ -349,7 +355,7 @@ class ReadingsSection(QualitySection):
         return settled
 
     def _correct(self, feature: FeatureRow) -> None:
-        """Apply the correction, calculated again from the present data."""
+        """Apply the correction, which is calculated again from the present data."""
         if not self._settled():
             return
         try:
@@ -369,7 +375,10 @@ class ReadingsSection(QualitySection):
         self.desk.show_success(tr(Message("{words}; APPLIES FROM NEXT PART", words=change.text)))
 
     def undo_correction(self) -> None:
-        """Ask whether to undo the last correction (F4), if no later change exists."""
+        """Ask whether to undo the last correction (F4).
+
+        The correction can be undone only if it is the latest change.
+        """
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last
@@ -391,7 +400,7 @@ class ReadingsSection(QualitySection):
     # --- file ----------------------------------------------------------------------------------------
 
     def write_csv_file(self) -> None:
-        """Write the readings of the program as a CSV file on a worker (F6)."""
+        """Write the readings of the program to a CSV file on a worker (F6)."""
         if self.find_missing_precondition():
             self.desk.say(self.find_missing_precondition())
             return

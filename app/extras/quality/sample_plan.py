@@ -1,4 +1,4 @@
-"""Sample plan: the features of finished parts that must be measured, and whether the next part waits."""
+"""Sample plan, which determines the features and parts to measure and whether the next part must wait."""
 
 from __future__ import annotations
 
@@ -14,7 +14,10 @@ from core.store.store_errors import StoreError
 
 
 def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
-    """Return the part to measure for each feature: the latest planned part without a reading."""
+    """Return the number of the part to measure for each feature that is due.
+
+    A feature is due if neither its latest planned part nor a later part has a reading.
+    """
     found = {}
     for row in data.features:
         planned = parts_made // row.every * row.every if row.every else 0
@@ -24,7 +27,7 @@ def find_due_parts(data: PartsData, parts_made: int) -> dict[str, int]:
 
 
 def make_due_notice(due_parts: dict[str, int]) -> str:
-    """Return the prompt text with the features to measure, or an empty string."""
+    """Return the prompt text that names the features to measure, or an empty string."""
     part, names = _newest(due_parts)
     return tr(Message("MEASURE PART {part}: {names}", part=part, names=names)) if due_parts else ""
 
@@ -47,7 +50,7 @@ def _newest(due_parts: dict[str, int]) -> tuple[int, str]:
 
 @dataclass(slots=True)
 class SamplePlan:
-    """Sample plan of the loaded program, and whether its parts wait for measurements."""
+    """Sample plan of the loaded program, with the setting that makes parts wait for measurements."""
 
     desk: Desk
     parts_watch: PartsWatch
@@ -57,18 +60,24 @@ class SamplePlan:
     _waits: tuple[str, bool] = ("", False)  # program, and whether its parts wait for measurements
 
     def find_block_reason(self, snapshot: Snapshot) -> str:
-        """Return the reason why the next part must not start. The present part counts as made."""
+        """Return the reason why the next part must not start, or an empty string.
+
+        The part that is in progress counts as made.
+        """
         if not self.waits_for_measurements:
             return ""
         made = self.desk.program_runs.part_counter.count + (1 if snapshot.counts else 0)
         return find_block_reason(self._planned(made))
 
     def due_reminder(self) -> str:
-        """Return the features to measure, or an empty string."""
+        """Return the prompt text that names the features to measure, or an empty string."""
         return make_due_notice(self._planned(self.desk.program_runs.part_counter.count))
 
     def _planned(self, made: int) -> dict[str, int]:
-        """Return the required measurements for a number of parts made, cached until data changes."""
+        """Return the measurements that are due for a number of parts made.
+
+        The result is cached until the data change.
+        """
         data = get_loaded_parts_data(self.parts_watch.parts_book)
         if made not in self._plans or self._planned_of is not data:
             kept = self._plans if self._planned_of is data else {}
@@ -77,7 +86,7 @@ class SamplePlan:
 
     @property
     def waits_for_measurements(self) -> bool:
-        """Whether parts of this program wait until the required measurements are done."""
+        """Return whether parts of this program wait until the required measurements are done."""
         program = self.parts_watch.program_name
         if self._waits[0] != program:
             try:
@@ -88,7 +97,10 @@ class SamplePlan:
         return self._waits[1]
 
     def toggle_waiting(self) -> None:
-        """Turn waiting for measurements on or off. Raises StoreError if the setting cannot be stored."""
+        """Turn waiting for measurements on or off.
+
+        Raises StoreError if the setting cannot be stored.
+        """
         on, program = not self.waits_for_measurements, self.parts_watch.program_name
         self._waits = program, on
         persistence = self.desk.program_runs.part_counter.persistence

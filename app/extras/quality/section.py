@@ -1,4 +1,4 @@
-"""Base of the sections of the page MEASURED PARTS: table, keys and chart data."""
+"""Base class of the sections of the MEASURED PARTS page, with table, keys and chart data."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PlotCurve:
-    """Curve over parts.
+    """Curve over part numbers.
 
-    ``color_number`` selects the color, ``has_dots`` draws points, ``has_steps`` draws steps.
+    ``color_number`` selects the color. ``has_dots`` draws a dot at each point. ``has_steps`` draws the
+    curve as steps.
     """
 
     part_numbers: FloatArray
@@ -39,7 +40,10 @@ class PlotCurve:
 
 @dataclass(frozen=True, slots=True)
 class PlotLevel:
-    """Horizontal line. ``kind`` is centre, limit (control limit) or tolerance."""
+    """Horizontal line in a plot.
+
+    ``kind`` is centre, limit (for a control limit) or tolerance.
+    """
 
     value: float
     name: str
@@ -48,7 +52,10 @@ class PlotLevel:
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """Plot with curves or bars. ``violations`` are points that violate a rule."""
+    """Plot with curves or bars.
+
+    ``violations`` are the points that violate a rule of control charts.
+    """
 
     title: str = ""
     curves: tuple[PlotCurve, ...] = ()
@@ -59,13 +66,16 @@ class Plot:
 
     @property
     def is_empty(self) -> bool:
-        """Whether there is nothing to draw."""
+        """Return whether the plot contains nothing to draw."""
         return not (self.bars or any(len(curve.part_numbers) for curve in self.curves))
 
 
 @dataclass(frozen=True, slots=True)
 class ChartDrawing:
-    """Plots one below the other. Drawings with equal ``identity`` are equal and are not drawn again."""
+    """Drawing with plots below each other.
+
+    Drawings with equal ``identity`` are considered equal and are not drawn again.
+    """
 
     plots: tuple[Plot, ...] = ()
     identity: object = field(default=None)
@@ -84,10 +94,10 @@ def make_control_plots(
     names: tuple[str, str],
     unit: float,
 ) -> tuple[Plot, ...]:
-    """Return the plots of location and spread over the part numbers, in units of ``unit`` mm.
+    """Return the plots of location and spread over the part numbers.
 
-    Each point is at the number of its last part. Size limits are shown in the upper plot only for single
-    parts, because they do not apply to averages.
+    Lengths are in units of ``unit`` mm. Each point is at the number of the last part of its sample. The
+    upper plot shows size limits only for samples of one part, because the limits do not apply to averages.
     """
     location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit)
     if charts.sample_size == 1:
@@ -105,7 +115,7 @@ def make_correction_plot(
     names: tuple[str, str],
     unit: float,
 ) -> Plot:
-    """Return the plot of sizes over parts, with the mean and the expected size after a correction.
+    """Return the plot of sizes over part numbers, with the mean and the size expected after a correction.
 
     Lengths are in units of ``unit`` mm. Repeated readings of a part are drawn next to each other.
     """
@@ -152,7 +162,7 @@ NO_FEATURE_MESSAGE = "NO FEATURES YET. ADD A FEATURE IN SECTION 1 WITH F2"
 
 
 class QualitySection(NumericFunction):
-    """Base class of the sections: parts book, loaded program, unit and selected feature."""
+    """Base class of the sections, with the parts book, loaded program, unit and selected feature."""
 
     chart_share: float = 0.0  # ratio of the height for the chart below the table
 
@@ -162,40 +172,46 @@ class QualitySection(NumericFunction):
 
     @property
     def parts_data(self) -> PartsData:
-        """Stored data of the loaded program."""
+        """Return the stored data of the loaded program."""
         return get_loaded_parts_data(self.watch.parts_book)
 
     @property
     def program_name(self) -> str:
-        """Name of the loaded program, or an empty string."""
+        """Return the name of the loaded program, or an empty string."""
         return self.watch.program_name
 
     @property
     def is_mill(self) -> bool:
-        """Whether the machine is a mill, where DL and DR replace wear corrections."""
+        """Return whether the machine is a mill.
+
+        On a mill, DL and DR replace wear corrections.
+        """
         return self.desk.machine.language == "klartext"
 
     @property
     def control_unit(self) -> ValueMode:
-        """Unit of the control, which applies to all entries and displays."""
+        """Return the unit of the control, which applies to all entries and displayed values."""
         return ValueMode(self.desk.read_snapshot().modal.metric, is_diameter=True)
 
     @property
     def selected_feature(self) -> FeatureRow | None:
-        """Selected feature, or None."""
+        """Return the selected feature, or None if there is no feature."""
         rows = self.parts_data.features
         return rows[self.marked] if self.marked < len(rows) else None
 
     def make_chart(self) -> ChartDrawing:
-        """Return the chart below the table."""
+        """Return the chart that is shown below the table."""
         return ChartDrawing()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows move the selection, and other keys edit the entry."""
+        """Handle a key and return whether it was used.
+
+        The arrow keys move the selection. Other keys edit the entry.
+        """
         return self.move_selection(key) or super().handle_key(key)
 
     def limit_selection(self) -> None:
-        """Limit the selection to the rows of the table."""
+        """Move the selection to a row of the table if it is outside the table."""
         self.marked = max(0, min(self.marked, self.row_count - 1))
 
     def find_missing_precondition(self) -> str:
@@ -206,21 +222,21 @@ class QualitySection(NumericFunction):
 
 
 def format_size(mm: float, mode: ValueMode) -> str:
-    """Return a size with a resolution of 0.001 mm or .00001 in."""
+    """Return a size in mm as text with a resolution of 0.001 mm or .00001 in."""
     return format_fixed(mm, 3) if mode.is_metric else format_fixed(mm / mode.unit_mm, 5)
 
 
 def format_deviation(mm: float, mode: ValueMode) -> str:
-    """Return a deviation with its sign."""
+    """Return a deviation in mm as text with its sign, in the unit of ``mode``."""
     text = format_size(mm, mode)
     return text if not text.strip("0.") or text[0] not in "0123456789." else f"+{text}"
 
 
 def convert_entry_to_mm(value: float, mode: ValueMode) -> float:
-    """Convert a typed length to mm."""
+    """Convert a typed length from the unit of ``mode`` to mm."""
     return convert_to_mm(value, mode.is_metric)
 
 
 def get_diameter_sign(row: FeatureRow) -> str:
-    """Return the diameter sign for a diameter, or an empty string."""
+    """Return the diameter symbol if the feature is a diameter, or else an empty string."""
     return "Ø " if row.kind == "diameter" else ""

@@ -1,4 +1,7 @@
-"""Creation of the sections of the page MEASURED PARTS; imported after the start of TurnDesk."""
+"""Setup of the sections of the MEASURED PARTS page.
+
+This module is imported after TurnDesk has started.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,10 @@ from core.machine.machine_model import Machine
 def make_sections(
     desk: Desk, machine: Machine, watch: PartsWatch, sample_plan: SamplePlan
 ) -> Sequence[SpecialFunction]:
-    """Return the sections in the order of the page; tool life only for a lathe."""
+    """Return the sections in the order of the page.
+
+    The section for tool life exists only on a lathe.
+    """
     model = machine.hardware.find_driver_table(GaugeModel)
     gauge = SerialGauge(model) if model is not None else None
     # a mill has tool life in its tool table

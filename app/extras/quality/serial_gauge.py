@@ -1,4 +1,7 @@
-"""Gauge on a serial line: a thread receives readings in Digimatic format or as plain values."""
+"""Gauge on a serial port.
+
+A thread receives readings in the Digimatic format or as plain values.
+"""
 
 from __future__ import annotations
 
@@ -29,19 +32,25 @@ _ERRORS = {
 
 
 class GaugeError(CodedError, ValueError):
-    """Error for a line that is not a reading."""
+    """Error for a received line that is not a reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeReading:
-    """Reading of a gauge. ``unit`` is mm or in, or empty if the line does not state it."""
+    """Reading of a gauge.
+
+    ``unit`` is mm or in, or empty if the received line does not state the unit.
+    """
 
     value: float
     unit: str = ""
 
 
 def parse_reading(line: str) -> GaugeReading:
-    """Return the reading of one line. Raises GaugeError for any other text."""
+    """Return the reading in a received line.
+
+    Raises GaugeError if the line is not a reading.
+    """
     text = line.strip()
     if text in _ERRORS:
         raise GaugeError(*_ERRORS[text])
@@ -55,13 +64,13 @@ def parse_reading(line: str) -> GaugeReading:
 
 
 class LineSplitter:
-    """Splits received bytes into lines at CR or LF."""
+    """Splitter that divides received bytes into lines at CR or LF."""
 
     def __init__(self) -> None:
         self._text = ""
 
     def split_lines(self, data: bytes) -> list[str]:
-        """Return the complete lines.
+        """Return the lines that are now complete.
 
         An incomplete line is buffered, or returned if it is too long.
         """
@@ -74,41 +83,47 @@ class LineSplitter:
 
 
 class Gauge(Protocol):
-    """Gauge on a serial line. No method waits."""
+    """Gauge on a serial port.
+
+    No method blocks.
+    """
 
     @property
     def is_receiving(self) -> bool:
-        """Whether the line is being received."""
+        """Return whether TurnDesk is receiving data from the gauge."""
         ...
 
     @property
     def name(self) -> str:
-        """Name in the machine file, stored with the readings."""
+        """Return the name of the gauge in the machine file, which is stored with the readings."""
         ...
 
     @property
     def default_unit(self) -> str:
-        """Unit of lines that do not state it, mm or in."""
+        """Return the unit of received lines that do not state a unit, mm or in."""
         ...
 
     @property
     def status_text(self) -> str:
-        """Status text: whether the gauge is being received, and the number or age of its readings."""
+        """Return a text that shows whether data are being received, and the number or age of the readings."""
         ...
 
     def toggle_receiving(self) -> str:
-        """Start or stop receiving. Return a reason if that is not possible, or an empty string."""
+        """Start or stop receiving.
+
+        Returns the reason if this is not possible, or an empty string.
+        """
         ...
 
     def fetch_readings(self) -> Sequence[GaugeReading | str]:
-        """Return the readings and error messages since the last call."""
+        """Return the readings and error messages that have arrived since the last call."""
         ...
 
     def close(self) -> None: ...
 
 
 class NoGauge:
-    """Gauge of a machine whose file does not define one."""
+    """Placeholder for the gauge of a machine without a gauge in its machine file."""
 
     is_receiving = False
     name = ""
@@ -116,11 +131,11 @@ class NoGauge:
 
     @property
     def status_text(self) -> str:
-        """Text about the configuration of a gauge."""
+        """Return a text that explains how to configure a gauge."""
         return tr("No gauge is configured: enter its serial port under [gauge] in the machine file.")
 
     def toggle_receiving(self) -> str:
-        """Return the reason why no gauge can be received."""
+        """Return the reason why no readings can be received."""
         return tr("NO GAUGE IN THE MACHINE FILE. ADD [gauge] port = …")
 
     def fetch_readings(self) -> Sequence[GaugeReading | str]:
@@ -128,7 +143,7 @@ class NoGauge:
         return ()
 
     def close(self) -> None:
-        """Do nothing, because no line is open."""
+        """Do nothing because no port is open."""
 
 
 RECEIVE_TIMEOUT_S = 0.1  # seconds of one receive call
@@ -137,7 +152,7 @@ WireOpener = Callable[[LineSettings], SerialTransport]
 
 
 class SerialGauge:
-    """Implementation of ``Gauge`` on a serial line, which its thread opens and closes."""
+    """Implementation of ``Gauge`` for a serial port, which its thread opens and closes."""
 
     def __init__(
         self,
@@ -154,22 +169,22 @@ class SerialGauge:
 
     @property
     def is_receiving(self) -> bool:
-        """Whether the line is being received."""
+        """Return whether TurnDesk is receiving data from the gauge."""
         return self._thread is not None and self._thread.is_alive() and not self._ending.is_set()
 
     @property
     def name(self) -> str:
-        """Name in the machine file."""
+        """Return the name of the gauge in the machine file."""
         return self._model.name
 
     @property
     def default_unit(self) -> str:
-        """Unit of lines that do not state it."""
+        """Return the unit of received lines that do not state a unit, mm or in."""
         return self._model.unit
 
     @property
     def status_text(self) -> str:
-        """Status text: whether the gauge is being received, and whether readings arrive."""
+        """Return a text that shows whether data are being received, and whether readings arrive."""
         if not self.is_receiving:
             return tr("Not listening to the gauge. Press F5 to start.")
         silent = self._clock() - self._last
@@ -183,7 +198,7 @@ class SerialGauge:
         return tr(Message("Listening to the gauge: {count} readings.", count=self._count))
 
     def toggle_receiving(self) -> str:
-        """Start or stop receiving."""
+        """Start or stop receiving, and return an empty string."""
         if self.is_receiving:
             self.close()
             return ""
@@ -194,14 +209,17 @@ class SerialGauge:
         return ""
 
     def fetch_readings(self) -> Sequence[GaugeReading | str]:
-        """Return the readings and messages since the last call."""
+        """Return the readings and error messages that have arrived since the last call."""
         found = []
         while not self._heard.empty():
             found.append(self._heard.get())
         return found
 
     def close(self) -> None:
-        """Stop receiving. The thread closes the line."""
+        """Stop receiving.
+
+        The thread then closes the port.
+        """
         self._ending.set()
 
     def _listen(self, ending: threading.Event) -> None:

@@ -1,4 +1,7 @@
-"""Command ``turndesk shift``: shift report with parts, stops and reasons as text, JSON or HTML."""
+"""Command ``turndesk shift``, which writes the shift report as text, JSON or HTML.
+
+The report contains parts, stops and reasons.
+"""
 
 from __future__ import annotations
 
@@ -43,7 +46,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the report. Raises CommandError."""
+    """Write the report.
+
+    Raises CommandError.
+    """
     from app.extras.quality.shift_results import calculate_shift_results
 
     if args.metric and not args.report:
@@ -129,7 +135,10 @@ def _text(found: ShiftResults) -> str:
 
 
 def _make_json(results: ShiftResults) -> dict[str, object]:
-    """Return the JSON object: lengths in mm, times in s and UTC, X of offsets as a radius."""
+    """Return the JSON object.
+
+    Lengths are in mm, durations are in seconds and times are in UTC. X of offsets is a radius.
+    """
     first, last = results.shift.utc_texts
     share = results.availability
     return {

@@ -1,4 +1,6 @@
-"""Shift report in the list of special functions (F10): results, selection of the shift, and saving."""
+"""Shift report in the list of special functions (F10): its results, the selection of the shift,
+and saving.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,10 @@ _OLDEST = 366  # maximum number of shifts back
 
 
 class ShiftReportFunction(SpecialFunction):
-    """Special function for the shift report, updated on a worker when it opens and every minute."""
+    """Special function for the shift report.
+
+    A worker updates the report when the function opens, and then every minute.
+    """
 
     name = "SHIFT REPORT"
     use = "parts, times, stops and alarms, for printing"
@@ -49,7 +54,7 @@ class ShiftReportFunction(SpecialFunction):
 
     @property
     def row_count(self) -> int:
-        """Number of places for saving, while they are listed."""
+        """Return the number of listed locations for saving, or 0 while the report is shown."""
         return len(self.save_locations)
 
     def _store(self) -> Store | None:
@@ -57,7 +62,7 @@ class ShiftReportFunction(SpecialFunction):
         return watch.parts_book.store if watch is not None else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
-        """Return the table of the main results or of the places."""
+        """Return the table of the main results, or of the locations for saving while they are listed."""
         self._make()
         if self.save_locations:
             return self._sheet_of_places()
@@ -97,7 +102,7 @@ class ShiftReportFunction(SpecialFunction):
         self.results, self.error_text = None, why
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
-        """Return the function keys for the selection of a shift and for saving."""
+        """Return the function keys that select a shift and save the report."""
         if self.save_locations:
             return {"F4": FunctionKey("REFRESH", self.reload_locations)}
         return {
@@ -119,16 +124,19 @@ class ShiftReportFunction(SpecialFunction):
         self.shifts_back, self._asked, self.save_locations = 0, None, ()
 
     def on_close(self) -> None:
-        """Close the list of places when the function closes."""
+        """Close the list of locations when the function closes."""
         self.save_locations = ()
 
     def handle_escape(self) -> bool:
-        """Close the list of places. Return False if it was not open."""
+        """Close the list of locations and return whether it was open."""
         shut, self.save_locations = bool(self.save_locations), ()
         return shut
 
     def reload_locations(self) -> None:
-        """List the places for saving. The result arrives in a later frame."""
+        """Start listing the locations for saving.
+
+        The result arrives in a later frame.
+        """
         self.desk.clear_prompt_line()
         if self.results is None:
             self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
@@ -141,7 +149,7 @@ class ShiftReportFunction(SpecialFunction):
         self.save_locations, self.marked = places, 0
 
     def execute_row(self) -> bool:
-        """Save the report to the selected place."""
+        """Save the report to the selected location, and return whether a location was selected."""
         if not self.save_locations or self.results is None:
             return False
         place = self.save_locations[min(self.marked, len(self.save_locations) - 1)]
@@ -157,14 +165,14 @@ class ShiftReportFunction(SpecialFunction):
         )
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.save_locations:
             return "ENTER: SAVE REPORT HERE   F4: RESCAN FOR USB STICKS"
         return "F2, F3: OTHER SHIFT   F6: SAVE REPORT AS HTML   ESC: BACK"
 
 
 def _rows(results: ShiftResults) -> list[tuple[str, str]]:
-    """Return the main results, then one row per program and per reason."""
+    """Return the rows of the main results, followed by one row per program and one row per stop reason."""
     rows = make_summary_rows(results)
     for each in results.programs:
         mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
@@ -176,7 +184,10 @@ def _rows(results: ShiftResults) -> list[tuple[str, str]]:
 
 
 def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
-    """Calculate the results on the worker. Raises StoreError."""
+    """Calculate the results on the worker.
+
+    Raises StoreError.
+    """
     now = datetime.now().astimezone()
     watch = desk.page_registry.find(PartsWatch)
     assert watch is not None
@@ -193,7 +204,10 @@ def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupPlace, ...
 
 
 def _write(results: ShiftResults, machine: str, folder: Path, *, metric: bool) -> str:
-    """Write the report atomically on the worker and return its file name. Raises FileError."""
+    """Write the report atomically and return its file name.
+
+    This function runs on the worker. Raises FileOperationError.
+    """
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
     name = f"shift-{datetime.fromtimestamp(results.shift.start_s).strftime('%Y-%m-%d-%H%M')}.html"
     try:

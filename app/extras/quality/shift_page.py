@@ -1,4 +1,4 @@
-"""Shift report as a self-contained HTML page that prints on A4 and Letter."""
+"""Shift report as a self-contained HTML page that can be printed on A4 and Letter paper."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LETTER = {
 
 
 def make_title(results: ShiftResults, machine: str) -> str:
-    """Return the title with start and end in local time."""
+    """Return the title of the report with the start and end of the shift in local time."""
     first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in results.shift)
     of = f"{machine}: " if machine else ""
     return of + tr(Message("shift from {first} to {last}", first=first, last=last))
@@ -46,7 +46,7 @@ def make_title(results: ShiftResults, machine: str) -> str:
 def make_shift_html(results: ShiftResults, machine: str, created_at: str, *, metric: bool) -> str:
     """Return the HTML page of the shift report.
 
-    Lengths are in mm if ``metric`` is set and otherwise in inches, with X of tools as a diameter.
+    Lengths are in mm if ``metric`` is set, or else in inches. X of tools is a diameter.
     """
     body = "".join(
         f"<h2>{escape(head)}</h2>{text}" if head else text for head, text in _sections(results, metric=metric)
@@ -55,7 +55,7 @@ def make_shift_html(results: ShiftResults, machine: str, created_at: str, *, met
 
 
 def make_summary_rows(results: ShiftResults) -> list[tuple[str, str]]:
-    """Return the main results: parts, availability, stops, alarms and readings."""
+    """Return the rows of the main results: parts, availability, stops, alarms and readings."""
     rows = [(tr("Parts"), str(results.part_count))]
     share = results.availability
     if share is not None:
@@ -243,7 +243,7 @@ def _size(mm: float, *, metric: bool) -> str:
 
 
 def _time_line(results: ShiftResults) -> str:
-    """Return the time line as SVG: cycles, stops and alarms, with the hours below."""
+    """Return an SVG with the time line of cycles, stops and alarms, and the hours below the time line."""
     start, length = results.shift.start_s, results.shift.end_s - results.shift.start_s
 
     def x(moment: float) -> float:

@@ -1,6 +1,6 @@
-"""Results of a shift from stored data, and the start and end of a shift.
+"""Results of a shift, calculated from stored data, and the start and end of a shift.
 
-The rows are the same as those of the trends and of ``turndesk parts``. Nothing is counted again.
+The results use the same rows as the trends and ``turndesk parts``. Nothing is counted again.
 """
 
 from __future__ import annotations
@@ -40,30 +40,36 @@ _TIME_FORMATS = ("%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M", "%Y-%m-%d")
 
 
 class Shift(NamedTuple):
-    """Period from ``start`` to ``end`` in seconds of UTC, including changes of the local clock."""
+    """Period of a shift from ``start_s`` to ``end_s``, in seconds of UTC.
+
+    A change of the local clock during the shift makes the period longer or shorter.
+    """
 
     start_s: float
     end_s: float
 
     @property
     def utc_texts(self) -> tuple[str, str]:
-        """Start and end in the time format of the store."""
+        """Return the start and the end of the shift in the time format of the store."""
         first, last = (format_utc(datetime.fromtimestamp(each, UTC)) for each in self)
         return first, last
 
     @property
     def clock_change_s(self) -> float:
-        """Seconds by which the local clock was set forward during the shift, negative if it was set back."""
+        """Return the time in seconds by which the local clock was set forward during the shift.
+
+        The value is negative if the clock was set back.
+        """
         first, last = (datetime.fromtimestamp(each).astimezone().utcoffset() for each in self)
         return ((last or timedelta()) - (first or timedelta())).total_seconds()
 
 
 class ShiftTimesError(CodedError, ValueError):
-    """Error for invalid start or end times of a report."""
+    """Error for an invalid start or end time of a report."""
 
 
 def get_shift_hours(stored: object) -> tuple[int, int]:
-    """Return the stored hours of a shift, or the default hours."""
+    """Return the stored first and last hour of a shift, or the default hours."""
     match stored:
         case [int(first), int(last)] if 0 <= first < 24 and 0 <= last <= 24:
             return first, last
@@ -72,9 +78,10 @@ def get_shift_hours(stored: object) -> tuple[int, int]:
 
 
 def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> Shift:
-    """Return the present or last shift, or the shift ``shifts_back`` shifts earlier.
+    """Return the shift that is ``shifts_back`` shifts before the present or last shift.
 
-    Start and end are hours of the local clock. A night in which the clock is set back is one hour longer.
+    The start and the end are hours of the local clock. A night shift is one hour longer if the clock is set
+    back during the night.
     """
     wall = now.astimezone().replace(tzinfo=None)
     begins = wall.replace(hour=hours[0], minute=0, second=0, microsecond=0)
@@ -86,7 +93,7 @@ def find_shift(hours: tuple[int, int], now: datetime, shifts_back: int = 0) -> S
 
 
 def parse_local_time(text: str) -> float:
-    """Return the seconds of a typed local time such as ``2026-11-23 06:00`` or a day.
+    """Return a typed local time, such as ``2026-11-23 06:00`` or only the date, in seconds of UTC.
 
     Raises ShiftTimesError.
     """
@@ -101,7 +108,10 @@ def parse_local_time(text: str) -> float:
 
 
 def make_period(start: str, end: str) -> Shift:
-    """Return the period between two typed times. Raises ShiftTimesError."""
+    """Return the period between two typed times.
+
+    Raises ShiftTimesError.
+    """
     shift = Shift(parse_local_time(start), parse_local_time(end))
     if shift.end_s <= shift.start_s:
         raise ShiftTimesError(
@@ -120,7 +130,11 @@ _MIN_CLOCK_STEP_BACK_S = 1.0  # seconds of backward jump from which the clock co
 
 
 class ProgramResults(NamedTuple):
-    """Results of one program: counted parts, cycles without a part by outcome, and complete cycle times."""
+    """Results of one program.
+
+    ``parts`` is the number of counted parts. ``incomplete_cycles`` contains the number of cycles without a
+    part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
+    """
 
     program: str
     parts: int
@@ -132,7 +146,8 @@ class ProgramResults(NamedTuple):
 class ShiftResults:
     """Results of a shift.
 
-    ``until`` is its end, or the present time while the shift runs, in seconds of UTC.
+    ``evaluated_until_s`` is the end of the shift, or the present time while the shift runs, in seconds of
+    UTC.
     """
 
     shift: Shift
@@ -152,29 +167,35 @@ class ShiftResults:
 
     @property
     def part_count(self) -> int:
-        """Number of parts of all programs."""
+        """Return the number of parts of all programs."""
         return sum(each.parts for each in self.programs)
 
     @property
     def stopped_s(self) -> float:
-        """Duration of all stops within the shift in seconds."""
+        """Return the duration of all stops within the shift in seconds."""
         return sum(each.seconds for each in self.stop_reasons)
 
     @property
     def unrecorded_s(self) -> float:
-        """Duration without stored data in seconds, because the control was off or no part was started."""
+        """Return the duration without stored data in seconds.
+
+        During this time, the control was off or no part was started.
+        """
         if self.availability is None:
             return 0.0
         return max(0.0, self.availability.planned_s - self.availability.producing_s - self.stopped_s)
 
 
 def parse_store_time(at: str) -> float:
-    """Return a time of the store in seconds of UTC."""
+    """Return a time of the store, converted to seconds of UTC."""
     return datetime.fromisoformat(at).timestamp()
 
 
 def make_cycle_span(row: CycleRow | CycleTime, now: float) -> TimeSpan | None:
-    """Return the span of a cycle from its start for its duration, or None if the cycle has not ended."""
+    """Return the time span of a cycle, or None if the cycle has not ended.
+
+    The span begins at the start of the cycle and has its duration, but does not extend beyond ``now``.
+    """
     start = parse_store_time(row.started)
     if row.ended is None or start > now:
         return None
@@ -182,19 +203,22 @@ def make_cycle_span(row: CycleRow | CycleTime, now: float) -> TimeSpan | None:
 
 
 def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now: float) -> list[TimeSpan]:
-    """Return the spans of all ended cycles."""
+    """Return the time spans of all cycles that have ended."""
     return [span for row in rows if (span := make_cycle_span(row, now)) is not None]
 
 
 def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
-    """Return the stops for the calculation of reasons and availability."""
+    """Return stored stops in the form that the calculation of reasons and availability requires."""
     return [ProductionStop(row.reason, parse_store_time(row.at), row.seconds) for row in rows]
 
 
 def calculate_shift_results(
     store: Store, shift: Shift, now: float, tools: OffsetKind = OffsetKind.TOOL
 ) -> ShiftResults:
-    """Return the results of a shift; runs on a worker. Raises StoreError."""
+    """Calculate and return the results of a shift.
+
+    This function runs on a worker. Raises StoreError.
+    """
     since, end = shift.utc_texts
     until = max(shift.start_s, min(shift.end_s, now))
     with store.read() as connection:
@@ -228,7 +252,10 @@ def calculate_shift_results(
 def _make_program_results(
     ended: Sequence[CycleRow], cut_off: Sequence[CycleRow]
 ) -> tuple[ProgramResults, ...]:
-    """Return the results by program. A part belongs to the shift in which it was finished."""
+    """Return the results by program.
+
+    A part belongs to the shift in which it was finished.
+    """
     found = []
     for name in dict.fromkeys(row.program for row in (*ended, *cut_off)):
         rows = [row for row in ended if row.program == name]
@@ -243,16 +270,16 @@ def _make_program_results(
 
 
 def _select_interrupted(cycles: Sequence[CycleRow], *, on: bool) -> list[CycleRow]:
-    """Return cycles without a stored end.
+    """Return the cycles without a stored end.
 
-    The last cycle of a shift that is ``on`` may still run.
+    If ``on`` is set, the shift is running. Its last cycle is then omitted, because it may still run.
     """
     known = cycles[:-1] if on else cycles
     return [row for row in known if row.ended is None]
 
 
 def _limit_stops(stops: Iterable[ProductionStop], start: float, end: float) -> list[ProductionStop]:
-    """Return the stops limited to a period."""
+    """Return the parts of the stops that are within a period."""
     clipped = [
         (each.reason, max(each.start_s, start), min(each.start_s + each.duration_s, end)) for each in stops
     ]

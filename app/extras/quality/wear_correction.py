@@ -1,4 +1,4 @@
-"""Proposed wear correction of a feature: its effect on the part, and its application."""
+"""Wear correction that is proposed for a feature, with its effect on the part and its application."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ CORRECTION_STEP_MM = {
 
 
 def make_proposal(data: PartsData, row: FeatureRow, mode: ValueMode) -> CorrectionProposal:
-    """Return the correction that the readings since the last correction require.
+    """Return the correction that is required by the readings since the last correction.
 
     Raises QualityError.
     """
@@ -57,7 +57,7 @@ def make_proposal(data: PartsData, row: FeatureRow, mode: ValueMode) -> Correcti
 
 @dataclass(frozen=True, slots=True)
 class OffsetCorrection:
-    """Change of one field of one offset, with the values to store and the text for the operator."""
+    """Change of one field of an offset, with the values to store and the text for the operator."""
 
     kind: OffsetKind
     number: int
@@ -67,7 +67,10 @@ class OffsetCorrection:
 
 
 def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -> OffsetCorrection:
-    """Return the proposal as a change of the offset table. Raises EntryError with the obstacle."""
+    """Return the proposal as a change of the offset table.
+
+    Raises EntryError with the reason if the change is not possible.
+    """
     feature, book = proposal.feature, desk.offset_book
     why_not = book.lock_reason or find_change_refusal(desk.read_snapshot(), is_correction=True)
     if why_not:
@@ -106,14 +109,17 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -
 def _tool_value(
     name: str, row: object, proposal: CorrectionProposal, mode: ValueMode, number: int
 ) -> FieldValue:
-    """Return the new wear value, added as F2 of the tool table adds an entry."""
+    """Return the new wear value.
+
+    The correction is added as F2 of the tool table adds an entry.
+    """
     if not isinstance(row, ToolRow):
         raise EntryError(tr(Message("NO OFFSETS SET FOR T{number}", number=number)))
     return parse_increment(name, row, format_fixed(proposal.change_mm / mode.unit_mm, 10), mode)
 
 
 def _secondary_value(name: str, row: object, proposal: CorrectionProposal, mode: ValueMode) -> FieldValue:
-    """Return the new value of a D offset (X as a radius).
+    """Return the new value of a D offset, with X as a radius.
 
     An offset that is not set counts as 0.
     """
@@ -135,9 +141,9 @@ CHART_READING_COUNT = 25  # number of latest readings in the chart
 
 @dataclass(slots=True)
 class CorrectionPreview:
-    """Display of a proposed correction while its question is open.
+    """Preview of a proposed correction while its question is shown.
 
-    The worker of the offset pages simulates the part with the old and new offsets.
+    The worker of the offset pages simulates the part with the old and the new offsets.
     """
 
     desk: Desk
@@ -148,7 +154,7 @@ class CorrectionPreview:
 
     @property
     def is_question_open(self) -> bool:
-        """Whether the question of the correction is still on the prompt line."""
+        """Return whether the question about the correction is still on the prompt line."""
         return bool(self.question) and self.desk.prompt_notice == self.question
 
     def show_proposal(
@@ -158,7 +164,7 @@ class CorrectionPreview:
         change: OffsetCorrection,
         readings: tuple[tuple[int, float], ...],
     ) -> None:
-        """Show a proposal, and let the worker simulate the part before and after the correction."""
+        """Show a proposal and start the simulation of the part before and after the correction."""
         again = (question, proposal, readings) == (self.question, self.proposal, self._readings)
         self.question, self.proposal, self._readings = question, proposal, readings
         effect, job = self._effect, self.desk.program_loader.loaded.job
@@ -182,7 +188,10 @@ class CorrectionPreview:
         return before, OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
     def make_table(self, mode: ValueMode) -> TableContent | None:
-        """Return the table of diameters and shoulders before and after, or None without a simulated part."""
+        """Return the table of diameters and shoulders before and after the correction.
+
+        Returns None if no simulated part is available.
+        """
         effect = self._effect
         if effect is None or effect.is_busy or effect.error_text or effect.compared_part is None:
             return None
@@ -202,7 +211,7 @@ class CorrectionPreview:
         )
 
     def make_chart(self, mode: ValueMode) -> ChartDrawing:
-        """Return the chart of the readings, their mean and the expected size of the next parts."""
+        """Return the chart of the readings, their mean, and the expected size of the next parts."""
         found = self.proposal
         if found is None or not self._readings:
             return ChartDrawing()

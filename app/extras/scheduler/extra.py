@@ -1,4 +1,4 @@
-"""Registration of proofs on other computers."""
+"""Registration of the optional feature for proofs on other computers."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from app.compose.optional_features import OptionalFeature
 
 
 class SchedulerExtra(OptionalFeature):
-    """Optional feature with the option --scheduler of ``turndesk prove``."""
+    """Optional feature with the option ``--scheduler`` of ``turndesk prove``."""
 
     worker_class_name = "app.extras.scheduler.proof_scheduler.ProofScheduler"
 

@@ -1,6 +1,6 @@
-"""Option ``prove --scheduler``: work units for a dask.distributed scheduler and its workers.
+"""Option ``prove --scheduler``, which sends work units to the workers of a dask.distributed scheduler.
 
-The workers need the same version of TurnDesk. Programs and machine are sent to them.
+The workers need the same version of TurnDesk. The programs and the machine are sent to the workers.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ _AHEAD = 256  # units that the scheduler has at once; workers can join during th
 
 
 class ProofScheduler:
-    """Workers of a scheduler. Raises CommandError if the scheduler cannot be reached."""
+    """Connection to a scheduler and its workers.
+
+    The constructor raises CommandError if the scheduler cannot be reached.
+    """
 
     max_units_in_progress = _AHEAD
 

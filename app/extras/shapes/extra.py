@@ -1,4 +1,4 @@
-"""Registration of the shapes and calculators of the editor."""
+"""Registration of the optional feature with the shapes and calculators of the editor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class ShapesExtra(OptionalFeature):
-    """Optional feature with the shapes and calculators of the editor and ``turndesk shapes``."""
+    """Optional feature with the shapes and calculators of the editor and the command ``turndesk shapes``."""
 
     subcommands = {
         "shapes": Subcommand("setup", "make a program from the shapes that a file defines"),

@@ -1,4 +1,7 @@
-"""Form of one shape: entries, calculated values and errors; also the base of forms from other features."""
+"""Form of one shape with entries, calculated values and errors.
+
+The module also contains the base class of forms that other features add.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,7 @@ _LONGEST = 24
 
 
 class FormCell(NamedTuple):
-    """Field for display: label, value, whether it was typed, and its error."""
+    """Displayed field of a form, with its label, its value, whether the value was typed, and its error."""
 
     field_word: str
     label: str
@@ -47,10 +50,12 @@ class FormCell(NamedTuple):
 
 @dataclass(slots=True)
 class ShapeForm:
-    """Form of a shape. ``typed`` contains texts by field, and ``rows`` texts by column of each point.
+    """Form of a shape.
 
-    ``selected_row`` is the index of the selected field or, after the fields, of the selected point.
-    ``replaced_piece`` is the piece of the text from which the form was opened.
+    ``entered_texts`` contains the typed text of each field. ``point_texts`` contains the typed text of each
+    column for each point. ``selected_row`` is the index of the selected row; the fields come first,
+    followed by the points. ``replaced_piece`` is the piece of the program text from which the form was
+    opened.
     """
 
     shape: Shape
@@ -76,12 +81,12 @@ class ShapeForm:
         self.selected_row = self._first()
 
     def use_settings(self, settings: ProgramSettings) -> None:
-        """Calculate again with other tool data."""
+        """Set other tool data and calculate the form again."""
         self.settings = settings
         self.calculate()
 
     def _enter_values(self, filled_shape: FilledShape) -> None:
-        """Enter all values of a piece of the text as typed entries."""
+        """Enter all values of a piece of the program text as typed entries."""
         for word, value in filled_shape.values.items():
             self.entered_texts[word] = value if isinstance(value, str) else format_short_number(value, 6)
         for row in filled_shape.contour_points:
@@ -90,7 +95,7 @@ class ShapeForm:
             self.point_texts.append({c: format_short_number(v, 6) for c, v in keep.items()})
 
     def _first(self) -> int:
-        """Return the first field without a proposed value, or else the second point of a contour."""
+        """Return the row of the first field without a proposed value, or else of the second point."""
         for place, each in enumerate(self.fields):
             if self.filled_shape.values.get(each.word) is None:
                 return place
@@ -99,7 +104,7 @@ class ShapeForm:
     # --- calculation ---------------------------------------------------------------------------------
 
     def calculate(self) -> None:
-        """Calculate everything from the entries."""
+        """Calculate the values, errors and lines from the entries."""
         self.calculation_count += 1
         self.errors = {}
         values = {word: value for word in self.entered_texts if (value := self._value(word)) is not None}
@@ -149,32 +154,32 @@ class ShapeForm:
 
     @property
     def fields(self) -> tuple[ShapeField, ...]:
-        """Fields that apply to the present choices."""
+        """Return the fields that apply to the present choices."""
         return self.filled_shape.fields if hasattr(self, "filled_shape") else self.shape.fields
 
     @property
     def row_count(self) -> int:
-        """Number of fields and points, including an empty point at the end."""
+        """Return the number of fields and points, including the empty point at the end."""
         return len(self.fields) + (len(self.point_texts) + 1 if self.shape.contour else 0)
 
     @property
     def selected_field(self) -> ShapeField | None:
-        """Selected field, or None if a point is selected."""
+        """Return the selected field, or None if a point is selected."""
         return self.fields[self.selected_row] if self.selected_row < len(self.fields) else None
 
     @property
     def selected_point(self) -> int:
-        """Index of the selected point from 0, or -1 if a field is selected."""
+        """Return the index of the selected point, counted from 0, or -1 if a field is selected."""
         return self.selected_row - len(self.fields) if self.selected_row >= len(self.fields) else -1
 
     @property
     def selected_word(self) -> str:
-        """Word of the selected field or point."""
+        """Return the word of the selected field or the label of the selected point."""
         here = self.selected_field
         return here.word if here is not None else make_point_label(self.selected_point + 1)
 
     def make_cells(self) -> list[FormCell]:
-        """Return all fields for display."""
+        """Return all fields in the form in which they are displayed."""
         return [
             FormCell(
                 each.word,
@@ -188,7 +193,7 @@ class ShapeForm:
         ]
 
     def get_value_text(self, field: ShapeField) -> str:
-        """Return the text of a field: the entry, or else the proposed value."""
+        """Return the typed text of a field, or else the proposed value as text."""
         if field.word in self.entered_texts:
             return self.entered_texts[field.word]
         value = self.filled_shape.values.get(field.word)
@@ -197,16 +202,16 @@ class ShapeForm:
         return value if isinstance(value, str) else format_short_number(value, 6)
 
     def get_display_text(self, field: ShapeField) -> str:
-        """Return the text of a field for the operator, with translated choices."""
+        """Return the text of a field for the operator, with a translated choice."""
         said = self.get_value_text(field)
         return translate_choice(field, said) if self.is_translatable(field, said) else said
 
     def is_translatable(self, field: ShapeField, choice: str) -> bool:
-        """Return whether a choice is a translatable word instead of a name or a size."""
+        """Return whether a choice is a word that can be translated, and not a name or a size."""
         return choice in field.choices
 
     def get_dimension_text(self, word: str) -> str:
-        """Return the value of a dimension of the drawing, or an empty string."""
+        """Return the text of a dimension in the sketch, or an empty string."""
         if word.startswith("#"):
             number = int(word[1:]) - 1
             return word if number < len(self.point_texts) else ""
@@ -214,7 +219,7 @@ class ShapeForm:
         return self.get_display_text(known) if known is not None and known in self.fields else ""
 
     def list_choices(self, field: ShapeField) -> tuple[str, ...]:
-        """Return the choices of a field, or an empty tuple if the field is typed."""
+        """Return the choices of a field, or an empty tuple if the field has no choices."""
         if field.word == "CLASS":
             return list_classes_for_side(self.filled_shape.values)
         if field.word == "SIZE":
@@ -223,31 +228,31 @@ class ShapeForm:
 
     @property
     def current_error(self) -> str:
-        """Error of the selected field or point, or else the first error."""
+        """Return the error of the selected field or point, or else the first error of the form."""
         return self.errors.get(self.selected_word) or next(iter(self.errors.values()), "")
 
     @property
     def current_sketch(self) -> Sketch:
-        """Drawing whose dimensions are the fields."""
+        """Return the sketch, whose dimensions are the fields of the form."""
         return self.shape.sketch(self.filled_shape)
 
     @property
     def is_calculating(self) -> bool:
-        """Whether the lines are still being calculated."""
+        """Return whether the program lines are still being calculated."""
         return False
 
     # --- keys ----------------------------------------------------------------------------------------
 
     def handle_touch(self, point: tuple[float, float]) -> None:
-        """Handle a touch on the drawing outside its dimensions."""
+        """Handle a touch on the sketch outside its dimensions."""
 
     def select_row(self, row: int, column: int = 0) -> None:
-        """Select a field or point by index."""
+        """Select a field or point by its row."""
         self.selected_row = max(0, min(row, self.row_count - 1))
         self.selected_column, self.replaces_text = column, True
 
     def select_word(self, word: str) -> None:
-        """Select the field or point of a word."""
+        """Select the field with a word or the point with a label."""
         if word.startswith("#"):
             self.select_row(len(self.fields) + int(word[1:]) - 1)
             return
@@ -256,7 +261,7 @@ class ShapeForm:
                 self.select_row(place)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of an entry at the selection."""
+        """Return whether a character can be entered at the selection."""
         if len(key) != 1:
             return False
         here = self.selected_field
@@ -269,7 +274,7 @@ class ShapeForm:
         return key in EXPRESSION_CHARACTERS
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False if it has no function here."""
+        """Handle a key, and return False if the key has no function here."""
         moves = {"Up": -1, "Down": 1, "Enter": 1, "Page up": -8, "Page down": 8}
         if key in moves:
             self.select_row(self.selected_row + moves[key])
@@ -306,7 +311,10 @@ class ShapeForm:
             self.replaces_text = False
 
     def _pick(self, here: ShapeField, key: str) -> None:
-        """Select the next choice that begins with a letter. Delete restores the proposed choice."""
+        """Select the next choice that begins with a letter.
+
+        Delete restores the proposed choice.
+        """
         choices, now = self.list_choices(here), self.get_value_text(here)
         if key in {"Back", "Delete"}:
             self.entered_texts.pop(here.word, None)
@@ -322,10 +330,10 @@ class ShapeForm:
         return said.upper().startswith(key.upper())
 
     def _write_point(self, key: str) -> None:
-        """Handle a key on a point.
+        """Handle a key while a point is selected.
 
-        A letter selects its column, and digits edit the value. The empty point at the end becomes a new
-        point.
+        A letter selects the column of that name. Digits edit the value. Editing the empty point at the end
+        adds a point.
         """
         if key.upper() in POINT_COLUMNS:
             self.selected_column, self.replaces_text = POINT_COLUMNS.index(key.upper()), True
@@ -341,7 +349,10 @@ class ShapeForm:
         self._calculate_at_point(self.selected_point)
 
     def _calculate_at_point(self, point: int) -> None:
-        """Calculate again and keep the selection on a point, because the fields depend on the points."""
+        """Calculate the form again without losing the selected point.
+
+        The row of a point can change, because the fields depend on the points.
+        """
         self.calculate()
         self.selected_row = len(self.fields) + point
 
@@ -369,7 +380,7 @@ class ShapeForm:
 
 
 def translate_choice(field: ShapeField, choice: str) -> str:
-    """Return the translated text of a choice, or the choice itself without a translation."""
+    """Return the translated text of a choice, or the choice itself if there is no translation."""
     known = make_choice_text(field, choice)
     said = tr(known)
     return choice if said == known else said
@@ -380,7 +391,10 @@ ShowForm = Callable[[ShapeForm], str | None]
 
 
 class AddedForm(ABC):
-    """Form that another feature adds to the list; calculates on a worker, and ``key`` opens it."""
+    """Form that another feature adds to the list of shapes.
+
+    A worker calculates the form. ``key`` is the key that opens the form.
+    """
 
     key: str
     shape: Shape
@@ -391,18 +405,18 @@ class AddedForm(ABC):
     ) -> ShapeForm:
         """Return a new form.
 
-        ``preceding_lines`` contains the preceding lines, ``requested_file`` is the file to open.
+        ``preceding_lines`` are the program lines before the form. ``requested_file`` is the file to open.
         """
 
     @abstractmethod
     def accepts_file(self, name: str) -> bool:
-        """Return whether this form makes a program from a file with this name."""
+        """Return whether this form can make a program from a file with the given name."""
 
     @abstractmethod
     def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
         """Calculate the form on a worker.
 
-        ``show_message`` is called with a reason if that is not possible.
+        ``show_message`` is called with the reason if the form cannot be calculated.
         """
 
     @abstractmethod
@@ -411,7 +425,7 @@ class AddedForm(ABC):
 
     @abstractmethod
     def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
-        """Return the function keys that only this form has."""
+        """Return the additional function keys of this form."""
 
     @abstractmethod
     def prompt_text(self, form: ShapeForm) -> str:
@@ -419,7 +433,10 @@ class AddedForm(ABC):
 
     @abstractmethod
     def poll(self) -> None:
-        """Process the results of the workers; called once per frame."""
+        """Process the results of the workers.
+
+        This method is called once per frame.
+        """
 
     @abstractmethod
     def close(self) -> None:
@@ -427,7 +444,7 @@ class AddedForm(ABC):
 
 
 def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
-    """Return the names of shapes, fields and choices for the check of translations."""
+    """Return the names of shapes, fields and choices that the check of translations requires."""
     shapes = tuple(shapes)
     fields = [field for shape in shapes for field in shape.fields]
     labels = {field.label for field in fields if len(field.label) > 1}
@@ -436,9 +453,9 @@ def list_translatable_texts(shapes: Iterable[Shape]) -> list[str]:
 
 
 def _list_translatable(field: ShapeField) -> tuple[str, ...]:
-    """Return the choices that are translatable words.
+    """Return the choices of a field that are words which can be translated.
 
-    Thread series and classes have international names.
+    The names of thread series and classes are international.
     """
     if field.word == "SERIES":
         return (ThreadSeries.CUSTOM.value,)

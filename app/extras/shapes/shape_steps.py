@@ -1,4 +1,7 @@
-"""Shapes from a file: steps with the fields of the forms, written as in the editor."""
+"""Shapes from a file, which contains steps with the fields of the forms.
+
+The program is the same as the program that the forms of the editor write.
+"""
 
 from __future__ import annotations
 
@@ -22,7 +25,10 @@ ShapeStep = Mapping[str, object]
 
 
 class StepError(Exception):
-    """Error for invalid steps. Each message names the step and the key."""
+    """Error for invalid steps.
+
+    Each part of the message names the step and the key.
+    """
 
     def __init__(self, mistakes: Sequence[str]) -> None:
         super().__init__("; ".join(mistakes))
@@ -30,9 +36,9 @@ class StepError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class GeneratedProgram:
-    """Generated program.
+    """Program that was generated from steps.
 
-    ``step_kinds`` are the kinds of the steps, and ``remarks`` are remarks about the lines.
+    ``step_kinds`` are the kinds of the steps, and ``remarks`` are the remarks about the program lines.
     """
 
     lines: tuple[str, ...]
@@ -41,17 +47,20 @@ class GeneratedProgram:
 
 
 def get_shapes_by_kind(dialect: Dialect) -> dict[str, Shape]:
-    """Return the shapes of a language by the kind of their step."""
+    """Return the shapes of a language by the kind that a step specifies."""
     return {shape.name.lower(): shape for shape in SHAPES_BY_DIALECT[dialect].values()}
 
 
 def get_words_by_key(shape: Shape) -> dict[str, str]:
-    """Return the words of a shape's fields by the key of the step."""
+    """Return the words of the fields of a shape by the key that a step uses."""
     return {_KEYS.get(each.word, each.word.lower()): each.word for each in shape.fields}
 
 
 def generate_program(steps: Sequence[ShapeStep], settings: ProgramSettings) -> GeneratedProgram:
-    """Return the program of the steps, as the forms write it. Raises StepError."""
+    """Return the program that the forms write for the steps.
+
+    Raises StepError.
+    """
     shapes = [_shape(number, step, settings.dialect) for number, step in enumerate(steps, 1)]
     mistakes = [text for number, step in enumerate(steps, 1) for text in _strange(number, step, shapes)]
     if mistakes := [*(each for each in shapes if isinstance(each, str)), *mistakes]:
@@ -100,7 +109,7 @@ def _shape(number: int, step: ShapeStep, dialect: Dialect) -> Shape | str:
 
 
 def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> list[str]:
-    """Return error messages about unknown keys and invalid values of a step."""
+    """Return error messages about the unknown keys and invalid values of a step."""
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
@@ -124,7 +133,10 @@ def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> lis
 
 
 def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings) -> ShapeForm:
-    """Return the form with the values of a step. Raises StepError if the form rejects them."""
+    """Return the form with the values of a step.
+
+    Raises StepError if the form rejects a value.
+    """
     form = ShapeForm(shape, settings)
     where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
     for key, word in get_words_by_key(shape).items():
@@ -158,7 +170,10 @@ def _form(number: int, step: ShapeStep, shape: Shape, settings: ProgramSettings)
 
 
 def _rows(where: str, points: object) -> list[dict[str, str]]:
-    """Return the entries of points: x, z, and chamfer c, radius r or arc a. Raises StepError."""
+    """Return the entries of contour points.
+
+    The keys of a point are x, z, c (chamfer), r (radius) and a (arc). Raises StepError.
+    """
     if not isinstance(points, list) or not all(isinstance(each, dict) for each in points):
         raise StepError(
             [
@@ -190,7 +205,7 @@ def _text(value: object) -> str:
 
 
 def _key(shape: Shape, word: str) -> str:
-    """Return the key of a field in a step, or ``point`` with a number."""
+    """Return the key that a step uses for a field, or the word point with the number of the point."""
     return next(
         (key for key, own in get_words_by_key(shape).items() if own == word), f"point {word.lstrip('#')}"
     )

@@ -1,4 +1,7 @@
-"""Command ``turndesk shapes FORM.toml --out part.nc``: forms of the editor as a file; keys of its JSON."""
+"""Command ``turndesk shapes FORM.toml --out part.nc``, which writes a program from forms in a file.
+
+The module also declares the JSON keys of the command.
+"""
 
 from __future__ import annotations
 
@@ -72,7 +75,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Write the program and prove it. Return 1 if it has errors. Raises CommandError."""
+    """Write the program and prove it.
+
+    Returns exit status 1 if the program has errors. Raises CommandError.
+    """
     from app.compose.machine.machine_setup import read_machine
 
     machine = read_machine(args.machine)
@@ -94,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _language(out: str | None, machine: Machine) -> Dialect:
-    """Return the language of the output file name, or else of the machine.
+    """Return the language that the output file name indicates, or else the language of the machine.
 
     Raises CommandError for Klartext.
     """
@@ -206,7 +212,10 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
 
 
 def authorize_writing(args: argparse.Namespace) -> str:
-    """Return the user who may write ``--out``, or an empty string without it. Raises CommandError."""
+    """Return the user who may write the ``--out`` file, or an empty string if the option is not given.
+
+    Raises CommandError.
+    """
     if args.out is None:
         return ""
     if Path(args.out).exists():

@@ -1,4 +1,4 @@
-"""Data of the machine and its tools for shapes."""
+"""Setup of the shapes with the data of the machine and its tools."""
 
 from __future__ import annotations
 
@@ -18,7 +18,10 @@ _USUAL = (15, 16)
 
 
 def make_shapes_model(desk: Desk, machine: Machine) -> ShapesModel:
-    """Return the shapes model. The tools are read again each time a form opens."""
+    """Return the model of the shapes panel.
+
+    The tool data are read again each time the panel opens.
+    """
     found = ShapesModel(
         lambda: make_shop_data(machine, try_read_shapes()), ProgramSettings(metric=not machine.is_inch)
     )
@@ -28,7 +31,7 @@ def make_shapes_model(desk: Desk, machine: Machine) -> ShapesModel:
 
 
 def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData:
-    """Return the machine and tool data on which proposals and limits of a shape depend."""
+    """Return the machine and tool data that determine the proposals and limits of a shape."""
     by_name = {axis.name: axis for axis in machine.axes}
     z, c = by_name.get("Z"), by_name.get("C")
     return ShopData(
@@ -47,18 +50,24 @@ def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData
 
 
 def _travel(axis: Axis | None) -> float:
-    """Return the length of an axis's travel in mm, 0 if the machine file does not limit it."""
+    """Return the travel of an axis in mm, or 0 if the machine file does not limit the axis."""
     return axis.travel[1] - axis.travel[0] if axis is not None and axis.travel else 0.0
 
 
 def _chuck(machine: Machine) -> tuple[int, int] | None:
-    """Return the M codes that open and close the chuck, or None if the machine file does not define them."""
+    """Return the M codes that open and close the chuck.
+
+    Returns None if the machine file does not define these codes.
+    """
     codes = {on: code for code, (output, on) in sorted(machine.m_codes.items()) if output == "collet"}
     return (codes[False], codes[True]) if len(codes) == 2 else None
 
 
 def _live(machine: Machine) -> tuple[int, int]:
-    """Return the first M codes that switch the live tool on and off, found by the name of the output."""
+    """Return the M codes that turn the live tool on and off.
+
+    The codes are found by the name of the output. If there are several, the lowest codes are returned.
+    """
     for code, (output, state) in sorted(machine.m_codes.items()):
         if state and _LIVE.search(output):
             off = [other for other, (name, on) in machine.m_codes.items() if name == output and not on]

@@ -1,4 +1,4 @@
-"""Shapes panel in place of the editor's text: list of shapes, form and drawing."""
+"""Shapes panel, which replaces the text of the editor with the list of shapes, a form and a sketch."""
 
 from __future__ import annotations
 
@@ -42,9 +42,9 @@ _DRAWN = 12.0  # units: minimum useful height of the drawing
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """Row with a shape, a piece, a field or the ``cells`` of a point.
+    """Row for a shape, a piece of the program, a field, or the ``cells`` of a point.
 
-    ``tone`` is the color of its value.
+    ``tone`` is the color of the value.
     """
 
     label: str
@@ -55,7 +55,10 @@ class _Line:
 
 
 class ShapeRowsPanel(RowPanel):
-    """List with a selected row that remains visible. A touch selects a row or a cell."""
+    """List whose selected row always stays visible.
+
+    A touch selects a row or a cell.
+    """
 
     row_margin = 1
     displayed_rows: RedrawingAttribute[tuple[_Line, ...]] = RedrawingAttribute(())
@@ -101,7 +104,7 @@ class ShapeRowsPanel(RowPanel):
         self._figure(painter, figure, line.value_text, line.tone, marked=marked and self.is_entry_open)
 
     def _label(self, painter: ThemedPainter, box: QRectF, line: _Line, *, marked: bool) -> None:
-        """Draw the label in two lines if one line would be too small or cut off."""
+        """Draw the label in two lines if it would be too small or truncated in one line."""
         label = tr(line.label)
         room = box.adjusted(0, 0, -0.6 * self.theme.u, 0)
         cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
@@ -148,7 +151,7 @@ class ShapeRowsPanel(RowPanel):
 
 
 class ShapeLinesPanel(Panel):
-    """Lines that the form writes, or its error."""
+    """Panel with the program lines that the form writes, or with the error of the form."""
 
     title = "LINES"
     displayed_lines: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(())
@@ -160,7 +163,7 @@ class ShapeLinesPanel(Panel):
     )  # displayed page of remarks that are longer than the panel
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        """Show the next page of long remarks. The first page follows the last."""
+        """Show the next page of long remarks, or the first page after the last."""
         self._page += 1
         event.accept()
 
@@ -201,7 +204,7 @@ class ShapeLinesPanel(Panel):
         return area.adjusted(0, area.height(), 0, 0)
 
     def _draw_remark_page(self, painter: ThemedPainter, area: QRectF, flags: Qt.TextFlag, text: str) -> None:
-        """Draw one page of the remarks with whole lines, and the page number below."""
+        """Draw one page of the remarks, which contains only whole lines, with the page number below."""
         line = painter.fontMetrics().lineSpacing()
         lines = max(1, int((area.height() - 2.0 * self.theme.u) / line))
         whole = painter.boundingRect(QRectF(0, 0, area.width(), 0), flags, text).height()
@@ -221,9 +224,9 @@ class ShapeLinesPanel(Panel):
 
 
 class ShapesView(EditorPanel):
-    """Shapes panel: rows on the left, drawing and lines on the right.
+    """Shapes panel with the rows on the left, and the sketch and the program lines on the right.
 
-    The number pad replaces the lines.
+    The number pad replaces the program lines while it is shown.
     """
 
     accessible_name = "SHAPES"
@@ -241,16 +244,22 @@ class ShapesView(EditorPanel):
         self._seen: tuple[object, ...] = ()
 
     def make_head_keys(self, name: str) -> Sequence[HeadKey]:
-        """Return the keys for shapes, if the program supports them, and for calculators."""
+        """Return the key for calculators, preceded by the key for shapes if the program supports shapes."""
         calculators = HeadKey(tr("CALCULATOR ⇧F4"), "Calculators")
         return (HeadKey(tr("SHAPES ⇧F3"), "Shapes"), calculators) if supports_shapes(name) else (calculators,)
 
     def open_for_text(self, key: str, name: str, text: str, line: int) -> str:
-        """Open the shapes or the calculators."""
+        """Open the shapes or the calculators, depending on the key.
+
+        Returns the reason if opening is not possible, or an empty string.
+        """
         return self.model.open(name, text, line, helpers=key == "Calculators")
 
     def refresh(self) -> None:
-        """Update the panel if the model has changed; called once per frame."""
+        """Update the panel if the model has changed.
+
+        This method is called once per frame.
+        """
         model = self.model
         form = model.form
         now: tuple[object, ...] = (
@@ -344,11 +353,11 @@ class ShapesView(EditorPanel):
             model.select_touched_cell(row - len(form.fields), max(0, column))
 
     def sizeHint(self) -> QSize:
-        """Return an empty size, because the page determines the size."""
+        """Return an empty size because the page determines the size."""
         return QSize()
 
     def lay_out(self) -> None:
-        """Arrange all parts."""
+        """Arrange all parts of the panel."""
         u = self.theme.u
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
@@ -359,9 +368,9 @@ class ShapesView(EditorPanel):
             part.setGeometry(x, self.height() - low, right, low)
 
     def _pad_height(self) -> int:
-        """Return the height of the pad.
+        """Return the height of the number pad in pixels.
 
-        The drawing is hidden if its remaining height is too small.
+        The sketch is hidden if the remaining height is too small for it.
         """
         high = max(self.number_pad.min_height_px, round(min(_PAD * self.theme.u, 0.6 * self.height())))
         drawn = self.height() - high >= _DRAWN * self.theme.u
@@ -369,12 +378,12 @@ class ShapesView(EditorPanel):
         return high if drawn else self.height()
 
     def resizeEvent(self, _event: object) -> None:
-        """Lay out the panel again after a change of size."""
+        """Arrange the panel again after the size has changed."""
         self.lay_out()
 
 
 def _find_shapes_model(desk: Desk) -> ShapesModel:
-    """Return the shapes model of TurnDesk, or a new one without machine data."""
+    """Return the shapes model of TurnDesk, or else attach and return a new model without machine data."""
     found = desk.page_registry.find(ShapesModel)
     if found is None:
         found = ShapesModel()

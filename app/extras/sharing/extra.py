@@ -1,4 +1,4 @@
-"""Registration of program sharing with other machines."""
+"""Registration of the optional feature that shares programs with other machines."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class SharingExtra(OptionalFeature):
-    """Optional feature with the page SHARED PROGRAMS, ``turndesk share`` and the table [sharing]."""
+    """Optional feature with the SHARED PROGRAMS page, ``turndesk share`` and the table [sharing]."""
 
     subcommands = {
         "share": Subcommand("jobs", "share programs with other controls: publish, take, compare"),

@@ -1,4 +1,6 @@
-"""Wait of a command for the shared location, which may never respond on a dead network drive."""
+"""Waiting of a command for the shared location, which may never respond if it is on a failed
+network drive.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,11 @@ _OPEN = (  # a pipe in its place is reported by its reader
 def wait_for_location(
     location: SharedLocation, work: Callable[[], T], report_after_s: float = _TOLD_AFTER
 ) -> T:
-    """Return the result of ``work``, or raise its exception. A slow location is reported on stderr.
+    """Run ``work`` and return its result, or raise its exception.
 
-    The work runs in a separate thread, because Ctrl+C cannot interrupt a hanging system call. A hanging
-    thread ends with the process.
+    A location that responds slowly is reported on stderr after ``report_after_s`` seconds. The work runs in
+    a separate thread, because Ctrl+C cannot interrupt a blocked system call. A blocked thread ends with the
+    process.
     """
     if isinstance(location, SharedFolder):
         _wait_for_folder(location, report_after_s)
@@ -39,10 +42,11 @@ def wait_for_location(
 
 
 def _wait_for_folder(location: SharedFolder, told_after: float) -> None:
-    """Wait until a separate process has opened the marker file of the folder. Raises SharingError.
+    """Wait until a separate process has opened the marker file of the folder.
 
-    A call that hangs in a dead FUSE drive survives SIGKILL and, as a thread, would block the whole command. A
-    separate process can be left running instead. The file is opened, because names can come from a cache.
+    A system call that blocks on a failed FUSE drive survives SIGKILL. In a thread, this call would block
+    the whole command, but a separate process can be left running. The file must be opened, because file
+    names can come from a cache. Raises SharingError.
     """
     opening = subprocess.Popen(
         [sys.executable, "-I", "-S", "-c", _OPEN, str(location.marker_path)],

@@ -1,4 +1,7 @@
-"""Command ``turndesk share``: status, publish, take and compare shared programs; its JSON keys."""
+"""Command ``turndesk share``, which shows, publishes, copies and compares shared programs.
+
+The module also declares the JSON keys of the command.
+"""
 
 from __future__ import annotations
 
@@ -61,7 +64,10 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Execute the action. Raises CommandError."""
+    """Execute the action.
+
+    Raises CommandError.
+    """
     from app.compose.machine.machine_setup import read_machine
     from app.extras.sharing.location_wait import wait_for_location
     from app.extras.sharing.sharing import VersionCopyError
@@ -88,7 +94,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _acts(args: argparse.Namespace) -> tuple[ProtectedChange, ...]:
-    """Return the permissions that the action needs, or an empty tuple if it only reads."""
+    """Return the permissions that the action requires, or an empty tuple if the action only reads."""
     if args.action in _LOOKING:
         return ()
     alone = args.action == "begin" or getattr(args, "claim", False)
@@ -285,7 +291,7 @@ def _say(args: argparse.Namespace, words: str, values: dict[str, object]) -> Non
 
 
 def make_status_json(sharing: ProgramSharing, result: SharingResult) -> dict[str, object]:
-    """Return all known data for scripts."""
+    """Return all known data about shared programs as a JSON object for scripts."""
     return {
         "place": sharing.location.name,
         "desk": sharing.machine_name,

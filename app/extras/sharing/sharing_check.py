@@ -1,4 +1,4 @@
-"""Row of ``turndesk machine check`` for the shared location."""
+"""Check of the shared location for a row of ``turndesk machine check``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.machine.machine_model import Machine
 
 
 def check_sharing(machine: Machine, report: CheckResults) -> None:
-    """Add a row that shows whether the shared location responds and is set up."""
+    """Add a row that shows whether the shared location responds and whether it is set up."""
     table = machine.hardware.find_driver_table(SharingTable)
     if table is None:
         return

@@ -1,4 +1,4 @@
-"""Model of the page SHARED PROGRAMS without Qt: newer versions, their authors and machines."""
+"""Model of the SHARED PROGRAMS page without Qt, with newer versions, their authors and their machines."""
 
 from __future__ import annotations
 
@@ -41,7 +41,10 @@ _PATIENCE = 30.0  # seconds after which a slow location is reported
 
 @dataclass(slots=True)
 class RemoteVersions(VersionHistory):
-    """Newest versions on other machines. ``changes`` are the differences from the local text."""
+    """Newest versions of a program on other machines.
+
+    ``changes`` are the differences between the local text and the selected version.
+    """
 
     def heading(self) -> str:
         """Return the heading of the comparison."""
@@ -58,26 +61,32 @@ class RemoteVersions(VersionHistory):
         return "" if self.changes else "SAME TEXT AS ON THIS CONTROL"
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
-        """Return the local text and the text of the selected version."""
+        """Return the texts of the comparison: the local text and the text of the selected version."""
         return current, selected
 
 
 @dataclass(slots=True)
 class RemoteVersionArchive:
-    """Archive for ``RemoteVersions``: the versions of the last synchronization, numbered from 1."""
+    """Archive for ``RemoteVersions``.
+
+    It contains the remote versions found by the last synchronization, numbered from 1.
+    """
 
     sharing: ProgramSharing
 
     def find_remote_versions(self, key: str) -> Sequence[SharedVersion]:
-        """Return the versions that this machine does not have."""
+        """Return the newest versions that this machine does not have."""
         return self.sharing.last_result.programs.get(key, ProgramVersions()).newest_remote_versions
 
     def versions(self, name: str) -> Sequence[VersionRow]:
-        """Return the versions with their author and the machines that have them."""
+        """Return the versions with their authors and the machines that have them."""
         return [self._row(number, each) for number, each in enumerate(self.find_remote_versions(name), 1)]
 
     def read_version_text(self, name: str, version: int) -> bytes:
-        """Return the text of a version. Raises SharingError and StoreError."""
+        """Return the text of a version.
+
+        Raises SharingError and StoreError.
+        """
         return self.sharing.read_text(self.find_remote_versions(name)[version - 1])
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:
@@ -96,10 +105,11 @@ class RemoteVersionArchive:
 
 @dataclass(slots=True)
 class SharingModel:
-    """Model of the page. ``sharing`` is None without a location, ``synchronize_now`` wakes the sharing
-    thread.
+    """Model of the SHARED PROGRAMS page.
 
-    ``get_waiting_time`` returns how long the thread has waited for the location, in seconds.
+    ``sharing`` is None if no shared location is configured. ``synchronize_now`` starts a synchronization on
+    the sharing thread. ``get_waiting_time`` returns the time in seconds for which the thread has waited for
+    the location.
     """
 
     desk: Desk
@@ -125,12 +135,15 @@ class SharingModel:
 
     @property
     def last_result(self) -> SharingResult:
-        """Result of the last synchronization."""
+        """Return the result of the last synchronization."""
         return self.sharing.last_result if self.sharing is not None else SharingResult()
 
     @property
     def programs(self) -> tuple[tuple[str, ProgramVersions], ...]:
-        """Shared programs, with those that need a decision first, then by name."""
+        """Return the shared programs with their keys.
+
+        Programs that require a decision come first. Programs with the same state are sorted by name.
+        """
         shared = self.last_result
         if shared is not self._of[0]:
             states = shared.states_by_program
@@ -141,13 +154,13 @@ class SharingModel:
 
     @property
     def selected_program(self) -> tuple[str, ProgramVersions] | None:
-        """Selected program with its key, or None."""
+        """Return the selected program with its key, or None if no program is shared."""
         programs = self.programs
         return programs[self.selected_row] if self.selected_row < len(programs) else None
 
     @property
     def selected_version(self) -> SharedVersion | None:
-        """Selected version of another machine, or None."""
+        """Return the selected version of another machine, or None."""
         here, number = self.selected_program, self.remote_versions.number
         if (
             here is None
@@ -158,7 +171,10 @@ class SharingModel:
         return here[1].newest_remote_versions[number - 1]
 
     def update(self) -> None:
-        """Process results of the worker, and compare again after a change; called once per frame."""
+        """Process results of the worker and compare the texts again after a change.
+
+        This method is called once per frame.
+        """
         self.worker.poll()
         self.selected_row = max(0, min(self.selected_row, len(self.last_result.programs) - 1))
         key = self.selected_program[0] if self.selected_program is not None else ""
@@ -174,7 +190,10 @@ class SharingModel:
         )
 
     def make_table(self) -> TableContent:
-        """Return the table of programs with state, author, time and machines of the newest version."""
+        """Return the table of programs.
+
+        Each row contains the state of the program, and the author, time and machines of its newest version.
+        """
         rows = self._of[2] if self.programs else ()
         notes = wrap(self._silence() or tr(self.last_result.error_text), _WIDE)
         notes += [f"{name}: {why}" for name, why in list(self.last_result.rejected_files.items())[:2]]
@@ -219,7 +238,7 @@ class SharingModel:
         return TableRow(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.sharing is None:
             return NO_LOCATION_MESSAGE
         if self.selected_version is None:
@@ -246,7 +265,7 @@ class SharingModel:
     def copy_version(self) -> None:
         """Copy the selected version into the program folder.
 
-        Replacing a program requires confirmation.
+        If a program would be replaced, the operator must confirm.
         """
         version, here = self.selected_version, self.selected_program
         if version is None or here is None:
@@ -284,12 +303,12 @@ class SharingModel:
 
     @property
     def _both(self) -> bool:
-        """Whether the selected program was changed both here and on another machine."""
+        """Return whether the selected program was changed both on this machine and on another machine."""
         here = self.selected_program
         return here is not None and self.last_result.states_by_program.get(here[0]) == "both"
 
     def keep_local_version(self) -> None:
-        """Keep the local version instead of changes on other machines, after confirmation."""
+        """Ask for confirmation, and resolve the conflict in favor of the local version."""
         here = self.selected_program
         if here is None or not self._both:
             self.desk.say("NO DECISION NEEDED: NO OTHER CONTROL HAS CHANGED THIS PROGRAM")
@@ -339,14 +358,14 @@ class SharingModel:
         return ""
 
     def select_next_version(self) -> None:
-        """Select the next version if several machines have changed the program."""
+        """Select the next remote version if several machines have changed the program."""
         count = len(self.remote_versions.rows)
         if count:
             self.desk.clear_prompt_line()
             self.remote_versions.mark((self.remote_versions.marked + 1) % count)
 
     def start_synchronization(self) -> None:
-        """Start a synchronization now."""
+        """Start a synchronization now, or show the reason why this is not possible."""
         if self.sharing is None:
             self.desk.say(NO_LOCATION_MESSAGE)
         elif self._silence():
@@ -356,7 +375,10 @@ class SharingModel:
             self.synchronize_now()
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key: arrows select a program, and Enter takes the selected version."""
+        """Handle a key and return whether it was used.
+
+        The arrow keys select a program. Enter copies the selected version.
+        """
         if key in ROW_STEPS and self.programs:
             self.select_row(self.selected_row + ROW_STEPS[key])
         elif key == "Enter":
@@ -366,11 +388,11 @@ class SharingModel:
         return True
 
     def accepts_key(self, _key: str) -> bool:
-        """Return False, because this page has no entry."""
+        """Return False because this page has no entry."""
         return False
 
     def select_row(self, row: int) -> None:
-        """Select a program."""
+        """Select a program by its row."""
         self.desk.clear_prompt_line()
         self.selected_row = max(0, min(len(self.programs) - 1, row))
 
@@ -379,14 +401,14 @@ class SharingModel:
         self.synchronize_now()
 
     def handle_escape(self) -> bool:
-        """Go back one step. Return False if the page can close."""
+        """Clear the message, and return False if the page can close."""
         if not self.desk.prompt_notice:
             return False
         self.desk.clear_prompt_line()
         return True
 
     def on_close(self) -> None:
-        """Do nothing, because there is nothing to cancel."""
+        """Do nothing because there is nothing to cancel."""
 
     def close(self) -> None:
         """Stop the worker after pending changes are finished."""

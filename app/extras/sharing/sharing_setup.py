@@ -1,4 +1,4 @@
-"""Setup of program sharing: the shared location of the machine file, and the identity of this machine."""
+"""Setup of program sharing, with the location from the machine file and the identity of this machine."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ MACHINE_ID_FILE = "sharing-id"
 
 
 def make_sharing(machine: Machine, store: Callable[[], Store]) -> ProgramSharing | None:
-    """Return the sharing of a machine, or None without [sharing].
+    """Return the program sharing of a machine, or None if the machine file has no [sharing] table.
 
-    Raises CommandError if the id cannot be stored.
+    Raises CommandError if the machine id cannot be stored.
     """
     table = machine.hardware.find_driver_table(SharingTable)
     if table is None:
@@ -47,7 +47,10 @@ def make_sharing(machine: Machine, store: Callable[[], Store]) -> ProgramSharing
 
 
 def attach_sharing(desk: Desk, machine: Machine, journal: Journal | None) -> None:
-    """Attach the page. Without a store or [sharing], the page states why nothing is shared."""
+    """Attach the page of shared programs to TurnDesk.
+
+    If there is no store or no [sharing] table, the page shows the reason why nothing is shared.
+    """
     sharing = None
     if journal is not None:
         try:
@@ -66,9 +69,9 @@ def _model(desk: Desk, sharing: ProgramSharing | None) -> SharingModel:
 
 
 def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
-    """Start the synchronization thread, and return a function that stops it.
+    """Start the synchronization thread and return a function that stops it.
 
-    Returns None without [sharing] or if the location cannot be used.
+    Returns None if there is no [sharing] table or the location cannot be used.
     """
     table = (
         desk.machine.machine.hardware.find_driver_table(SharingTable)
@@ -92,7 +95,10 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
 
 @dataclass(slots=True)
 class SharingResultHandler:
-    """Handler of synchronization results on the sharing thread. Each message is reported once."""
+    """Handler of synchronization results, which runs on the sharing thread.
+
+    Each message is reported only once.
+    """
 
     desk: Desk
     journal: Journal
@@ -100,7 +106,10 @@ class SharingResultHandler:
     _told: frozenset[str] = frozenset()
 
     def handle_result(self, result: SharingResult) -> None:
-        """Log an error, and report on the prompt line that the loaded program is newer on another machine."""
+        """Log an error of the synchronization.
+
+        If another machine has a newer version of the loaded program, show a message on the prompt line.
+        """
         if result.error_text and result.error_text != self._trouble:
             self.journal.hear(LogEvent(self.desk.read_snapshot().t, "warning", result.error_text))
         self._trouble = result.error_text
@@ -132,7 +141,10 @@ def make_location(table: SharingTable) -> SharedLocation:
 
 
 def read_machine_id(folder: Path) -> str:
-    """Return the unique id of this machine, created once. Raises CommandError."""
+    """Return the unique id of this machine, which is created and stored at the first call.
+
+    Raises CommandError.
+    """
     from core.extras.sharing.version_record import is_machine_id
 
     path = folder / MACHINE_ID_FILE
@@ -148,6 +160,6 @@ def read_machine_id(folder: Path) -> str:
 
 
 def store_machine_id(folder: Path, machine_id: str) -> str:
-    """Store an id as that of this machine, and return it."""
+    """Store the given id as the id of this machine and return it."""
     write_atomically(folder / MACHINE_ID_FILE, f"{machine_id}\n".encode())
     return machine_id

@@ -1,4 +1,4 @@
-"""Page SHARED PROGRAMS (X): programs above, changes by the selected version below."""
+"""Page SHARED PROGRAMS (X), with the programs above and the differences of the selected version below."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LIST_HEIGHT_SHARE = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
-    """Page SHARED PROGRAMS: shows its model and passes the keys to it."""
+    """Page that shows the sharing model and passes keys to the model."""
 
     NAME = "SHARED PROGRAMS"
     model: SharingModel
@@ -38,7 +38,7 @@ class SharedProgramsPage(ListPage):
         return self.model.function_keys()
 
     def key_labels(self) -> tuple[str, ...]:
-        """Return the labels of the model and of scrolling."""
+        """Return the labels of the function keys of the model and of the scroll keys."""
         return self.make_labels({"F6": "UP", "F8": "DOWN"}, self.function_keys())
 
     def key_actions(self) -> KeyActions:
@@ -57,7 +57,7 @@ class SharedProgramsPage(ListPage):
         self.model.select_row(row)
 
     def refresh(self, _snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
-        """Update list and comparison."""
+        """Update the list and the comparison."""
         self.model.update()
         self.table.show_table(self.model.make_table())
         self.versions.refresh()

@@ -1,4 +1,4 @@
-"""Registration of the import and export of tool tables."""
+"""Registration of the optional feature that imports tool tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Import of a tool table: preview, questions, one step in the history of the offsets."""
+"""Import of a tool table, with a preview and questions.
+
+The import is one step in the offset history.
+"""
 
 from __future__ import annotations
 
@@ -40,7 +43,10 @@ _ALIASES = {"t": "number", "tool": "number", "r": "nose_radius", "tip": "quadran
 
 
 def import_table(args: argparse.Namespace) -> int:
-    """Show what a table changes, and import it after confirmation. Raises CommandError."""
+    """Show the changes that a tool table would make, and import the table after confirmation.
+
+    Raises CommandError.
+    """
     if args.machine:
         read_machine(args.machine)  # reports a mistake in the option before anything is asked
     may_save = args.yes or not args.json
@@ -73,7 +79,10 @@ def _tell(saved: tuple[ToolPlan, ...]) -> None:
 
 
 def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
-    """Return the format and the tools of the file. Raises CommandError."""
+    """Return the format and the tools of the file.
+
+    Raises CommandError.
+    """
     options = Reading(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
     try:
         word = args.format or format_of(path.name)
@@ -83,7 +92,10 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
 
 def _columns(entries: Iterable[str]) -> dict[str, str]:
-    """Return the columns of --map by field. Raises CommandError."""
+    """Return the columns that the option ``--map`` specifies, by field.
+
+    Raises CommandError.
+    """
     found: dict[str, str] = {}
     parts = [part for entry in entries for part in re.split(r",(?=\s*\w+\s*=)", entry)]
     for entry in parts:
@@ -104,7 +116,10 @@ def _columns(entries: Iterable[str]) -> dict[str, str]:
 
 
 def _only(text: str) -> frozenset[int]:
-    """Return the tool numbers of --only. Raises CommandError."""
+    """Return the tool numbers that the option ``--only`` specifies.
+
+    Raises CommandError.
+    """
     found: set[int] = set()
     for part in filter(None, (each.strip() for each in text.split(","))):
         match = re.fullmatch(r"[Tt]?(\d{1,2})(?:\s*-\s*[Tt]?(\d{1,2}))?", part)
@@ -122,7 +137,10 @@ def _only(text: str) -> frozenset[int]:
 
 
 def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[ToolPlan, ...]:
-    """Return the plans that the user confirms. Raises CommandError without a terminal."""
+    """Return the plans that the user confirms.
+
+    Raises CommandError if there is no terminal for the question.
+    """
     new = tuple(plan for plan in plans if plan.status is Status.NEW)
     changed = tuple(plan for plan in plans if plan.status is Status.CHANGED)
     if args.yes:
@@ -164,7 +182,10 @@ def _answer(question: str) -> bool:
 
 
 def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], who: str) -> None:
-    """Save the plans as one step. Raises CommandError if a suspicious change is not confirmed."""
+    """Save the plans as one step of the offset history.
+
+    Raises CommandError if the user does not confirm a suspicious change.
+    """
     changes = changes_of(plans)
     confirm_changes(store, args, changes)
     reason = ChangeReason(args.why or Message("import {file}", file=Path(args.file).name), who)
@@ -175,7 +196,7 @@ def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], w
 
 
 def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
-    """Yield one line per changed field and per note."""
+    """Yield one line for each changed field and for each note."""
     for plan in plans:
         name = f"T{plan.number}"
         if plan.status is Status.UNCHANGED:

@@ -1,6 +1,7 @@
 """Comparison of an imported tool table with the stored offsets and tool shapes.
 
-The plan contains only values that differ. Wear, the master mark and further cutting edges are not changed.
+The plan contains only values that are different. The import does not change wear, the master mark or
+additional cutting edges.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ _NEAR = 1e-6  # mm, the rounding of a file with six decimals
 
 
 class Status(StrEnum):
-    """The relation of an imported tool to the stored tool of the same number."""
+    """Status of an imported tool compared with the stored tool of the same number."""
 
     NEW = "new"
     CHANGED = "changed"
@@ -29,7 +30,10 @@ class Status(StrEnum):
 
 
 class FieldChange(NamedTuple):
-    """A changed field, with its old value (None: not set) and new value in mm and degrees."""
+    """Changed field with its old and its new value, in mm or degrees.
+
+    The old value is None if the field was not set.
+    """
 
     kind: OffsetKind
     name: str
@@ -39,7 +43,7 @@ class FieldChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ToolPlan:
-    """The changes of one tool, with its place in the file and notes for the user."""
+    """Planned changes of one tool, with its place in the file and notes for the user."""
 
     number: int
     place: str
@@ -48,7 +52,7 @@ class ToolPlan:
     notes: tuple[str, ...]
 
     def values(self, kind: OffsetKind) -> dict[str, FieldValue]:
-        """Return the new values of one table by field."""
+        """Return the new values of one offset table by field."""
         return {each.name: each.new for each in self.changes if each.kind is kind}
 
 
@@ -56,7 +60,7 @@ Changes = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
 def changes_of(plans: tuple[ToolPlan, ...]) -> Changes:
-    """Return the new values of all plans by table and tool."""
+    """Return the new values of all plans by offset table and tool."""
     kinds = {
         kind: {p.number: v for p in plans if (v := p.values(kind))}
         for kind in (OffsetKind.TOOL, OffsetKind.SHAPE)
@@ -66,13 +70,16 @@ def changes_of(plans: tuple[ToolPlan, ...]) -> Changes:
 
 @dataclass(frozen=True, slots=True)
 class StoredTools:
-    """The stored offsets and shapes of the tools by number."""
+    """Stored offsets and shapes of the tools by tool number."""
 
     tools: Mapping[int, ToolRow]
     shapes: Mapping[int, ShapeRow]
 
     def plans(self, table: ToolTable, *, positions: bool) -> tuple[ToolPlan, ...]:
-        """Return the changes of each tool of a table; without ``positions``, X and Z are not imported."""
+        """Return the plan for each tool of an imported table.
+
+        If ``positions`` is not set, X and Z are not imported.
+        """
         return tuple(self._plan(entry, positions=positions) for entry in table.tools.values())
 
     def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolPlan:
@@ -91,7 +98,7 @@ class StoredTools:
         return ToolPlan(entry.number, entry.place, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
-        """Return the values of the offset that can be stored, and notes about the others."""
+        """Return the offset values that can be stored, and notes about the other values."""
         offset, notes = dict(entry.offset), []
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
@@ -110,7 +117,7 @@ class StoredTools:
         return offset, notes
 
     def mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
-        """Yield the contradictions in the tool shapes that would result from the plans."""
+        """Yield an error for each contradiction in the tool shapes that would result from the plans."""
         from app.desk.stored_shapes import find_mistakes
 
         for plan in plans:

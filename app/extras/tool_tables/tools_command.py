@@ -1,4 +1,4 @@
-"""Command ``turndesk tools``: tool tables of other programs, imported and exported."""
+"""Command ``turndesk tools``, which imports tool tables of other programs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def add_parser(subparsers: SubParsers) -> None:
 
 
 def _add_import(actions: SubParsers) -> None:
-    """Add the action that imports a table."""
+    """Add the action that imports a tool table."""
     action = actions.add_parser(
         "import", help="show what a tool table of another program would change, and import it"
     )
@@ -74,7 +74,10 @@ def _add_import(actions: SubParsers) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Run the action. Raises CommandError."""
+    """Run the action.
+
+    Raises CommandError.
+    """
     from app.extras.tool_tables.import_command import import_table
 
     return import_table(args)

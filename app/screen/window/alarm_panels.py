@@ -1,4 +1,4 @@
-"""Alarms on the screen: the notice over the path view, and the log of alarms."""
+"""Alarms on the screen, with the notice over the path view, and the log of alarms."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _HIGH, _WHEN, _FOOT = 7.0, 17.0, 6.8
 
 
 class AlarmNotice(Panel):
-    """A notice with the active alarms, the first one large, or with the message of M00 or M01."""
+    """A notice that shows the active alarms, the first of them large, or the message of M00 or M01."""
 
     message, _go_on = RedrawingAttribute(""), RedrawingAttribute("")
     _alarms: RedrawingAttribute[tuple[Alarm, ...]] = RedrawingAttribute(())
@@ -37,7 +37,10 @@ class AlarmNotice(Panel):
         self.hide()
 
     def show_notice(self, message: str, continue_hint: str, alarms: tuple[Alarm, ...] = ()) -> None:
-        """Show the alarms, or else the message. Hide the notice if there is neither."""
+        """Show the alarms, or the message if there are no alarms.
+
+        Hide the notice if there is neither.
+        """
         self.message, self._go_on, self._alarms = message, continue_hint, alarms
         self.setVisible(bool(message or alarms))
 
@@ -66,7 +69,10 @@ class AlarmNotice(Panel):
         painter.draw_text_line(foot, self._go_on, 2.2, "accent")
 
     def _draw_alarm(self, painter: ThemedPainter, alarm: Alarm, *more: Alarm) -> None:
-        """Draw the first alarm large and the others in one line. The first often caused the others."""
+        """Draw the first alarm large and the other alarms in one line.
+
+        The first alarm has often caused the others.
+        """
         parts = [
             Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text),
             *([Message("LINE {line}", line=alarm.line)] if alarm.line else []),
@@ -99,7 +105,7 @@ class AlarmNotice(Panel):
         self._draw_wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
     def _draw_wrapped(self, painter: ThemedPainter, area: QRectF, text: str, size: float) -> None:
-        """Draw a wrapped text, not larger than ``size``, and small enough to fit."""
+        """Draw a wrapped text that is at most ``size`` units high, and small enough to fit."""
         painter.setPen(self.theme.color("text"))
         while True:
             painter.setFont(self.theme.make_font(size, is_bold=True))
@@ -114,7 +120,8 @@ class AlarmNotice(Panel):
 class AlarmList(RowPanel):
     """All alarms, E-stops and stops, newest first, with time, cause and remedy.
 
-    The selected entry stays visible while scrolling, so that a key opens an entry that the operator sees.
+    The selected entry remains visible while scrolling, so that a key always opens an entry that the
+    operator sees.
     """
 
     title = "ALARMS AND STOPS  ·  ESC: CLOSE  ·  CTRL+ARROWS: SELECT  ·  SHIFT+F10: SHOW SCOPE RECORD"
@@ -122,31 +129,37 @@ class AlarmList(RowPanel):
     marked = RedrawingAttribute(0)
 
     def __init__(self, theme: ScreenTheme, open_recording: Callable[[str], None], parent: QWidget) -> None:
-        """Create the list. ``open_recording`` opens the recording of an entry by its file name."""
+        """Create the list.
+
+        ``open_recording`` opens the recording of an entry by its file name.
+        """
         super().__init__(theme, parent)
         self._open = open_recording
         self.logged_stops: tuple[LoggedStop, ...] = ()
         self.hide()
 
     def show_entries(self, logged_stops: Sequence[LoggedStop]) -> None:
-        """Show these entries, and select the newest if the list has changed."""
+        """Show these entries, and select the newest entry if the list has changed."""
         if logged_stops is not self.logged_stops:
             self.logged_stops = tuple(logged_stops)
             self.first_row = self.marked = 0
             self.update()
 
     def scroll_by(self, rows: int) -> None:
-        """Scroll to older entries, or to newer ones with a negative number."""
+        """Scroll to older entries, or to newer entries if the number is negative."""
         super().scroll_by(rows)
         self.mark(max(self.first_row, min(self.marked, self.first_row + self.rows - 1)))
 
     def mark(self, index: int) -> None:
-        """Select an entry, counted from 0 for the newest. The number is limited to the list."""
+        """Select an entry by its index, counted from 0 for the newest.
+
+        The index is limited to the list.
+        """
         self.marked = max(0, min(index, len(self.logged_stops) - 1))
 
     @property
     def recording_name(self) -> str:
-        """The name of the selected entry's recording. Empty without a recording."""
+        """Return the name of the selected entry's recording, or an empty string if there is no recording."""
         return self.logged_stops[self.marked].recording_name if self.marked < len(self.logged_stops) else ""
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -196,7 +209,10 @@ class AlarmList(RowPanel):
             painter.draw_text_line(QRectF(left, row.y() + y * u, wide, 2.1 * u), text, 1.8, ink, bold=False)
 
     def _draw_pages(self, painter: ThemedPainter, foot: QRectF) -> None:
-        """Draw two touch keys that scroll to newer and older entries, if there are any."""
+        """Draw two touch keys that scroll to newer and older entries.
+
+        A key is drawn only if there are such entries.
+        """
         u = self.theme.u
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
             possible = self.first_row > 0 if by < 0 else self.first_row + self.rows < len(self.logged_stops)

@@ -1,4 +1,4 @@
-"""Files that are dropped on the window, or that a later start of TurnDesk hands over."""
+"""Opening of files that are dropped on the window, or that a later start of TurnDesk hands over."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ _DRAGS = frozenset({QEvent.Type.DragEnter, QEvent.Type.DragMove, QEvent.Type.Dro
 
 
 class FileOpening(QObject):
-    """Loads a dropped file as the program, on the Automatic page.
+    """Event filter that loads a dropped file as the program, on the Automatic page.
 
-    The same rules apply as for a program of the list: not while a program runs, and only after a question
-    if it would replace an interrupted job. A page with unsaved changes stays open.
+    The same rules apply as for a program of the list. A file is not loaded while a program runs. If it
+    would replace an interrupted job, the operator must first confirm. A page with unsaved changes stays
+    open.
     """
 
     def __init__(self, window: MainWindow) -> None:
@@ -32,7 +33,7 @@ class FileOpening(QObject):
         window.installEventFilter(self)
 
     def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
-        """Handle the drag events of the window, and leave all other events to it."""
+        """Handle the drag events of the window, and pass on all other events."""
         if event.type() not in _DRAGS or not isinstance(event, QDropEvent):
             return False
         files = files_of(event.mimeData())
@@ -46,7 +47,7 @@ class FileOpening(QObject):
         return True
 
     def open_files(self, files: list[Path]) -> None:
-        """Open the only file of the list, or show why none can be opened."""
+        """Open the file if the list contains exactly one, or show why no file can be opened."""
         frame = self._window.frame
         if frame is None or not files:
             return
@@ -59,7 +60,7 @@ class FileOpening(QObject):
         self._window.refresh()
 
     def open_file(self, path: Path) -> None:
-        """Open the program of a later start of TurnDesk, and bring the window to the front."""
+        """Open the program that a later start of TurnDesk hands over, and bring the window to the front."""
         window = self._window
         window.setWindowState(window.windowState() & ~Qt.WindowState.WindowMinimized)
         window.raise_()
@@ -68,5 +69,5 @@ class FileOpening(QObject):
 
 
 def files_of(data: QMimeData) -> list[Path]:
-    """Return the local files and folders of a drop."""
+    """Return the local files and folders that were dropped."""
     return [Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile()]

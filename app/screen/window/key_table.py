@@ -1,6 +1,6 @@
-"""The table of keys and their functions, shared by the screen and its tests.
+"""The table of keys and their functions, used by the screen and its tests.
 
-Bare arrow keys have no function on the Automatic page, because they move axes on the Jog page.
+Arrow keys without modifiers have no function on the Automatic page, because they move axes on the Jog page.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ _SIGN_KEYS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key
 
 
 def name_key(key: int, modifiers: Qt.KeyboardModifier) -> str:
-    """Return the name of a pressed key. Empty if the key has no function."""
+    """Return the name of a pressed key, or an empty string if the key has no function."""
     held = modifiers & (
         CTRL_MODIFIER | SHIFT_MODIFIER | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
     )
@@ -108,7 +108,10 @@ REPEATED_WHEN_TYPED = frozenset({"Back", "Up", "Down", "Left", "Right", "Page up
 
 
 def find_typed_text(event: QKeyEvent) -> str:
-    """Return a key as text input: one character, or the name of an editing key. Empty for any other key."""
+    """Return a key as text input.
+
+    This is one character, the name of an editing key, or an empty string for any other key.
+    """
     held = event.modifiers() & (
         CTRL_MODIFIER | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
     )

@@ -33,7 +33,10 @@ FULL_SIZE_ROW_HEIGHT = 6.3  # Units of row height that numbers of full size need
 
 
 class PositionPanel(Panel):
-    """The position display. X has a filled Ø or a hollow R, so that the operator cannot confuse them."""
+    """The position display.
+
+    X has a filled Ø or a hollow R, so that the operator cannot confuse them.
+    """
 
     position_readout: RedrawingAttribute[PositionReadout | None] = RedrawingAttribute(
         None
@@ -41,7 +44,7 @@ class PositionPanel(Panel):
 
     @property
     def readout_kind(self) -> str:
-        """The kind of value that the large numbers show."""
+        """Return the kind of value that the large numbers show."""
         return self.position_readout.main_kind.value if self.position_readout else ""
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -91,13 +94,19 @@ class PositionPanel(Panel):
             )
 
     def _find_row_share(self, row: QRectF) -> float:
-        """Return the scale of the numbers. A mill with five axes has less room per row than a lathe."""
+        """Return the scale of the numbers.
+
+        A mill with five axes has less space per row than a lathe.
+        """
         few = self.position_readout is None or len(self.position_readout.axes) <= LATHE_ROW_COUNT
         return 1.0 if few else min(1.0, row.height() / (FULL_SIZE_ROW_HEIGHT * self.theme.u))
 
 
 def draw_x_mark(painter: ThemedPainter, box: QRectF, mark: str, size: float, line: float) -> None:
-    """Draw the mark of X: a filled Ø for a diameter, a hollow R for a radius. Sizes are in units."""
+    """Draw the symbol of X, which is a filled Ø for a diameter or a hollow R for a radius.
+
+    Sizes are in units.
+    """
     filled = mark == "Ø"
     painter.draw_box(box, "mark", line, "mark" if filled else "")
     painter.draw_text_line(box, mark, size, "on_mark" if filled else "mark", at=ALIGN_CENTER)
@@ -107,7 +116,10 @@ def draw_x_mark(painter: ThemedPainter, box: QRectF, mark: str, size: float, lin
 
 
 class ReadoutPanel(Panel):
-    """A panel that draws one immutable value. Setting an equal value does not redraw the panel."""
+    """A panel that draws one immutable value.
+
+    Setting an equal value does not redraw the panel.
+    """
 
     value: RedrawingAttribute[object] = RedrawingAttribute(None)
 
@@ -116,7 +128,10 @@ class ReadoutPanel(Panel):
         self.title = title
 
     def make_row(self, y: float, height: float) -> QRectF:
-        """Return a row inside the frame. ``y`` and ``height`` are in units."""
+        """Return the rectangle of a row inside the frame.
+
+        ``y`` and ``height`` are in units.
+        """
         u = self.theme.u
         return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, height * u)
 
@@ -135,11 +150,14 @@ class ReadoutPanel(Panel):
         flags: Qt.AlignmentFlag = ALIGN_RIGHT,
         role: Role = Role.TABLE,
     ) -> None:
-        """Draw a value in bold, smaller if its place is narrow."""
+        """Draw a value in bold, and make it smaller if its area is narrow."""
         painter.draw_text_line(rect, text, size, "text", at=flags, role=role)
 
     def draw_override(self, painter: ThemedPainter, rect: QRectF, fraction: float, maximum: float) -> None:
-        """Draw an override as a bar with its percentage. A value other than 100 % is highlighted."""
+        """Draw an override as a bar with its percentage.
+
+        A value other than 100 % is highlighted.
+        """
         u = self.theme.u
         plain = abs(fraction - 1.0) < 0.005
         figure = QRectF(rect.right() - 9 * u, rect.y(), 9 * u, rect.height())
@@ -156,7 +174,7 @@ class ReadoutPanel(Panel):
 
 
 class FeedPanel(ReadoutPanel):
-    """Programmed feed in large digits, with the measured feed and the override below."""
+    """Display of the programmed feed in large digits, with the measured feed and the override below it."""
 
     def draw(self, painter: ThemedPainter) -> None:
         view = self.value
@@ -183,7 +201,7 @@ class FeedPanel(ReadoutPanel):
 
 
 class SpindlePanel(ReadoutPanel):
-    """Commanded and measured speed in rpm, surface speed, override and the spindle switch."""
+    """Display of commanded and measured speed in rpm, surface speed, override and the spindle switch."""
 
     def draw(self, painter: ThemedPainter) -> None:
         view = self.value
@@ -237,7 +255,7 @@ class SpindlePanel(ReadoutPanel):
 
 
 class ToolPanel(ReadoutPanel):
-    """Active tool and secondary offset."""
+    """Display of the active tool and secondary offset."""
 
     def draw(self, painter: ThemedPainter) -> None:
         if not isinstance(self.value, tuple):
@@ -251,7 +269,7 @@ class ToolPanel(ReadoutPanel):
 
 
 class TimesPanel(ReadoutPanel):
-    """Part count, present cycle time, remaining time and last cycle time."""
+    """Display of part count, current cycle time, remaining time and last cycle time."""
 
     def draw(self, painter: ThemedPainter) -> None:
         if not isinstance(self.value, tuple):
@@ -276,16 +294,17 @@ HIGH = 9.0  # Units: a higher panel has room for large positions.
 
 
 class ReadoutLine(Panel):
-    """All readouts of one snapshot. X has a filled Ø or a hollow R.
+    """Display of all readouts of one snapshot.
 
-    A low panel shows them in one row. A high panel shows large positions above the other readouts.
+    X has a filled Ø or a hollow R. A low panel shows the readouts in one row. A high panel shows large
+    positions above the other readouts.
     """
 
     status: MachineStatus | None = None
     _shown: RedrawingAttribute[object] = RedrawingAttribute(None)
 
     def show_status(self, status: MachineStatus) -> None:
-        """Show a status, and redraw if a value has changed."""
+        """Show a status, and redraw the panel if a value has changed."""
         self.status = status
         self._shown = (status.position, status.feed, status.spindle, status.tool_text, status.secondary_text)
 
@@ -338,7 +357,7 @@ class ReadoutLine(Panel):
             draw_x_mark(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
 
     def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
-        """Return label, value and share of the width of feed, spindle and tool."""
+        """Return label, value and fraction of the width for feed, spindle and tool."""
         feed, spindle = view.feed, view.spindle
         return (
             (
@@ -355,7 +374,7 @@ class ReadoutLine(Panel):
         )
 
     def _figures(self, painter: ThemedPainter, room: QRectF, view: MachineStatus) -> None:
-        """Draw feed, spindle and tool, each with its label above."""
+        """Draw feed, spindle and tool, each with its label above it."""
         u, x = self.theme.u, room.x() + 1.6 * self.theme.u
         for label, figure, share in self._cells(view):
             wide = share * (room.width() - 1.6 * u)
@@ -365,7 +384,7 @@ class ReadoutLine(Panel):
             x += wide
 
     def _readings(self, painter: ThemedPainter, room: QRectF) -> None:
-        """Draw feed, spindle and tool in one row, each with its label at the left."""
+        """Draw feed, spindle and tool in one row, each with its label on its left."""
         if self.status is None:
             return
         u, x = self.theme.u, room.x()
@@ -379,7 +398,7 @@ class ReadoutLine(Panel):
 
 
 def _before(axis: AxisReadout) -> float:
-    """Return the width of the name and the mark of an axis in units."""
+    """Return the width of the name and the symbol of an axis in units."""
     return 6.8 if axis.diameter_mark else 3.2
 
 
@@ -391,7 +410,7 @@ COMMENT, BLOCK = 0.38, 0.24  # Fractions of the width. Parts and times use the r
 
 
 class RunLine(Panel):
-    """One row with comment, block, parts and times, at the place of the Automatic page's comment."""
+    """One row with comment, block, parts and times, in the position of the Automatic page's comment."""
 
     ground_color = "panel"
     comment_text, block_text, message_text = (
@@ -404,7 +423,7 @@ class RunLine(Panel):
     _tone = RedrawingAttribute("")
 
     def show_status(self, status: MachineStatus, time_texts: TimeTexts) -> None:
-        """Show a status and times, and redraw if they have changed."""
+        """Show a status and times, and redraw the panel if a value has changed."""
         self.comment_text, self.message_text, self.time_texts = status.comment, status.message, time_texts
         self.block_text = f"L{status.line_number}  {status.block_text}" if status.line_number else ""
         self.stop_text, self._tone = describe_stop(status), status.tone.value
@@ -437,7 +456,7 @@ class RunLine(Panel):
         painter.draw_text_line(box, text, 2.0, ink, bold=ink == "text", raw=True)
 
     def _draw_stop(self, painter: ThemedPainter, box: QRectF) -> None:
-        """Draw the message of M00 or M01 over comment and block, as long as the stop lasts."""
+        """Draw the message of M00 or M01 over comment and block while the stop lasts."""
         painter.fill_rect(box.adjusted(-1.4 * self.theme.u, 0, 0, 0), "pause")
         painter.draw_text_line(box, self.message_text, 2.4, "on_state", raw=True)
 

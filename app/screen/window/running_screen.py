@@ -1,7 +1,8 @@
 """Handover of a program from a second start of TurnDesk to the screen that is already running.
 
-The running screen listens on a local socket that belongs to its data folder. Only processes of the same user
-can connect to it. A request is one line with the absolute path of a program; the reply is one line.
+The running screen listens on a local socket that belongs to its data folder. Only processes of the same
+user can connect to the socket. A request is one line with the absolute path of a program. The reply is one
+line.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ _MOST_PATH = 100  # bytes of a socket's path that every system accepts
 
 
 def socket_name() -> str:
-    """Return the name of the data folder's socket: its path, or a short name if the path is too long."""
+    """Return the name of the data folder's socket.
+
+    This is its path, or a short name if the path is too long.
+    """
     path = os.fsencode(find_data_folder() / "screen.sock")
     if os.name == "posix" and len(path) <= _MOST_PATH:
         return os.fsdecode(path)
@@ -31,7 +35,10 @@ def socket_name() -> str:
 
 
 def hand_over(program: str) -> bool:
-    """Ask the running screen to open a program. Return False if there is no such screen."""
+    """Ask the running screen to open a program.
+
+    Return False if no screen is running.
+    """
     path = Path(program).absolute()
     if not path.is_file():
         return False
@@ -46,7 +53,10 @@ def hand_over(program: str) -> bool:
 
 
 class RunningScreen(QObject):
-    """Receiver of the programs that later starts of TurnDesk hand over. ``open_file`` gets each path."""
+    """Receiver of the programs that later starts of TurnDesk hand over.
+
+    ``open_file`` is called with each path.
+    """
 
     def __init__(self, open_file: Callable[[Path], None], parent: QObject) -> None:
         super().__init__(parent)
@@ -56,7 +66,10 @@ class RunningScreen(QObject):
         self._server.newConnection.connect(self._connect)
 
     def listen(self) -> bool:
-        """Start to listen. Return False if another screen already listens for this data folder."""
+        """Start to listen.
+
+        Return False if another screen already listens for this data folder.
+        """
         name = socket_name()
         probe = QLocalSocket()
         probe.connectToServer(name)
@@ -72,7 +85,10 @@ class RunningScreen(QObject):
             self._read(socket)
 
     def _read(self, socket: QLocalSocket) -> None:
-        """Open the program of a complete request. Ignore a request that is too long or not a file."""
+        """Open the program of a complete request.
+
+        Ignore a request that is too long or does not name a file.
+        """
         if not socket.canReadLine():
             if socket.bytesAvailable() > MOST:
                 socket.abort()

@@ -1,4 +1,4 @@
-"""The operator station of a simulated machine on the screen, for touch and keys."""
+"""On-screen operator station of a simulated machine, for touch and keys."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ DESIGN_HEIGHT = 71.6  # Height in units for which the rows are designed. A talle
 
 
 class StationDock(TouchPanel):
-    """E-stop, spindle switch, two pots, feed hold and the start buttons."""
+    """Operator station with E-stop, spindle switch, two pots, feed hold and the start buttons."""
 
     title = "OPERATOR STATION"
     _shown: RedrawingAttribute[object] = RedrawingAttribute(())
@@ -39,7 +39,7 @@ class StationDock(TouchPanel):
         self._twisting = False
 
     def show_state(self, snapshot: Snapshot) -> None:
-        """Show the present positions of the switches and buttons."""
+        """Show the current positions of the switches and buttons."""
         desk = self._desk
         self._auto, self.is_start_disabled = snapshot.spindle_auto, bool(find_start_refusal(desk, snapshot))
         palms = frozenset(desk.station_controls.palms.press_times)
@@ -54,7 +54,7 @@ class StationDock(TouchPanel):
         )
 
     def wheelEvent(self, event: QWheelEvent) -> None:
-        """Turn the pot under the pointer."""
+        """Turn the pot under the pointer by one step."""
         steps = 1 if event.angleDelta().y() > 0 else -1
         if self._feed_box().contains(event.position()):
             self._desk.station_keys.step_override(steps)
@@ -131,9 +131,9 @@ class StationDock(TouchPanel):
         self._twisting = self.touch_count == 1
 
     def _end_twist(self) -> None:
-        """Release the E-stop if one finger alone pressed and released the twist field.
+        """Release the E-stop if a single touch pressed and released the twist field.
 
-        A hand that hits the plate touches both fields and releases nothing.
+        A hand that hits the plate touches both fields, which releases nothing.
         """
         if self._twisting and not self.touch_count:
             self._desk.station_controls.estop(is_pressed=False)
@@ -233,7 +233,10 @@ class StationDock(TouchPanel):
 
     @property
     def _is_latching(self) -> bool:
-        """Whether the palm buttons work with one finger: selected with F10 7, and all axes are simulated."""
+        """Return whether the palm buttons work with a single touch.
+
+        They do if this is selected with F10 7 and all axes are simulated.
+        """
         return self._desk.settings_store.current.latched and self._desk.machine.allows_one_hand
 
     def _palm_control(self, at: QRectF, side: str) -> TouchControl:

@@ -44,7 +44,7 @@ SIGN_WIDTH = 5.0  # Units: width of the sign.
 
 
 class TitleLine(Panel):
-    """The title line: page, program, machine state, signed-in user, machine name and clock."""
+    """The title line, with page, program, machine state, signed-in user, machine name and clock."""
 
     ground_color = "panel"
 
@@ -54,12 +54,12 @@ class TitleLine(Panel):
 
     @property
     def program_text(self) -> str:
-        """The program name in the title line."""
+        """Return the program name in the title line."""
         return self._shown[0]
 
     @property
     def state_text(self) -> str:
-        """The displayed state of the machine."""
+        """Return the displayed state of the machine."""
         return self._shown[1]
 
     def show_texts(self, program: str, state: str, tone: Tone, machine: str, clock: str) -> None:
@@ -100,10 +100,10 @@ class TitleLine(Panel):
 
 
 class PromptLine(Panel):
-    """Three places above the function keys: message and question in one row, the state below them.
+    """Three areas above the function keys: message and question in one row, and the state below them.
 
-    Each place has one subject, and none covers another. If there are both a message and a question, each has
-    half of the row. The question has two targets, always at the right end.
+    Each area has one subject, and no area covers another. If there are both a message and a question, each
+    uses half of the row. The question has two targets, which are always at the right end.
     """
 
     state_text, reason_text, question_text, message_text, confirm_key = (
@@ -120,19 +120,28 @@ class PromptLine(Panel):
 
     @property
     def main_text(self) -> str:
-        """The most important text: the message, else the question, else the state."""
+        """Return the most important text.
+
+        This is the message if there is one, otherwise the question, and otherwise the state.
+        """
         return self.message_text or self.question_text or self.state_text
 
     def show_state(self, text: str, reason: str = "") -> None:
-        """Show what the operator can do now, and the reason why the machine is stopped."""
+        """Show what the operator can do now, and why the machine is stopped."""
         self.state_text, self.reason_text = text, reason
 
     def show_question(self, text: str, confirm_key: str = "") -> None:
-        """Show a question. ``confirm_key`` is the key that means yes."""
+        """Show a question.
+
+        ``confirm_key`` is the key that means yes.
+        """
         self.question_text, self.confirm_key = text, confirm_key
 
     def show_message(self, text: str, *, kind: MessageKind | None) -> None:
-        """Show a message. ``sort`` determines its color and sign."""
+        """Show a message.
+
+        ``kind`` determines its color and symbol.
+        """
         self.message_text, self.message_kind = text, kind
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -172,7 +181,7 @@ class PromptLine(Panel):
             painter.draw_text_line(row, line, size, "text", raw=True, role=Role.PROMPT)
 
     def _lines(self, text: str, room: QRectF) -> list[str]:
-        """Return the text as one line, or as two lines if it can be larger then."""
+        """Return the text as one line, or as two lines if the letters can then be larger."""
         look, words = self.theme, text.split(" ")
         one = look.em(2.3, Role.PROMPT, room.height())
         two = look.em(2.3, Role.PROMPT, room.height() / 2)
@@ -205,7 +214,10 @@ class PromptLine(Panel):
         )
 
     def _draw_answer_keys(self, painter: ThemedPainter, area: QRectF) -> float:
-        """Draw the targets for yes and no at the right end, and return where the text must end."""
+        """Draw the targets for yes and no at the right end.
+
+        Return the x coordinate at which the text must end.
+        """
         u = self.theme.u
         left = area.right() - 2 * ANSWER_KEY_WIDTH * u
         for number, (word, key) in enumerate((("YES", YES_KEY), ("NO", NO_KEY))):
@@ -217,7 +229,7 @@ class PromptLine(Panel):
 
 
 class CommentLine(Panel):
-    """The last comment of the program, at the lower left."""
+    """The last comment of the program, in the lower left corner."""
 
     title = "COMMENT"
     text = RedrawingAttribute("")
@@ -229,7 +241,10 @@ class CommentLine(Panel):
 
 
 class FunctionKeyBar(Panel):
-    """The function keys F1 to F10, each with a label of up to eight characters. Each is a touch target."""
+    """The function keys F1 to F10, each with a label of up to eight characters.
+
+    Each key is a touch target.
+    """
 
     accessible_name = "FUNCTION KEYS"
     key_labels: RedrawingAttribute[tuple[str, ...]] = RedrawingAttribute(
@@ -268,7 +283,10 @@ class FunctionKeyBar(Panel):
 
 
 class LampStrip(Panel):
-    """A row of lamps. A lit lamp is filled and a dark lamp is hollow, so that color is not needed."""
+    """A row of lamps.
+
+    A lit lamp is filled and a dark lamp is hollow, so that they can be distinguished without color.
+    """
 
     accessible_name = "LAMPS"
     lamps: RedrawingAttribute[tuple[Lamp, ...]] = RedrawingAttribute(())
@@ -326,7 +344,7 @@ _THREE_LINE_HEIGHT = 6.0  # Units: height of a row with room for three lines.
 
 
 class NoticeRows(Panel):
-    """Rows with notices, each filled with the color of its tone and with keys for touch."""
+    """Rows with notices, each filled with the color of its tone, with touch keys."""
 
     notice_rows: RedrawingAttribute[tuple[NoticeRow, ...]] = RedrawingAttribute(())
 
@@ -339,7 +357,7 @@ class NoticeRows(Panel):
 
     @property
     def needed_height_px(self) -> int:
-        """The height in pixels that the rows need."""
+        """Return the height in pixels that the rows need."""
         return sum(self._find_row_height(row) for row in self.notice_rows)
 
     def _find_row_height(self, row: NoticeRow) -> int:
@@ -360,11 +378,11 @@ class NoticeRows(Panel):
 
     @property
     def needs_new_height(self) -> bool:
-        """Whether the rows need another height than they have."""
+        """Return whether the rows need a height that differs from their current height."""
         return self.needed_height_px != self._stand_for
 
     def apply_height(self) -> int:
-        """Note that the rows get the height that they need, and return it in pixels."""
+        """Record that the rows get the height that they need, and return this height in pixels."""
         self._stand_for = self.needed_height_px
         return self.needed_height_px
 
@@ -408,7 +426,10 @@ class NoticeRows(Panel):
 
 
 def _wrap_lines(text: str, font: QFont, wide: float) -> list[str]:
-    """Return the text in one line, or in two lines if it is too wide. The second line may still be elided."""
+    """Return the text in one line, or in two lines if it is too wide.
+
+    The second line may still be elided.
+    """
     if not text or measure_text(text, font) <= wide:
         return [text] if text else []
     words, first = text.split(" "), ""

@@ -1,4 +1,4 @@
-"""The frame of the main window: the parts that are always visible, and one page at a time."""
+"""The frame of the main window, with the parts that are always visible, and one page at a time."""
 
 from __future__ import annotations
 
@@ -64,9 +64,10 @@ ScreenContext = tuple[str, bool, bool, str]
 
 
 class WindowFrame(QWidget):
-    """The fixed parts of the window and the current page. ``refresh`` is called once a frame.
+    """The fixed parts of the window and the current page.
 
-    The Automatic page has large readouts above it. All other pages have the same values in one row.
+    ``refresh`` is called once a frame. Above the Automatic page, the readouts are large. Above all other
+    pages, the same values are in one row.
     """
 
     def __init__(self, theme: ScreenTheme, desk: Desk, press: Callable[[str], None], parent: QWidget) -> None:
@@ -108,7 +109,10 @@ class WindowFrame(QWidget):
     # --- pages ---------------------------------------------------------------------------------------
 
     def open_page(self, name: str) -> bool:
-        """Open a page. Return False if the page cannot open or the current page cannot close."""
+        """Open a page.
+
+        Return False if the page cannot open or the current page cannot close.
+        """
         name = find_page_name(self.desk.machine.language, name)
         if name == self.current_page.NAME:
             return True
@@ -122,7 +126,10 @@ class WindowFrame(QWidget):
         return True
 
     def find_page(self, name: str) -> Page:
-        """Return the page with this name. It is created at the first call and hidden until it is opened."""
+        """Return the page with this name.
+
+        The page is created on the first call, and hidden until it is opened.
+        """
         page = self._pages.get(name) or make_page(name, self._host, self)
         self._pages[name] = page
         return page
@@ -136,7 +143,7 @@ class WindowFrame(QWidget):
             self.desk.page_registry.open_recording(name)
 
     def toggle_scope(self) -> None:
-        """Open the scope from any page, or return to that page."""
+        """Open the scope from any page, or return from the scope to that page."""
         if self.current_page.NAME == page_table.SCOPE:
             self.open_page(self._before_scope)
         else:
@@ -157,7 +164,10 @@ class WindowFrame(QWidget):
         page.on_open()
 
     def key_actions(self) -> KeyActions:
-        """Return the actions of all keys. Those of the page precede those of the frame."""
+        """Return the actions of all keys.
+
+        The actions of the page have priority over those of the frame.
+        """
         return {
             "F1": partial(self.open_page, page_table.MENU),
             "F7": self.toggle_alarm_log,
@@ -173,7 +183,7 @@ class WindowFrame(QWidget):
         }
 
     def _make_log_keys(self) -> KeyActions:
-        """Return the keys that scroll the alarm log while it covers the page."""
+        """Return the actions of the keys that scroll the alarm log while it covers the page."""
         log = self.alarm_list
         return {
             "Page up": lambda: log.scroll_by(-log.rows),
@@ -184,7 +194,7 @@ class WindowFrame(QWidget):
         }
 
     def _open_selected_recording(self) -> None:
-        """Open the recording of the selected log entry, or show that the entry has none."""
+        """Open the recording of the selected log entry, or show that the entry has no recording."""
         name = self.alarm_list.recording_name
         if name:
             self.open_recording(name)
@@ -197,14 +207,20 @@ class WindowFrame(QWidget):
         self.alarm_list.raise_()
 
     def handle_escape(self) -> bool:
-        """Close the alarm log or something on the page. Return False if nothing was open."""
+        """Close the alarm log, or something on the page.
+
+        Return False if nothing was open.
+        """
         if self.alarm_list.isVisible():
             self.alarm_list.hide()
             return True
         return self.current_page.handle_escape()
 
     def is_esc_stop_key(self) -> bool:
-        """Return whether Esc starts feed hold while the machine moves and has no other function."""
+        """Return whether Esc starts feed hold while the machine moves.
+
+        It does unless Esc has another function now.
+        """
         return (
             not self.desk.confirm_key
             and not self.alarm_list.isVisible()
@@ -213,7 +229,10 @@ class WindowFrame(QWidget):
 
     @property
     def screen_context(self) -> ScreenContext:
-        """The screen state on which the meaning of a touch depends: the page, and what covers it."""
+        """Return the state of the screen that determines the meaning of a touch.
+
+        This is the page, and the parts that cover the page.
+        """
         return (
             self.current_page.NAME,
             self.alarm_list.isVisible(),
@@ -222,7 +241,7 @@ class WindowFrame(QWidget):
         )
 
     def apply_theme(self) -> None:
-        """Redraw all parts in the present colors."""
+        """Redraw all parts in the current colors."""
         for page in self._pages.values():
             page.apply_theme()
         for part in self.findChildren(QWidget):
@@ -231,14 +250,14 @@ class WindowFrame(QWidget):
     # --- layout --------------------------------------------------------------------------------------
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Lay out all parts in the new unit."""
+        """Arrange all parts in the new unit of size."""
         self._lay_out()
 
     def _lay_out(self) -> None:
         place_widget(self.current_page, self._place_parts(large=self.current_page is self.automatic_page))
 
     def _place_parts(self, *, large: bool) -> Rect:
-        """Lay out all parts for the present size, and return the rectangle of the page."""
+        """Arrange all parts for the current size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
         self.theme.set_unit(find_unit(width, height))
         with_dock = self.station_dock is not None and self.desk.settings_store.current.dock
@@ -268,7 +287,7 @@ class WindowFrame(QWidget):
 
     @property
     def _has_dock_changed(self) -> bool:
-        """Whether the operator has switched the station dock on or off since the last layout."""
+        """Return whether the operator has shown or hidden the station dock since the last layout."""
         return self.station_dock is not None and self._docked is not self.desk.settings_store.current.dock
 
     def _stand_readouts(self, at: AutomaticLayout, large: bool) -> None:
@@ -284,7 +303,10 @@ class WindowFrame(QWidget):
             part.setVisible(large)
 
     def _is_manual_motion(self, snapshot: Snapshot) -> bool:
-        """Return whether the axes were jogged or homed in the last seconds, so that no target may move."""
+        """Return whether the axes were jogged or homed in the last seconds.
+
+        Touch targets must then not move.
+        """
         now = self.desk.station_controls.clock()
         if snapshot.state in {MachineState.JOG, MachineState.HOME}:
             self._moved_at = now
@@ -306,7 +328,7 @@ class WindowFrame(QWidget):
         return self.desk.clock.read_seconds() - self._shown_at > MAX_AGE_S
 
     def refresh(self) -> None:
-        """Poll one snapshot and show it in all parts."""
+        """Poll one snapshot, and show it in all parts."""
         snapshot, view, loaded = self.desk.update()
         self._shown, self._paints = (snapshot, loaded), Panel.paint_count
         self._shown_at = self.desk.clock.read_seconds()
@@ -342,7 +364,7 @@ class WindowFrame(QWidget):
         )
 
     def _update_caret(self) -> None:
-        """Show the caret of the page's input field only while the field gets the characters."""
+        """Show the caret of the page's input field only while the field receives the characters."""
         has_field = self.current_page.has_text_field()
         if has_field is not self.theme.is_caret_shown:
             self.theme.is_caret_shown = has_field
@@ -362,7 +384,7 @@ class WindowFrame(QWidget):
         return self.current_page.accepts_key(key) or self._stock_field()
 
     def has_text_field(self) -> bool:
-        """Return whether an input field has the keyboard, so that characters are text."""
+        """Return whether an input field has the keyboard focus, so that characters are text."""
         return self.current_page.has_text_field() or self._stock_field()
 
     def _stock_field(self) -> bool:
@@ -397,7 +419,7 @@ class WindowFrame(QWidget):
     def _make_times(
         self, snapshot: Snapshot, view: MachineStatus, loaded: LoadedProgram
     ) -> tuple[tuple[str, str], ...]:
-        """Return the part count and the times, as the run line shows them too."""
+        """Return the part count and the times that the run line also shows."""
         left = formats.format_duration(find_time_left(snapshot, loaded))
         return (
             ("PARTS", self.desk.program_runs.part_counter.count_text),
@@ -420,7 +442,7 @@ class WindowFrame(QWidget):
     ) -> tuple[NoticeRow, ...]:
         """Return the notices that remain until the operator acts.
 
-        ``here``: the Automatic page is open, so the keys of the notices work.
+        ``here`` is set if the Automatic page is open, where the keys of the notices work.
         """
         desk, rows = self.desk, []
         unheard = make_unknown_notice(snapshot)
@@ -446,7 +468,10 @@ class WindowFrame(QWidget):
         return tuple(rows)
 
     def _make_prompt_keys(self, snapshot: Snapshot, loaded: LoadedProgram) -> tuple[tuple[str, str], ...]:
-        """Return the keys for an interrupted job. A start that would be refused is not included."""
+        """Return the keys for an interrupted job.
+
+        A start that would be rejected is not included.
+        """
         if snapshot.state is not MachineState.IDLE or not snapshot.interrupted_line:
             return ()
         searchto = (_SEARCHTO,) if can_restart(loaded) else ()
@@ -460,6 +485,6 @@ def _find_area_below(area: Rect, rows: Rect) -> Rect:
 
 
 def place_widget(widget: QWidget, rect: Rect) -> None:
-    """Set the geometry of a widget and redraw it."""
+    """Set the geometry of a widget, and redraw it."""
     widget.setGeometry(*rect)
     widget.update()

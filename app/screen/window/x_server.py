@@ -1,4 +1,7 @@
-"""State of keys and mouse buttons in the X server. Call this from Qt's thread only."""
+"""State of the keys and mouse buttons in the X server.
+
+Call these functions only from Qt's thread.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,10 @@ _KEYS_HELD_KEYS = 32  # Bytes, with one bit per key.
 
 
 class XServer:
-    """The X server on whose display Qt shows the windows. Use it from Qt's thread only."""
+    """The X server on whose display Qt shows the windows.
+
+    Use this class only from Qt's thread.
+    """
 
     def __init__(self, display_address: int) -> None:
         self._x = ctypes.CDLL("libX11.so.6")
@@ -23,7 +29,7 @@ class XServer:
         self.reports_repeats = bool(supported.value)
 
     def read_keys(self) -> frozenset[int]:
-        """Return the codes of the keys that are down now."""
+        """Return the key codes of the keys that are down now."""
         bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
         self._x.XQueryKeymap(self._display, bits)
         return frozenset(8 * n + bit for n, byte in enumerate(bits) for bit in range(8) if byte >> bit & 1)

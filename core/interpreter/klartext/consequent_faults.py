@@ -80,7 +80,7 @@ _BEGINS = (  # start of a block that cannot be read, and the possible consequenc
 
 
 class ConsequentFaultFilter:
-    """The uncertain state after the errors of a pass."""
+    """Filter for errors that may be consequences of earlier errors in the same pass."""
 
     def __init__(self) -> None:
         self._silent: set[str] = set()
@@ -91,7 +91,7 @@ class ConsequentFaultFilter:
     def is_consequence(self, problem: ProgramError, node: nodes.Node | None) -> bool:
         """Return whether an error may be a consequence of an earlier error.
 
-        The consequences of the error itself are recorded.
+        The method also records the possible consequences of this error.
         """
         found = problem.diagnostic
         parameter = problem.parameter if isinstance(problem, MissingValueError) else None
@@ -105,7 +105,7 @@ class ConsequentFaultFilter:
         return silent
 
     def record_unreadable_block(self, text: str) -> None:
-        """Record a block that cannot be read, given as it is written."""
+        """Record the text of a block that cannot be parsed."""
         follows = next((codes for begins, codes in _BEGINS if begins.match(text.upper())), _ALL_CODES)
         self._silent |= follows
         self._cycles = self._cycles or bool(follows & (_CYCLE_CODES | {TOOL_AXIS_MISSING}))
@@ -139,7 +139,7 @@ class ConsequentFaultFilter:
 
 
 def _assigned_parameters(node: nodes.Node | None) -> set[tuple[str, int]]:
-    """Return the parameters that a block would have set."""
+    """Return the parameters that a rejected block would have set."""
     match node:
         case nodes.Assignment() | nodes.SystemRead():
             return {(node.parameter_kind, node.parameter_number)}
@@ -163,7 +163,10 @@ def _runs_a_cycle(node: nodes.Node | None) -> bool:
 
 
 def remove_repeated_errors(lines: list[KlartextLine]) -> None:
-    """Remove syntax errors that only repeat: the same missing function, or further lines of one cycle."""
+    """Remove syntax errors that repeat an earlier error.
+
+    An error is a repetition if it names the same missing function or is in a later line of the same cycle.
+    """
     said: set[str] = set()
     cycle = ""
     for index, line in enumerate(lines):

@@ -1,4 +1,4 @@
-"""Interpreter of Klartext: generates the elementary blocks of a program for a setup."""
+"""Interpreter of Klartext, which generates the elementary blocks of a program for a setup."""
 
 from __future__ import annotations
 
@@ -62,27 +62,30 @@ class Interpreter(LinePass[nodes.KlartextLine]):
 
     @property
     def source_block_count(self) -> int:
-        """Number of lines that contain more than a comment."""
+        """Return the number of program lines that contain more than a comment."""
         return self._program.block_count
 
     @property
     def state(self) -> State:
-        """State after the last generated block."""
+        """Return the state after the last generated block."""
         return self._state
 
     @property
     def modal(self) -> ModalState:
-        """Modal state after the last generated block."""
+        """Return the modal state after the last generated block."""
         return self._state.modal
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State that the next line inherits."""
+        """Return the state that the next line inherits, as a checkpoint."""
         return mid_program_startup.make_checkpoint(self._parts, self._shared)
 
     @property
     def blocking_reason(self) -> str:
-        """Reason why no other pass can continue from here; empty if one can."""
+        """Return the reason why another pass cannot continue from the present line.
+
+        The text is empty if another pass can continue.
+        """
         return self._path.blocking_reason
 
     @property
@@ -95,7 +98,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return self._setup, self._log, program, self._setup.kinematics, *program.called_programs.values()
 
     def _restore_from(self, start: PassStart) -> None:
-        """Restore the state that the line of ``begin`` inherits, for MDI or for a restart."""
+        """Restore the state that the start line inherits, for MDI or for a restart."""
         kept = start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
@@ -112,7 +115,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         self._stop_endless(line.number, "Reduce the repeat counts.")
 
     def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """Return an iterator that generates the elementary blocks. Call this method once."""
+        """Generate the elementary blocks of the program. Call this method only once."""
         yield from self._approach
         self._made = self._state.block_count
         for line in self._lines(self._flow.read_next_line):
@@ -126,7 +129,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             yield from self._end_of_program()
 
     def _end_of_program(self) -> Iterator[Block]:
-        """Yield the end of the program at END PGM, which acts like M30."""
+        """Yield the blocks of END PGM, which acts like M30."""
         state, end = self._state, self._program.end_index
         if end >= len(self._program.lines):
             return
@@ -140,7 +143,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield m_functions.execute_program_end(state)
 
     def _execute_line_safely(self, line: nodes.KlartextLine) -> Iterator[Block]:
-        """Yield the blocks of a line; an error is logged and ends them."""
+        """Yield the blocks of a line until an error occurs; the error is logged."""
         if line.is_skippable and self._state.setup.block_delete:
             return
         if line.error is not None:
@@ -192,9 +195,9 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 yield from self._coordinates(node)
 
     def _coordinates(self, node: nodes.Node) -> Iterator[Block]:
-        """Yield the blocks of tools, cycles and coordinate changes.
+        """Yield the blocks of tool calls, cycles and coordinate transformations.
 
-        No element may be buffered before them.
+        The buffer must not contain any path elements when these blocks are generated.
         """
         state = self._state
         match node:
@@ -223,7 +226,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 self._call_program(node.name or self._selected_program(node.column), node.column)
 
     def _shift(self, node: nodes.DatumShift) -> None:
-        """Execute a datum shift, with a table if the block names one. Raises ProgramError."""
+        """Execute a datum shift, and select the datum table if the block names one.
+
+        Raises ProgramError for a missing table or row.
+        """
         if node.table_name:
             self._select(nodes.Selection("TABLE", node.table_name, node.column))
         execute_datum_shift(self._state, node)
@@ -255,7 +261,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return rows
 
     def _selected_program(self, column: int) -> str:
-        """Return the program of SEL PGM. Raises ProgramError without one."""
+        """Return the name of the program selected with SEL PGM.
+
+        Raises ProgramError if no program is selected.
+        """
         if not self._state.selected_program:
             text = "No program is selected."
             raise self._state.make_error(column, FILE_MISSING, text, "Write SEL PGM before this block.")
@@ -269,9 +278,8 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     # --- moves, M functions, cycles -----------------------------------------------------------------------
 
     def _move(self, node: nodes.PathFunction, comment: str) -> Iterator[Block]:
-        """Yield the blocks of a path function with its M functions.
-
-        A cycle that M99 or M89 calls follows.
+        """Yield the blocks of a path function with its M functions, and then of the cycle that M99 or M89
+        calls.
         """
         state, path = self._state, self._path
         m_functions.check(state, node.m_functions)
@@ -289,7 +297,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _execute_codes_or_cycle(
         self, node: nodes.MFunctionBlock | nodes.StopBlock | nodes.CycleCall, comment: str
     ) -> Iterator[Block]:
-        """Yield the blocks of M functions alone, STOP or CYCL CALL."""
+        """Yield the blocks of STOP, CYCL CALL or a block with only M functions."""
         state, path = self._state, self._path
         m_functions.check(state, node.m_functions)
         feed_rates.execute_feed_codes(state, node.m_functions)
@@ -326,7 +334,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _with_cycle(
         self, codes: Sequence[nodes.MFunction], column: int, *, has_moved: bool
     ) -> Iterator[Block]:
-        """Yield the cycle of M99, or of M89, which calls it after every move in the plane until M99."""
+        """Yield the blocks of the cycle that M99 or M89 calls.
+
+        M89 calls the cycle after every move in the plane until M99.
+        """
         numbers = {code.number for code in codes}
         wanted = self._cycles.is_modal and has_moved
         if m_functions.M89 in numbers:
@@ -339,7 +350,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield from self._run_cycle(column)
 
     def _run_cycle(self, column: int) -> Iterator[Block]:
-        """Yield the machining cycle at the tool position, or call the program of cycle 12."""
+        """Yield the blocks of the machining cycle at the tool position, or call the program of cycle 12."""
         if self._cycles.called_program:
             self._call_program(self._cycles.called_program, column)
             return
@@ -347,7 +358,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         yield from self._cycles.call_cycle(column, figures)
 
     def _read_contour(self, part: nodes.ContourPart, column: int) -> SlContour:
-        """Return the contour of a subprogram, which is executed with a copy of the state."""
+        """Return the contour of a subprogram, which is executed on a copy of the state."""
         state = copy_state(self._state)
         if part.file_name:
             flow, name = self._flow.make_program_flow(part.file_name), part.file_name
@@ -385,14 +396,14 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         return SlContour(name, runner.elements, runner.side, part.is_pocket)
 
     def _corner_is_next(self) -> bool:
-        """Return whether the next block is RND or CHF, for which an element must be buffered."""
+        """Return whether the next block is RND or CHF, so that the present element must be buffered."""
         return isinstance(self._flow.peek_next_node(), nodes.CornerBlock)
 
 
 def _collect_contour_line(
     state: State, runner: ContourCollector, flow: Flow, line: nodes.KlartextLine
 ) -> None:
-    """Execute a line of a contour's subprogram; feeds, M functions and tools have no effect."""
+    """Execute one line of a contour subprogram, without the effect of feeds, M functions and tools."""
     match line.node:
         case nodes.PathFunction():
             runner.add_path_function(line.node)

@@ -1,6 +1,6 @@
-"""Reading of a Klartext program: its lines, labels, unit and syntax errors.
+"""Parsing of a Klartext program into lines, labels, the unit and syntax errors.
 
-A block of MDI is read separately, and blocks that need other blocks are errors.
+An MDI block is parsed separately. An MDI block that depends on other blocks is an error.
 """
 
 from __future__ import annotations
@@ -51,9 +51,9 @@ LabelName = int | str
 
 @dataclass(slots=True)
 class Program:
-    """A program that was read. ``lines`` has one entry per line.
+    """A parsed program with one entry in ``lines`` per program line.
 
-    ``labels`` maps each label to the index of its line, and ``end_index`` is the index of END PGM.
+    ``labels`` maps each label to the index of its line. ``end_index`` is the index of END PGM.
     """
 
     source: ProgramSource
@@ -72,18 +72,21 @@ class Program:
 
     @property
     def block_count(self) -> int:
-        """Number of lines that contain more than a comment."""
+        """Return the number of lines that contain more than a comment."""
         return sum(1 for line in self.lines if line.node is not None or line.error is not None)
 
     def text(self, line: KlartextLine) -> str:
-        """Return the block of a line for display, formatted only once."""
+        """Return the block of a line as display text, which is formatted only once and then cached."""
         text = self._texts.get(line.number)
         if text is None:
             text = self._texts[line.number] = format_block(line)
         return text
 
     def find_subprogram_end(self, label: int) -> int | None:
-        """Return the index of the LBL 0 that ends the subprogram with its label at this index, or None."""
+        """Return the index of the LBL 0 that ends a subprogram, or None if it has no end.
+
+        ``label`` is the index of the line with the label of the subprogram.
+        """
         for index in range(label + 1, self.end_index):
             node = self.lines[index].node
             if isinstance(node, Label) and node.name == 0:
@@ -92,7 +95,10 @@ class Program:
 
 
 def read_program(source: ProgramSource) -> Program:
-    """Read all lines and called programs. Never raises; errors are in ``diagnostics``."""
+    """Parse all lines of a program and of the programs that it calls.
+
+    The function does not raise exceptions; errors are in ``diagnostics``.
+    """
     if (other := _din_iso(source)) is not None:
         return Program(source, [other], end_index=1, diagnostics=[other.error] if other.error else [])
     lines = _lines(source)
@@ -116,7 +122,7 @@ _DIN_ISO = re.compile(r"\s*(?:%\s*\S+\s+G7[01]\b|N\s*[0-9]+\s*(?:G[0-9]|[%T]|M[0
 
 
 def _din_iso(source: ProgramSource) -> KlartextLine | None:
-    """Return the first line with an error if the program is in DIN/ISO; otherwise None.
+    """Return the first line with an error if the program is in DIN/ISO format, or None otherwise.
 
     The error is reported only once.
     """
@@ -130,7 +136,7 @@ def _din_iso(source: ProgramSource) -> KlartextLine | None:
 
 
 def _lines(source: ProgramSource) -> list[KlartextLine]:
-    """Return one entry per line; a block with continuation lines (~) is in its first line."""
+    """Return one entry per line; a block with continuation lines (~) is in the entry of its first line."""
     texts = source.lines
     found: list[KlartextLine] = []
     while len(found) < len(texts):
@@ -146,7 +152,7 @@ def _lines(source: ProgramSource) -> list[KlartextLine]:
 
 
 def _join_lines(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
-    """Yield the lines of one block, with an error at its location."""
+    """Yield the lines of one block, with an error on the line where it occurs."""
     pieces = [text[: find_comment_start(text)].rstrip().removesuffix(CONTINUATION_SIGN) for text in texts]
     if not pieces[0].strip().strip("/").strip().strip("0123456789"):
         pieces[1:] = [""] * (len(pieces) - 1)  # The control splits long comments into continued lines.
@@ -162,7 +168,10 @@ def _join_lines(texts: Sequence[str], number: int) -> Iterator[KlartextLine]:
 
 
 def _corners(program: Program) -> BlankCorners | None:
-    """Return the minimum and maximum corner if both are numbers and enclose a block; otherwise None."""
+    """Return the minimum and maximum corners of the blank, or None if they are invalid.
+
+    Both corners must be numbers and enclose a volume.
+    """
     scale = MM_PER_INCH if program.is_inch else 1.0
     found: dict[int, Vector] = {}
     for line in program.lines:
@@ -183,7 +192,7 @@ def _corners(program: Program) -> BlankCorners | None:
 
 
 def _cylinder_corners(blank: CylinderBlank, scale: float) -> BlankCorners | None:
-    """Return the corners of the block around a cylinder; None if its dimensions are not numbers."""
+    """Return the corners of the block around a cylinder, or None if its dimensions are not numbers."""
     told = (blank.radius, blank.length, blank.height_above_datum)
     if (
         any(each.parameter_number is not None for each in told)
@@ -198,7 +207,10 @@ def _cylinder_corners(blank: CylinderBlank, scale: float) -> BlankCorners | None
 
 
 def _frame(program: Program) -> Iterator[Diagnostic]:
-    """Yield the errors of BEGIN PGM and END PGM, which must be first and last and match."""
+    """Yield the errors and warnings about BEGIN PGM and END PGM.
+
+    BEGIN PGM must be the first block, and END PGM must be the last block. Their units and names must match.
+    """
     with_blocks = [index for index, line in enumerate(program.lines) if line.node or line.error]
     first = program.lines[with_blocks[0]] if with_blocks else None
     if first is None or not isinstance(first.node, BeginBlock):
@@ -250,7 +262,7 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
 
 
 def _calls(program: Program) -> Iterator[Diagnostic]:
-    """Yield an error for each call of a missing label or of a subprogram without an end."""
+    """Yield an error for each call of a label that is missing or whose subprogram has no end."""
     for line in program.lines[: program.end_index]:
         node = line.node
         if not isinstance(node, (LabelCall, ConditionalJump)):
@@ -282,7 +294,7 @@ class _Level(FlowFrame[Program]):
 
 
 class Flow(ControlFlow[_Level]):
-    """Position in a program: labels, jumps, repeats and called programs."""
+    """The position in a program, with labels, jumps, repeats and called programs."""
 
     def __init__(self, program: Program) -> None:
         super().__init__(_Level(program, 0, program.end_index))
@@ -291,12 +303,12 @@ class Flow(ControlFlow[_Level]):
 
     @property
     def program(self) -> Program:
-        """The program of the last line that was read."""
+        """Return the program that contains the line read last."""
         return self.active_frame.routine
 
     @property
     def _program_frame_index(self) -> int:
-        """Index of the frame in which the active program started."""
+        """Return the index of the frame in which the active program started."""
         return max(at for at, each in enumerate(self.frames) if not each.is_section)
 
     def read_next_line(self) -> KlartextLine | None:
@@ -311,7 +323,9 @@ class Flow(ControlFlow[_Level]):
         return self.active_frame.routine.lines[self.next_index - 1]
 
     def make_subprogram_flow(self, label: int | str) -> Flow | None:
-        """Return a flow through one subprogram of the active program; None if it does not exist."""
+        """Return a flow through one subprogram of the active program, or None if the subprogram does not
+        exist.
+        """
         program = self.program
         at = program.labels.get(label)
         if at is None or program.find_subprogram_end(at) is None:
@@ -322,27 +336,30 @@ class Flow(ControlFlow[_Level]):
         return own
 
     def find_program(self, name: str) -> Program | None:
-        """Return a program in the folder of the main program, or None."""
+        """Return a program in the folder of the main program, or None if it does not exist."""
         return self._main.called_programs.get(normalize_file_name(name))
 
     def make_program_flow(self, name: str) -> Flow | None:
-        """Return a flow through a program in the folder of the main program; None if it does not exist."""
+        """Return a flow through a program in the folder of the main program, or None if it does not exist."""
         program = self.find_program(name)
         return None if program is None else Flow(program)
 
     def peek_next_node(self) -> Node | None:
-        """Return the block of the next line that has one, without a jump; or None."""
+        """Return the next block in the program text without following jumps, or None at the end."""
         lines = self.program.lines
         rest = (lines[at].node for at in range(self.next_index, self.end_index))
         return next((node for node in rest if node is not None and not isinstance(node, HeadingLine)), None)
 
     def end_program(self) -> None:
-        """End the program with M2 or M30."""
+        """End the program at M2 or M30."""
         super().end_program()
         self.is_ended_by_code = True
 
     def call_label(self, line: int, node: LabelCall, times: int) -> None:
-        """Execute CALL LBL, or ``times`` repeats of its section. Raises ProgramError if nested too deeply."""
+        """Execute CALL LBL, or repeat the section of the label ``times`` times.
+
+        Raises ProgramError if calls are nested too deeply.
+        """
         target = self.active_frame.routine.labels.get(node.name)
         if target is None:
             return  # already reported when the program was read
@@ -360,28 +377,31 @@ class Flow(ControlFlow[_Level]):
         self.enter(replace(self.active_frame, next_index=target + 1, remaining_repeats={}, is_section=True))
 
     def execute_label(self, node: Label) -> None:
-        """Execute LBL: LBL 0 ends the active subprogram, and other labels only mark a position."""
+        """Execute LBL.
+
+        LBL 0 ends the active subprogram. Other labels only mark a position.
+        """
         if node.name == 0 and self.active_frame.is_section:
             self.return_to_caller()
 
     def jump_to_label(self, node: ConditionalJump) -> None:
-        """Continue after a label."""
+        """Continue with the line after a label."""
         target = self.active_frame.routine.labels.get(node.name)
         if target is not None:  # otherwise, the error was already reported when the program was read
             self.next_index = target + 1
 
     @property
     def reads_control_values(self) -> bool:
-        """Whether the program or a called program has FN 18."""
+        """Return whether the program or a called program contains FN 18."""
         programs = (self._main, *self._main.called_programs.values())
         return any(isinstance(line.node, SystemRead) for each in programs for line in each.lines)
 
     def read_table(self, name: str) -> dict[int, TableRow] | None:
-        """Return the rows of a table in the folder of the program; None if it does not exist."""
+        """Return the rows of a table in the folder of the program, or None if the table does not exist."""
         return self._main.tables.get(normalize_file_name(name))
 
     def call_program(self, name: str, line: int) -> Program | None:
-        """Enter another program; return None if it does not exist.
+        """Call another program and return it, or return None if the program does not exist.
 
         Raises ProgramError if calls are nested too deeply.
         """
@@ -430,9 +450,9 @@ _CONTEXT_ERRORS: tuple[tuple[type, str], ...] = (
 
 
 def read_mdi_block(source: ProgramSource, *, is_inch: bool) -> Program:
-    """Return a block of MDI as a program of one block. Never raises.
+    """Parse an MDI block and return it as a program with one block.
 
-    Blocks that need other blocks are reported as errors.
+    The function does not raise exceptions. Blocks that depend on other blocks are reported as errors.
     """
     line = parse_line(1, source.lines[0] if source.lines else "")
     problem = line.error or _check_context(line)
@@ -442,7 +462,7 @@ def read_mdi_block(source: ProgramSource, *, is_inch: bool) -> Program:
 
 
 def _check_context(line: nodes.KlartextLine) -> Diagnostic | None:
-    """Return the error for a block that needs other blocks, or None."""
+    """Return the error for a block that depends on other blocks, or None."""
     node = line.node
     column = getattr(node, "column", 1) or 1
     if line.is_skippable:

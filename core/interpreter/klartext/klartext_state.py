@@ -1,4 +1,4 @@
-"""State of machine, workpiece and modal functions during a pass through a Klartext program."""
+"""State of the machine, the workpiece and the modal functions during a pass through a Klartext program."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ ORIGIN_POINT: Vector = (0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class ActivePlane:
-    """The active plane. ``frame`` is its orientation with the tables at 0.
+    """The active working plane.
 
-    ``target_angles`` are machine angles by axis, from 0 to 360 on a modulo axis. ``line`` is the line of the
-    PLANE block.
+    ``frame`` is the orientation of the plane with all table axes at 0. ``target_angles`` are machine angles
+    by axis name, in degrees from 0 to 360 on a modulo axis. ``line`` is the line of the PLANE block.
     """
 
     frame: Matrix
@@ -58,14 +58,14 @@ POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as equal
 
 
 class State:
-    """State of a pass.
+    """The state of a pass through a Klartext program.
 
-    ``at`` has all axis positions by name, ``axis_positions`` in the machine's order; mm and degrees.
-
-    Rotary axes are continuous. ``datum`` is the workpiece datum in the workpiece system, and ``shift`` is the
-    TRANS DATUM within the active plane. ``frame`` and ``origin`` are the axes and origin of the working plane
-    in the workpiece system. ``place`` converts its points to machine positions of the linear axes, and
-    ``point`` is the tip position in it, in mm. ``line`` is the active line, and ``text`` is its block as
+    ``position_by_axis`` contains all axis positions by name, and ``axis_positions`` contains them in the
+    machine's order. Positions are in mm or degrees. Rotary axes are continuous. ``datum`` is the workpiece
+    datum in the workpiece system, and ``shift`` is the TRANS DATUM within the active plane. ``frame`` and
+    ``origin`` are the axes and the origin of the working plane in the workpiece system. ``plane_transform``
+    converts points of the plane to machine positions of the linear axes. ``tip_in_plane`` is the tip
+    position in the plane, in mm. ``line_number`` is the active line, and ``text`` is its block as
     displayed.
     """
 
@@ -131,15 +131,15 @@ class State:
 
     @property
     def programmed_position(self) -> Vector:
-        """Tip position in program coordinates, in mm."""
+        """Return the tip position in program coordinates, in mm."""
         return self.transformation.to_program(self.tip_in_plane)
 
     def to_machine_position(self, program_point: Vector) -> Vector:
-        """Return machine X Y Z at which the tip is at a point of the program, in mm."""
+        """Return the machine positions X, Y and Z that place the tip at a program point, in mm."""
         return self.plane_transform.to_machine_position(self.transformation.to_plane(program_point))
 
     def set_axis_positions(self, goal: dict[str, float]) -> None:
-        """Set the axis positions; ``goal`` has all axes."""
+        """Set the positions of all axes, which ``goal`` contains by axis name."""
         if any(goal[name] != self.position_by_axis[name] for name in self.rotary_axis_names):
             self._shown = None
         turned = self._shown is None
@@ -149,7 +149,7 @@ class State:
         self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
 
     def set_machine_positions(self, positions: Sequence[float]) -> None:
-        """Set the axes to these machine positions, in the machine's order."""
+        """Set the axis positions to these machine positions, which are in the machine's axis order."""
         self.position_by_axis, self.axis_positions = (
             dict(zip(self.axis_names, positions, strict=True)),
             tuple(positions),
@@ -159,29 +159,34 @@ class State:
 
     @property
     def displayed_angles(self) -> RotaryAngles:
-        """Displayed angles of A B C, with None for axes that the machine does not have."""
+        """Return the displayed angles of A, B and C in degrees, with None for each axis that the machine
+        lacks.
+        """
         if self._shown is None:
             axes = {axis.name: self.get_displayed_angle(axis) for axis in self.kinematics.rotary_axes}
             self._shown = (axes.get("A"), axes.get("B"), axes.get("C"))
         return self._shown
 
     def get_displayed_angle(self, axis: RotaryAxis) -> float:
-        """Return the displayed angle of a rotary axis."""
+        """Return the displayed angle of a rotary axis, in degrees."""
         return self.kinematics.displayed_angle(axis, self.position_by_axis[axis.name])
 
     @property
     def linear_position(self) -> Vector:
-        """Machine X Y Z, in mm."""
+        """Return the machine positions of X, Y and Z in mm."""
         return self.position_by_axis["X"], self.position_by_axis["Y"], self.position_by_axis["Z"]
 
     @property
     def rotary_angles(self) -> dict[str, float]:
-        """Continuous angles of the rotary axes by name, in degrees."""
+        """Return the continuous angles of the rotary axes by axis name, in degrees."""
         return {axis.name: self.position_by_axis[axis.name] for axis in self.kinematics.rotary_axes}
 
     @property
     def target_angles(self) -> dict[str, float]:
-        """Effective angle of each rotary axis: from the active plane, otherwise its present angle."""
+        """Return the effective angle of each rotary axis, in degrees.
+
+        The angles come from the active plane. Without an active plane, they are the present angles.
+        """
         if self.active_plane is not None:
             return dict(self.active_plane.target_angles)
         return {
@@ -190,7 +195,7 @@ class State:
         }
 
     def update_derived_values(self) -> None:
-        """Recalculate the values that depend on plane, datum and tool."""
+        """Recalculate the values that depend on the plane, the datum and the tool."""
         self.frame = IDENTITY
         if self.active_plane is not None:
             self.frame = multiply_matrices(
@@ -202,13 +207,16 @@ class State:
         self._shared = None
 
     def reset_transformations(self) -> None:
-        """Reset datum shift, mirroring, rotation and scaling for another preset."""
+        """Reset datum shift, mirroring, rotation and scaling after another preset is activated."""
         self.datum = self.shift = ORIGIN_POINT
         self.transformation = ProgramTransform()
         self.update_derived_values()
 
     def set_plane(self, plane: ActivePlane | None) -> None:
-        """Set another plane or None. The datum point on the workpiece does not change."""
+        """Set the active plane, or clear it with None.
+
+        The datum point on the workpiece does not change.
+        """
         self.datum, self.shift = self.origin, ORIGIN_POINT
         self.active_plane = plane
         self.update_derived_values()
@@ -228,15 +236,18 @@ class State:
     # --- numbers ------------------------------------------------------------------------------------------
 
     def convert_feed_to_mm_s(self, word: float) -> float:
-        """Return F in mm/s, from mm/min, or from tenths of an inch per minute in an INCH program."""
+        """Convert an F value to mm/s.
+
+        F is in mm/min, or in tenths of an inch per minute in an INCH program.
+        """
         return word / 60.0 if self.mm_per_unit == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
 
     def make_error(
         self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
     ) -> ProgramError:
-        """Return an error at this column of the active line, or of ``line``.
+        """Return an error at this column of the active line, or of ``line`` if it is not 0.
 
-        ``values`` are the values for the placeholders of ``text`` and ``hint``.
+        ``values`` contains the values for the placeholders of ``text`` and ``hint``.
         """
         return make_klartext_error(
             line or self.line_number, column, code, fill_template(text, values), fill_template(hint, values)
@@ -245,16 +256,19 @@ class State:
     def check(
         self, condition: object, column: int, code: str, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_error(column, code, text, hint, **values)
 
     def record_position_read(self) -> None:
-        """Record that the program reads a position, which the proof can only assume after a program stop."""
+        """Record that the program reads a position.
+
+        After a program stop, the proof can only assume this position.
+        """
         self.is_position_assumed = self.is_position_assumed or self.is_after_program_stop
 
     def mark_position_error(self, error: ProgramError) -> ProgramError:
-        """Return an error of a formula, marked if it depends on an assumed position."""
+        """Return the error of a formula, marked as uncertain if it depends on an assumed position."""
         return (
             ProgramError(add_assumptions(error.diagnostic, PROGRAM_STOP_ASSUMPTION))
             if self.is_position_assumed
@@ -264,7 +278,7 @@ class State:
     def log_once(
         self, column: int, severity: Severity, code: str, text: str, hint: str = "", /, **values: object
     ) -> None:
-        """Log a finding only at its first location."""
+        """Log a finding only at the first location where it occurs."""
         text = fill_template(text, values)
         if text not in self.reported_findings:
             self.reported_findings.add(text)
@@ -273,7 +287,7 @@ class State:
             )
 
     def log_ignored_function(self, function: str, column: int) -> None:
-        """Note once that a function has no effect."""
+        """Log a note, once, that a function has no effect on this control."""
         self.log_once(
             column, Severity.NOTE, "unheeded", Message("{what} has no effect on this control.", what=function)
         )
@@ -287,10 +301,11 @@ class State:
         feed: float | None,
         curved_move: CurvedMove | None = None,
     ) -> Block:
-        """Move to ``end`` and return the block; missing axes do not move, and a ``feed`` of None is a rapid.
+        """Move to ``end`` and return the block.
 
-        The feed is in mm of the linear axes, or in degrees if only rotary axes move or determine the move
-        (``curved_move``).
+        Axes that ``end`` does not contain do not move. A ``feed`` of None is a rapid. The feed is in mm of
+        the linear axes. It is in degrees if only rotary axes move, or if ``curved_move`` specifies a feed
+        in degrees.
         """
         before, start, goal = self.tip_in_plane, self.position_by_axis, {**self.position_by_axis, **end}
         away = math.dist((start["X"], start["Y"], start["Z"]), (goal["X"], goal["Y"], goal["Z"]))
@@ -314,7 +329,7 @@ class State:
         return self._block(kind, before, travel, rate)
 
     def make_action_block(self, action: Action) -> Block:
-        """Return a block without motion."""
+        """Return a block that executes an action without motion."""
         self.is_after_program_stop = self.is_after_program_stop or isinstance(action, ProgramStop)
         here = AxisMove(self.axis_positions, self.axis_positions, 0.0, slides=False)
         kind = BlockKind.DWELL if isinstance(action, Dwell) else BlockKind.ACTION
@@ -360,7 +375,9 @@ class State:
         slides: bool,
         curved: bool,
     ) -> float:
-        """Return the path speed at which the slowest axis moves at its limit, in mm/s or degrees/s."""
+        """Return the path speed at which the slowest axis moves at its maximum speed, in mm/s or
+        degrees/s.
+        """
         if curved and slides:
             return min(slide.vmax for slide in self.kinematics.linear_axes)
         axes = (*(self.kinematics.linear_axes if slides else ()), *self.kinematics.rotary_axes)

@@ -1,4 +1,4 @@
-"""Execution of one line: its elementary blocks, in the order in which the control acts."""
+"""Execution of one line, which generates its elementary blocks in the order in which the control acts."""
 
 from __future__ import annotations
 
@@ -41,9 +41,10 @@ def execute(
     is_first_line: bool,
     contour: Sequence[Statement] = (),
 ) -> Iterator[Block]:
-    """Yield the blocks of a line: modes, T, G10 or G92, spindle, starting M codes, motion, stopping M codes.
+    """Yield the blocks of a line in the order of execution.
 
-    ``following_lines`` are the next few lines, and ``contour`` are the lines that describe the contour of
+    The order is: modes, T, G10 or G92, spindle, starting M codes, motion, stopping M codes.
+    ``following_lines`` are the next few lines. ``contour`` contains the lines that describe the contour of
     G75 or G78. Raises ProgramError at the first word that cannot be executed.
     """
     if statement.is_simple_move:

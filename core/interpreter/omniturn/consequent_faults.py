@@ -1,8 +1,9 @@
 """Suppression of errors that are only consequences of a rejected line.
 
 The control stops at the first error. The interpreter continues, so that one pass reports all independent
-errors. A rejected line may have started the spindle or set the feed. Errors that may be consequences of such
-a line are reported only after the line is corrected. The patterns are compiled when a line is rejected.
+errors. A rejected line may have been intended to start the spindle or to set the feed. Errors that may be
+consequences of such a line are reported only after the line is corrected. The patterns are compiled only
+when a line is rejected.
 """
 
 from __future__ import annotations
@@ -32,20 +33,24 @@ _SETS = (
 
 
 class ConsequentFaultFilter:
-    """The errors that may be consequences of the lines rejected so far."""
+    """Filter for errors that may be consequences of lines rejected earlier in the same pass."""
 
     def __init__(self) -> None:
         self._uncertain: set[str] = set()
 
     def record_rejected_line(self, text: str, *, is_position_known: bool) -> None:
-        """Record a rejected line; ``is_position_known`` means that the position after the line is known."""
+        """Record a rejected line and its possible consequences.
+
+        With ``is_position_known``, the position after the line is known, so later position errors are
+        reported.
+        """
         code = text.upper()
         for words, codes in _SETS:
             if re.search(words, code) and not (is_position_known and codes is _PLACE):
                 self._uncertain |= codes
 
     def is_consequence(self, code: str) -> bool:
-        """Return whether an error may only be a consequence of a refused line."""
+        """Return whether an error with this code may be a consequence of a rejected line."""
         return code in self._uncertain
 
 
@@ -56,9 +61,10 @@ _SHORT_END = r"M2\b"
 
 
 def remove_consequent_findings(findings: Sequence[Diagnostic], lines: Sequence[str]) -> list[Diagnostic]:
-    """Return the findings without those that another finding explains.
+    """Return the findings without those that are consequences of another finding.
 
-    An arc whose center is on the next line is one mistake. After a rejected M2, no line is after the end.
+    An arc whose center words are on the next line is one mistake. After a rejected M2, no line counts as a
+    line after the program end.
     """
     ends = any(each.code == "m-digits" and re.match(_SHORT_END, each.message) for each in findings)
     rest = [each for each in findings if not (ends and each.code == "after-end")]

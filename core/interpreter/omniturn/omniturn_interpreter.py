@@ -1,4 +1,4 @@
-"""Interpreter of OmniTurn: generates the elementary blocks of a program for a setup."""
+"""Interpreter of OmniTurn, which generates the elementary blocks of a program for a setup."""
 
 from __future__ import annotations
 
@@ -51,7 +51,10 @@ if TYPE_CHECKING:
 
 
 def check_program_start(state: State, program: Program) -> tuple[int, bool]:
-    """Return the number of the first line to execute (0 for none), and whether the program is too large."""
+    """Return the number of the first line to execute, and whether the program is too large.
+
+    The number is 0 if no line can be executed.
+    """
     log = state.log
     check_m_codes(state, program.machine_m_code_lines)
     begin = state.setup.begin
@@ -69,7 +72,7 @@ def check_program_start(state: State, program: Program) -> tuple[int, bool]:
 
 
 def _log_mode_error(program: Program, log: DiagnosticLog) -> None:
-    """Log an error for a move in MDI after power-up or M30, because neither G90 nor G91 is active."""
+    """Log an error for an MDI move after power-up or M30, because neither G90 nor G91 is active."""
     step = program.executable_lines[0]
     named = isinstance(step, Statement) and {90, 91}.intersection(step.modal_codes)
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
@@ -79,7 +82,10 @@ def _log_mode_error(program: Program, log: DiagnosticLog) -> None:
 
 
 def _first_line(program: Program, log: DiagnosticLog, *, block_delete: bool) -> int:
-    """Return the number of the first line to execute, or 0; log an error if it lacks G90 and G91."""
+    """Return the number of the first line to execute, or 0 if no line is executable.
+
+    An error is logged if the line lacks G90 and G91.
+    """
     for number, step in enumerate(program.executable_lines, start=1):
         if step is None:
             continue
@@ -100,7 +106,7 @@ LONG_PROGRAM_LINES = 200
 
 
 class Interpreter(InterpreterPass):
-    """One pass through an OmniTurn program or through one line of MDI."""
+    """One pass through an OmniTurn program or through one MDI line."""
 
     def __init__(self, program: Program, setup: Setup) -> None:
         super().__init__(DiagnosticLog(program.diagnostics))
@@ -117,16 +123,16 @@ class Interpreter(InterpreterPass):
 
     @property
     def source_block_count(self) -> int:
-        """Number of lines that contain more than a comment."""
+        """Return the number of program lines that contain more than a comment."""
         return self._program.block_count
 
     @property
     def modal(self) -> ModalState:
-        """Modal state after the last generated block."""
+        """Return the modal state after the last generated block."""
         return self._state.modal
 
     def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """Return an iterator that generates the elementary blocks. Call this method once."""
+        """Generate the elementary blocks of the program. Call this method only once."""
         for each in chain(self._approach(), self._pass()):
             if self._stopped:
                 if to_first_error:
@@ -137,7 +143,9 @@ class Interpreter(InterpreterPass):
                 yield each
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Return the same blocks, with straight moves combined in series where possible."""
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series where
+        possible.
+        """
         if self._program.structure.loop_ends or len(self._program.executable_lines) >= LONG_PROGRAM_LINES:
             from core.interpreter.omniturn.motion.move_series import SeriesReader
 
@@ -146,7 +154,7 @@ class Interpreter(InterpreterPass):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State that the next line inherits."""
+        """Return the state that the next line inherits, as a checkpoint."""
         return make_checkpoint(self._state)._replace(flow=self._flow.position)
 
     def _approach(self) -> Iterator[Block]:
@@ -235,9 +243,9 @@ class Interpreter(InterpreterPass):
                     self._flow.stop()
 
     def _contour(self, statement: Statement) -> list[Statement] | None:
-        """Return the lines that describe the contour of a cycle; None if the contour has no end.
+        """Return the lines that describe the contour of a cycle, or None if the contour has no end.
 
-        These lines are skipped even if the cycle does not run.
+        These lines are skipped even if the cycle is not executed.
         """
         lines = self._flow.skip_contour(statement)
         if lines is None:
@@ -247,7 +255,7 @@ class Interpreter(InterpreterPass):
         return [each for each in found if each is not None]
 
     def _nose(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks that G41, G42 or G40 releases."""
+        """Yield the buffered blocks that G41, G42 or G40 releases."""
         found = execute_compensation_code(
             self._state, statement, get_nose_code(statement), is_in_subroutine=self._flow.is_in_subprogram
         )
@@ -255,7 +263,10 @@ class Interpreter(InterpreterPass):
             yield from self._released(self._modifier.switch_compensation(found))
 
     def _apply_stages(self, block: Block) -> Iterator[Block]:
-        """Yield the block, or with a corner or nose compensation the blocks that no later line can change."""
+        """Yield the block, or the buffered blocks that later lines cannot change.
+
+        Blocks are buffered while a corner or nose compensation is active.
+        """
         if self._state.contour.is_buffering:
             yield from self._released(self._modifier.accept(block))
         else:
@@ -285,11 +296,11 @@ class Interpreter(InterpreterPass):
         self._flow.call_subroutine(statement)
 
     def _is_call_made(self, statement: Statement) -> bool:
-        """Return whether a conditional call is made, which depends on the present state of its input."""
+        """Return whether a conditional call is made in the present state of its input."""
         return is_call_made(statement, self._state.setup.inputs)
 
     def _recover(self, problem: ProgramError, line: ExecutableLine) -> None:
-        """Log the error and set the position at the end of its line.
+        """Log the error, and set the position to the end point of its line.
 
         Later lines are then checked from the correct position.
         """
@@ -300,14 +311,14 @@ class Interpreter(InterpreterPass):
             self._skip(line)
 
     def _skip(self, statement: Statement) -> None:
-        """Continue after a rejected line."""
+        """Set the state so that the pass continues after a rejected line."""
         self._set_end_position(statement)
         self._consequences.record_rejected_line(
             statement.text, is_position_known=statement.moves_x_or_z and self._state.absolute
         )
 
     def _set_end_position(self, statement: Statement) -> None:
-        """Set the position at the end of the line."""
+        """Set the position to the end point of the line."""
         state = self._state
         if statement.moves_x_or_z and state.absolute:
             set_position(
@@ -320,19 +331,20 @@ class Interpreter(InterpreterPass):
 
 
 class StoppablePass(Interpreter):
-    """A pass that can stop before any line, in each loop pass and call, and continue from there."""
+    """A pass that can stop before any line, in each loop pass and call, and then continue."""
 
     def run_to_line(self, line: int) -> Iterator[Block]:
-        """Yield the blocks before the next execution of this line (from 1); ``is_at_line`` is then True.
-
-        The method may be called again with a later line. At the first error, the blocks end and ``failed`` is
+        """Yield the blocks before the next execution of this line (from 1), so that ``is_at_line`` is then
         True.
+
+        The method can be called again with a later line. At the first error, the iterator ends and
+        ``has_errors`` is True.
         """
         self._flow.stop_before(line)
         return self._until_stop()
 
     def run_to_next_visit(self, line: int) -> Iterator[Block]:
-        """Yield the blocks from this line until the same line is next again."""
+        """Yield the blocks from this line until execution reaches the same line again."""
         self._flow.stop_before(line)
         self._flow.skip_stop_once()
         return self._until_stop()
@@ -346,25 +358,25 @@ class StoppablePass(Interpreter):
 
     @property
     def is_at_line(self) -> bool:
-        """Whether the requested line is next."""
+        """Return whether the requested line is the next line."""
         return self._flow.is_at_stop_line and not self._stopped
 
     @property
     def setup(self) -> Setup:
-        """The setup of the pass."""
+        """Return the setup of the pass."""
         return self._state.setup
 
     @property
     def next_line(self) -> int:
-        """Number of the next line, from 1."""
+        """Return the number of the next line, from 1."""
         return self._flow.next_index + 1
 
     @property
     def is_in_subroutine(self) -> bool:
-        """Whether a subroutine is active."""
+        """Return whether a subroutine is active."""
         return self._flow.is_in_subprogram
 
     @property
     def has_buffered_moves(self) -> bool:
-        """Whether moves are buffered because a corner or nose compensation needs later lines."""
+        """Return whether moves are buffered because a corner or nose compensation needs later lines."""
         return self._state.contour.is_buffering or self._state.modal.compensation_code != 40

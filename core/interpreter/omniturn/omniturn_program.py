@@ -1,6 +1,6 @@
-"""Reading of a program: its lines ready for execution, its structure and its syntax errors.
+"""Parsing of a program into executable lines, its structure and its syntax errors.
 
-A line of MDI is read like a line of a program, but words that need other lines are errors.
+An MDI line is parsed like a line of a program, but words that depend on other lines are errors.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ _KINDS = {
 
 
 class StyleChecker:
-    """Collector of style deviations in one program."""
+    """Collector of deviations from the style of the original control in one program."""
 
     def __init__(self, *, strict: bool) -> None:
         self.findings: list[Diagnostic] = []
@@ -81,7 +81,9 @@ class StyleChecker:
         self._places: dict[str, int] = {}  # kind → index in ``findings``
 
     def record_deviation(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
-        """Record ``count`` occurrences of ``kind``, the first of them at this location."""
+        """Record ``count`` occurrences of a deviation; ``line`` and ``column`` are the location of the
+        first.
+        """
         at = self._places.get(kind)
         if at is not None and not self._strict:
             self.findings[at] = replace(
@@ -123,7 +125,8 @@ _NEAR = 5  # lines
 class Program:
     """A program ready for execution.
 
-    ``ready`` has one entry per line; ``machine_m_code_lines`` are M codes of the machine file.
+    ``executable_lines`` has one entry per line. ``machine_m_code_lines`` are the lines with M codes of the
+    machine file.
     """
 
     source: ProgramSource
@@ -138,15 +141,15 @@ class Program:
     subroutine_calls: tuple[tuple[int, int], ...] = ()
 
     def copy_for_pass(self) -> Program:
-        """Return a copy for one pass, which changes its lines independently."""
+        """Return a copy for one pass, which can change its lines independently."""
         return replace(self, executable_lines=self.executable_lines.copy())
 
     def get_line(self, number: int) -> LexedLine:
-        """Return the words of a line, which is counted from 1."""
+        """Return the words of a line, which is numbered from 1."""
         return lex_line(number, self.source.lines[number - 1])
 
     def get_statement(self, number: int) -> Statement | None:
-        """Return the statement of a line, which is counted from 1; None for an empty line."""
+        """Return the statement of a line, which is numbered from 1, or None for an empty line."""
         ready = self.executable_lines[number - 1]
         return make_statement(self.get_line(number)) if isinstance(ready, tuple) else ready
 
@@ -193,7 +196,7 @@ class _Reader:
         return statement
 
     def _suspect_plane(self, number: int, text: str) -> None:
-        """Report a (PLXC) without its ~, because it and its moves are then only comments."""
+        """Report a (PLXC) without the required ~, because TurnDesk would treat the section as comments."""
         following = islice(self.source.lines, number, number + _NEAR)
         lacks = is_missing_tilde(text, following) if "(" in text else None
         if lacks is not None:
@@ -210,7 +213,7 @@ class _Reader:
             )
 
     def _in_plane(self, number: int, text: str, entry: PlaneLine | None) -> Statement:
-        """Read a line from the entry of plane switching to (END), both included."""
+        """Parse one line of a plane switching section, including its first line and (END)."""
         statement = Statement(number, text.strip(), flow_code=PLANE_FLOW)
         try:
             statement.plane_line = (
@@ -235,9 +238,10 @@ class _Reader:
 
 
 def read_program(source: ProgramSource, strict: bool = False) -> Program:
-    """Read all lines, find loops, subroutines and the end, and collect the errors. Never raises.
+    """Parse all lines of a program, find loops, subroutines and the end, and collect the errors.
 
-    With ``strict``, style deviations that the manual of the original control forbids are errors.
+    The function does not raise exceptions. With ``strict``, style deviations that the manual of the
+    original control forbids are errors.
     """
     reader = _Reader(source, strict=strict)
     ready = reader.read()
@@ -288,7 +292,7 @@ def _calls(statements: list[Statement]) -> Iterator[tuple[int, int]]:
 
 
 def read_statement(number: int, text: str) -> tuple[Statement | None, list[Diagnostic]]:
-    """Return one line as a statement, with its errors; None for an empty line."""
+    """Return one line as a statement with its errors; the statement is None for an empty line."""
     reader = _Reader(ProgramSource("", text), strict=False)
     statement = reader.statement(number, text)
     return statement, reader.problems
@@ -311,7 +315,7 @@ def _comments_in_loops(statements: list[Statement], structure: ProgramStructure)
 
 
 def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> list[Diagnostic]:
-    """Return an error for the first move after M30 that is not in a subroutine; an empty list without one."""
+    """Return a list with an error for the first move after M30 outside of subroutines, or an empty list."""
     inside = False
     starts, ends = set(structure.subroutines.values()), set(structure.subroutine_ends.values())
     for at in range(structure.main_end_index, len(ready)):
@@ -324,7 +328,7 @@ def _check_after_end(ready: ExecutableLines, structure: ProgramStructure) -> lis
 
 
 def _limit_findings(problems: list[Diagnostic]) -> list[Diagnostic]:
-    """Return at most 100 findings. Errors have priority, so that warnings cannot displace an error."""
+    """Return at most 100 findings, with priority for errors."""
     if len(problems) <= _MAX_FINDINGS:
         return problems
     by_weight = sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
@@ -335,9 +339,9 @@ _HINT = "Use this command in a program."
 
 
 def read_mdi_line(source: ProgramSource) -> Program:
-    """Return a line of MDI as a program of one line. Never raises.
+    """Parse an MDI line and return it as a program with one line.
 
-    Words that need other lines are reported as errors.
+    The function does not raise exceptions. Words that depend on other lines are reported as errors.
     """
     text = source.lines[0] if source.lines else ""
     try:
@@ -361,7 +365,7 @@ def read_mdi_line(source: ProgramSource) -> Program:
 
 
 def _check_context(statement: Statement) -> Diagnostic | None:
-    """Return the error for a line that needs other lines, or None."""
+    """Return the error for a line that depends on other lines, or None."""
     if statement.flow_code and statement.flow_code != UNREADABLE_FLOW:
         return _refuse(statement, 1, _steers(statement))
     if statement.block_delete:

@@ -1,4 +1,6 @@
-"""State that changes during a pass, with direct attributes for fast access; and its checkpoint."""
+"""State that changes during a pass, with direct attributes for fast access, and conversion to a
+checkpoint.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ FloatOrArray = TypeVar("FloatOrArray", float, FloatArray)
 
 
 class Corner(NamedTuple):
-    """A corner (C or R) between a straight move and the next one; ``size_mm`` is in mm."""
+    """A corner (C or R) between a straight move and the next straight move, with its size in mm."""
 
     letter: str
     size_mm: float
@@ -29,9 +31,10 @@ class Corner(NamedTuple):
 
 
 class CompensationSwitch(NamedTuple):
-    """Mark for G41, G42 or G40 among the blocks.
+    """Marker for G41, G42 or G40 among the blocks.
 
-    ``secondary_x secondary_z`` is the secondary offset that is included in the point reached.
+    ``secondary_x`` and ``secondary_z`` are the secondary offset that is included in the present position,
+    in mm.
     """
 
     code: int
@@ -41,7 +44,7 @@ class CompensationSwitch(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The code for messages, such as G41."""
+        """Return the code as text for messages, such as G41."""
         return f"G{self.code}"
 
 
@@ -50,7 +53,7 @@ StageItem = Block | CompensationSwitch
 
 @dataclass(slots=True)
 class ContourState:
-    """Open corners and active nose compensation between the lines and the generated blocks."""
+    """State of the open corner and of the active nose compensation in the generation of blocks."""
 
     is_buffering: bool = False  # blocks are buffered, so each block must pass through the contour modifier
     open_corner: Corner | None = None  # corner after the present move
@@ -63,10 +66,10 @@ HIGH_FEED_MM_PER_REV = 0.05 * MM_PER_INCH * (1 + 1e-9)
 
 
 class State:
-    """Position and modal state in mm, with X as a radius.
+    """The position and the modal state of a pass, in mm with X as a radius.
 
-    ``x z`` is the point reached. ``px pz`` is the programmed point, which does not include the secondary
-    offset. The other values are derived from ``modal``.
+    ``x`` and ``z`` are the present position. ``px`` and ``pz`` are the programmed position without the
+    secondary offset. The other values are derived from ``modal``.
     """
 
     __slots__ = (
@@ -122,13 +125,15 @@ class State:
         self.update_derived_values()
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state; if it is equal to the present one, blocks continue to share that object."""
+        """Set the modal state unless it equals the present state, so that blocks continue to share one
+        object.
+        """
         if modal != self.modal:
             self.modal = modal
             self.update_derived_values()
 
     def update_derived_values(self) -> None:
-        """Calculate the values that every move needs from the modal state."""
+        """Derive the values that every move needs from the modal state."""
         modal = self.modal
         self.absolute = modal.absolute is not False
         self.mm_per_z_unit = 1.0 if modal.metric else MM_PER_INCH
@@ -152,31 +157,34 @@ class State:
         self.fast = False
 
     def is_first_feed(self, feed: float) -> bool:
-        """Return whether this is the first line's F, at which programs without G00 make rapids."""
+        """Return whether a feed is the F of the first line, which programs without G00 use for rapids."""
         if self.modal.per_rev or self.first_feed is None:
             return False
         return abs(feed - self.first_feed) <= 1e-9 * self.first_feed
 
     def convert_feed(self, value: FloatOrArray) -> FloatOrArray:
-        """Return F in mm/s under G94, or in mm/rev under G95."""
+        """Convert F to mm/s under G94, or to mm/rev under G95."""
         return value * self.mm_per_z_unit / (1 if self.modal.per_rev else 60)
 
     def stay(self, modal: ModalState) -> None:
-        """Set a modal state with another frame; the machine position remains the same."""
+        """Set a modal state with another program frame without a change of the machine position."""
         x, z = self.x + self.offset_x, self.z + self.offset_z
         self.set_modal(modal)
         self.x, self.z = x - self.offset_x, z - self.offset_z
         self.px, self.pz = self.x - self.secondary_x, self.z - self.secondary_z
 
     def compute_rpm_at(self, x: float) -> float:
-        """Return the commanded signed speed in rpm with the tip at radius ``x`` (mm); 0 if stopped."""
+        """Return the commanded signed speed in rpm with the tip at radius ``x`` in mm.
+
+        The speed is 0 if the spindle is stopped.
+        """
         modal = self.modal
         if not modal.css or not modal.spindle:
             return self.rpm
         return modal.compute_surface_rpm(x, self.setup.limits.max_rpm)
 
     def action(self, line: int, text: str, action: Action) -> Block:
-        """Return a block without motion."""
+        """Return a block that executes an action without motion."""
         self.blocks += 1
         kind = BlockKind.DWELL if isinstance(action, Dwell) else BlockKind.ACTION
         x, z, c, modal = self.x, self.z, self.c, self.modal
@@ -204,14 +212,14 @@ _STATE_FIELDS = tuple(name for name in Checkpoint._fields if name not in _OTHER_
 
 
 def make_checkpoint(state: State) -> Checkpoint:
-    """Return the state in which the next line begins; another pass can continue from it."""
+    """Return the state at the start of the next line, from which another pass can continue."""
     return Checkpoint(*(getattr(state, name) for name in _STATE_FIELDS))
 
 
 def restore_state(state: State, pass_start: PassStart) -> None:
-    """Restore the state that the line of ``pass_start`` inherits.
+    """Restore the state that the start line of ``pass_start`` inherits.
 
-    A line of MDI begins at the present position. A restart begins at its checkpoint, which its approach
+    An MDI line starts at the present position. A restart starts at its checkpoint, which the approach
     reaches. C remains at its position unless it is locked.
     """
     point = pass_start.checkpoint

@@ -1,4 +1,4 @@
-"""Statements: the words of a line, sorted by function and checked for conflicts."""
+"""Statements, which contain the words of a line sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ PLANE_FLOW = "plane"
 class Statement:
     """A line ready for execution.
 
-    ``words`` are by letter, without G and M; ``block_texts`` are the texts of its blocks.
+    ``words`` contains the words by letter, except G and M. ``block_texts`` contains the texts of the line's
+    blocks.
     """
 
     line: int
@@ -55,35 +56,35 @@ class Statement:
 
     @property
     def ends_program(self) -> bool:
-        """Whether the line has M30 or M02."""
+        """Return whether the line has M30 or M02."""
         return self.m_code_entry is not None and self.m_code_entry.ends_program
 
     @property
     def is_contour_cycle(self) -> bool:
-        """Whether the line is a cycle along a contour that other lines describe."""
+        """Return whether the line is a cycle along a contour that is described by other lines."""
         return self.code_entry.action_kind is ActionKind.CONTOUR
 
     @property
     def is_executable(self) -> bool:
-        """Whether the line has more than a comment."""
+        """Return whether the line contains more than a comment."""
         return bool(self.words or self.modal_codes or self.code_word or self.m_word or self.flow_code)
 
     def get_value(self, letter: str) -> float | None:
-        """Return the number of a word; None if the line does not have the word."""
+        """Return the number of a word, or None if the line lacks the word."""
         word = self.words.get(letter)
         return None if word is None else word.value
 
     def get_column(self, letter: str) -> int:
-        """Return the column of a word; 0 if the line does not have the word."""
+        """Return the column of a word, or 0 if the line lacks the word."""
         word = self.words.get(letter)
         return 0 if word is None else word.column
 
     def make_error(
         self, at: Word | str | int, code: str, text: str, hint: str = "", /, **values: object
     ) -> ProgramError:
-        """Return an error of this line at a word, at the word of a letter, or at a column.
+        """Return an error of this line, located at a word, at the word of a letter, or at a column.
 
-        The letter M means the M code. If the line does not have the word, the error is at its one-shot code.
+        The letter M selects the M code. If the line lacks the word, the error is at its one-shot code.
         ``values`` are the values for the placeholders of ``text`` and ``hint``.
         """
         if isinstance(at, str):
@@ -103,17 +104,19 @@ class Statement:
         /,
         **values: object,
     ) -> None:
-        """Raise the error of ``make_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_error(location, code, text, hint, **values)
 
     @property
     def code_column(self) -> int:
-        """Column of the one-shot code; 0 if the line does not have one."""
+        """Return the column of the one-shot code, or 0 if the line lacks a one-shot code."""
         return 0 if self.code_word is None else self.code_word.column
 
     def get_block_text(self, name: str) -> str:
-        """Return the text of one of the line's blocks."""
+        """Return the text of one block of the line, or the text of the whole line if the line has only one
+        block.
+        """
         return self.text if self.block_texts is None else self.block_texts.get(name, self.text)
 
 
@@ -164,7 +167,7 @@ def make_statement(line: LexedLine) -> Statement:
 def make_unreadable_statement(line: LexedLine) -> Statement:
     """Return a statement for a line with errors.
 
-    It retains X and Z of a move, so that later lines are checked from the correct position.
+    The statement retains X and Z of a move, so that later lines are checked from the correct position.
     """
     words: dict[str, Word] = {}
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
@@ -239,7 +242,7 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
 
 
 def _set_other_functions(statement: Statement) -> None:
-    """Set the functions of a line other than moves of X and Z."""
+    """Set the functions of a line that are not moves of X and Z."""
     statement.flow_code, m_code = _flow(statement), statement.m_code_entry
     statement.has_c_word = (
         statement.one_shot_code is None
@@ -317,7 +320,7 @@ def _check_flow(statement: Statement, line: LexedLine) -> None:
 
 
 def _name_parts(statement: Statement, line: LexedLine) -> None:
-    """Assign to each block of the line the words that it comes from; a single block gets the whole line."""
+    """Assign its words to each block of the line, or the whole line to a single block."""
     groups: dict[str, str] = {}
     for word in line.words:
         name = _group(statement, word)

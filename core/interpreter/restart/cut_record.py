@@ -1,8 +1,9 @@
-"""Record of all moves and cuts of a program, with which paths through the part are checked.
+"""Record of all moves and cuts of a program, which is used to check paths through the part.
 
-The record has one row for each straight piece of each move in the order of execution, with arcs as chords.
-``x0 z0 x z`` are tip positions in the frame of part zero (machine position minus tool offset) in mm, with X
-as a signed radius. This frame moves with the part and is independent of G10, G92 and D.
+The record has one row for each straight segment of each move, in the order of execution. Arcs are recorded
+as chords. ``x0``, ``z0``, ``x`` and ``z`` are tip positions relative to part zero (machine position minus
+tool offset) in mm, with X as a signed radius. This frame moves with the part and does not depend on G10,
+G92 and D.
 """
 
 from __future__ import annotations
@@ -38,12 +39,12 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 class CutRecord:
     """All moves of a program as rows (m,), and the known limits of the material.
 
-    ``n`` is the number of the elementary block. ``bar_section`` counts the times that the collet was opened,
-    because earlier cuts are then on another part of the bar. ``radius`` is the largest radius of a feed
-    move, or 0. ``retract_radius`` is a radius at which tools retract in rapid, or inf if unknown, because
-    the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which tools move inside that radius
-    in rapid, or inf if unknown. ``machine_x_range_by_tool`` has the minimum and maximum machine X of each
-    tool. ``max_machine_z`` is the maximum machine Z of all moves.
+    ``block_number`` is the number of the elementary block. ``bar_section`` counts how often the collet was
+    opened, because earlier cuts are then on another section of the bar. ``max_feed_radius`` is the largest
+    radius of a feed move, or 0. ``retract_radius`` is a radius at which tools retract at rapid. It is inf
+    if it is unknown, because the largest cut may be a bore. ``face_z`` is a Z beyond all cuts at which
+    tools move inside that radius at rapid, or inf if it is unknown. ``machine_x_range_by_tool`` contains
+    the minimum and maximum machine X of each tool. ``max_machine_z`` is the maximum machine Z of all moves.
     """
 
     block_number: IntArray
@@ -69,19 +70,19 @@ class CutRecord:
         return len(self.block_number)
 
     def find_last_row(self, block: int) -> int:
-        """Return the last row of this block or of an earlier block; -1 if no axis has moved."""
+        """Return the last row of this block or of an earlier block, or -1 if no axis has moved."""
         return int(np.searchsorted(self.block_number, block, side="right")) - 1
 
     def find_first_row(self, row: int) -> int:
-        """Return the first row of the block of this row."""
+        """Return the first row of the block to which a row belongs."""
         return int(np.searchsorted(self.block_number, self.block_number[row], side="left"))
 
     def get_end_points(self, row: int) -> tuple[float, float, float, float]:
-        """Return (x0, z0, x, z) of a row."""
+        """Return the start and end points of a row as (x0, z0, x, z)."""
         return float(self.x0[row]), float(self.z0[row]), float(self.x[row]), float(self.z[row])
 
     def compute_front_z(self, tool: int) -> float:
-        """Return the tip Z from which on the tool is in front of all material."""
+        """Return the tip Z beyond which the tool is in front of all material, in mm."""
         return self.face_z_by_tool.get(tool, self.face_z)
 
     def is_clear_after_rapid(self, x: float, z: float) -> bool:
@@ -98,7 +99,10 @@ class CutRecord:
 
 
 class _Rows:
-    """Collector of tables (9, m) with the rows ``n line x0 z0 x z move_kind tool bar_section``."""
+    """Collector of tables (9, m) with one column for each straight segment.
+
+    The rows of the tables are the block number, line, x0, z0, x, z, move kind, tool and bar section.
+    """
 
     def __init__(self) -> None:
         self.offsets: dict[int, tuple[float, float]] = {}
@@ -133,12 +137,12 @@ class _Rows:
         self._tables.append(np.array([series.n, series.line, *places, *same], dtype=np.float64))
 
     def table(self) -> FloatArray:
-        """Return all rows."""
+        """Return all rows as one table."""
         self._finish_pieces()
         return np.concatenate(self._tables, axis=1)
 
     def _frame(self, block: Block) -> tuple[float, float]:
-        """Return the shift from the program frame to the tip position relative to part zero, in mm."""
+        """Return the shift from the program frame to tip positions relative to part zero, in mm."""
         modal = block.modal
         base = modal.drawing_zero_x, modal.drawing_zero_z
         if block.kind is BlockKind.RAPID:
@@ -158,8 +162,10 @@ class _Rows:
 def record_all_cuts(
     blocks: Iterable[Block | StraightMoveSeries], report_progress: Callable[[float], None]
 ) -> CutRecord:
-    """Return the record of all blocks; ``report_progress`` receives the number of blocks and may raise an
-    exception.
+    """Return the record of all blocks.
+
+    ``report_progress`` is called with the number of blocks and may raise an exception to cancel the
+    recording.
     """
     rows, count = _Rows(), 0
     for each in blocks:
@@ -217,7 +223,7 @@ def _faces(
 ) -> dict[int, float]:
     """Return for each tool the minimum Z beyond all cuts at which a rapid moves inside the cut radius.
 
-    The start of a cut may be in air, but the end of a cut was in material.
+    Only the end of a cut is certainly in material, because its start may be in air.
     """
     cut = _greatest(z[feeds], inf)
     within = max(radius - SAME_POINT_MM, _CENTERLINE_TOLERANCE_MM)
@@ -229,7 +235,7 @@ def _faces(
 
 
 def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -> dict[int, float]:
-    """Return for each tool the maximum Z of its rapids, if it is beyond the start of all cuts."""
+    """Return for each tool the maximum Z of its rapids, if that Z is beyond the starts of all cuts."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
     told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
     return {each: far for each, far in told.items() if far > cut + SAME_POINT_MM}
@@ -238,9 +244,9 @@ def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -
 def _retract_radius(
     feeds: BoolArray, x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray, radius: float
 ) -> float:
-    """Return the minimum radius to which rapids retract between cuts and that no cut reaches.
+    """Return the minimum radius to which rapids retract between cuts and which no cut reaches.
 
-    A boring bar retracts toward the center, and its rapids end at a smaller radius than its cuts.
+    A boring bar retracts toward the center, so its rapids end at a smaller radius than its cuts.
     """
     reached = feeds & ((np.abs(z - z0) > SAME_POINT_MM) | (np.abs(x) >= np.abs(x0)))
     cut = _greatest(np.abs(np.concatenate((x[feeds], x0[reached], x[reached]))), 0.0)
@@ -252,7 +258,7 @@ def _retract_radius(
 
 
 def _forget_start(x0: FloatArray, z0: FloatArray, x: FloatArray, z: FloatArray) -> None:
-    """Set the unknown start positions to nan until each axis has moved."""
+    """Set the start positions of each axis to NaN until the axis has moved, because they are unknown."""
     for start, end in ((x0, x), (z0, z)):
         if len(start):
             moved = np.flatnonzero(np.abs(end - start) > SAME_POINT_MM)
@@ -283,7 +289,7 @@ def _how(block: Block) -> int:
 
 
 def _points(block: Block) -> list[tuple[float, float]]:
-    """Return the end points of the straight pieces of a block."""
+    """Return the end points of the straight segments of a block."""
     if block.kind is not BlockKind.ARC:
         return [(block.x, block.z)]
     cx, cz = block.cx, block.cz
@@ -295,6 +301,6 @@ def _points(block: Block) -> list[tuple[float, float]]:
 
 
 def _step(radius: float) -> float:
-    """Return the angle in radians whose chord is within the tolerance of an arc of this radius."""
+    """Return the angle in radians of a chord that is within the tolerance of an arc with this radius."""
     share = min(1.0, _CHORD / radius) if radius > 0.0 else 1.0
     return min(pi / 2, 2.0 * sqrt(2.0 * share))

@@ -1,4 +1,4 @@
-"""Visits of a line during a run: the loop passes and subroutine calls in which it is executed."""
+"""Visits of a line during a run, which are its executions in loop passes and subroutine calls."""
 
 from __future__ import annotations
 
@@ -24,18 +24,23 @@ _PROGRESS_INTERVAL = 2000
 
 @dataclass(frozen=True, slots=True)
 class LineVisits:
-    """Visits of a line in order: the number of earlier elementary blocks, and the flow position, of each."""
+    """The visits of a line, in the order of execution.
+
+    For each visit, the lists contain the number of earlier elementary blocks and the flow position.
+    """
 
     program: Program
     earlier_block_counts: list[int]
     flow_positions: list[FlowPosition]
 
     def find_visit_number(self, block: int) -> int:
-        """Return the number of the visit in which this block was executed, from 1; 1 if it was earlier."""
+        """Return the number (from 1) of the visit in which this block was executed, or 1 for an earlier
+        block.
+        """
         return max(1, bisect_left(self.earlier_block_counts, block))
 
     def explain_missing_visit(self, line: int, number: int) -> str:
-        """Return why a visit does not exist; empty if it exists."""
+        """Return the reason why a visit does not exist, or an empty string if the visit exists."""
         if not self.earlier_block_counts:
             return Message("The program never reaches line {line}.", line=line)
         if len(self.earlier_block_counts) > MAX_VISITS:
@@ -54,9 +59,9 @@ class LineVisits:
         )
 
     def find_anchor(self, number: int) -> tuple[int, int]:
-        """Return the main program line that contains the visit, and the number of the visit there.
+        """Return the main program line that contains the visit, and the visit number of that line.
 
-        The line is outside of all loops.
+        The main program line is outside of all loops.
         """
         anchor, nth = _anchor(self.flow_positions[number - 1]), number
         while nth > 1 and _anchor(self.flow_positions[nth - 2]) == anchor:
@@ -64,7 +69,9 @@ class LineVisits:
         return anchor, number - nth + 1
 
     def make_line_visit(self, number: int) -> LineVisit:
-        """Return the visit with its loop passes and calls for the operator, the outermost first."""
+        """Return the visit with its loop passes and calls for display, from the outermost to the
+        innermost.
+        """
         return LineVisit(
             number,
             len(self.earlier_block_counts),
@@ -75,7 +82,7 @@ class LineVisits:
 def find_line_visits(
     program: Program, setup: Setup, line: int, report_progress: Callable[[float], None]
 ) -> LineVisits:
-    """Return the visits of a line in a whole run, with the inputs of ``setup``."""
+    """Return the visits of a line in a complete run with the inputs of ``setup``."""
     found = LineVisits(program, [], [])
     walk, count, ended = StoppablePass(program, setup), 0, False
     blocks = walk.run_to_line(line)

@@ -1,9 +1,9 @@
 """Block search with calculation for Klartext and SINUMERIK programs.
 
-All blocks before the line are interpreted as in a run, so that tool, spindle, datum, plane, parameters, loops
-and calls are those of the run. A second pass starts at other axis positions. An axis with a different
-position in that pass was not positioned by the program, and the line is rejected unless the axis has never
-moved.
+All blocks before the line are interpreted as in a run. The tool, spindle, datum, plane, parameters, loops
+and calls are therefore the same as in the run. A second pass starts at other axis positions. If an axis has
+a different position in the second pass, the program has not positioned the axis. The line is then rejected
+unless the axis has never moved.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ _PROGRESS_INTERVAL = 2000  # number of blocks between two calls of ``report_prog
 
 @dataclass(slots=True)
 class _RunVisits:
-    """Visits of all lines in a whole run: by line, the number of blocks before each visit."""
+    """Visits of all lines in a complete run, with the number of blocks before each visit."""
 
     visits: dict[int, list[int]] = field(default_factory=dict)
     blocking_reasons: dict[int, str] = field(
@@ -48,9 +48,9 @@ class _RunVisits:
 
 
 class BlockSearch:
-    """Search in one program with a fixed setup.
+    """Search for restart lines in one program with a fixed setup.
 
-    ``report_progress`` receives the number of blocks and may raise an exception to cancel the search.
+    ``report_progress`` is called with the number of blocks and may raise an exception to cancel the search.
     """
 
     def __init__(self, program: SharedProgram, setup: Setup, report_progress: ProgressCallback) -> None:
@@ -61,16 +61,16 @@ class BlockSearch:
 
     @cached_property
     def cut_record(self) -> CutRecord:
-        """Record of all cuts of the program on a lathe, calculated on first use."""
+        """Return the record of all cuts of the program on a lathe, which is calculated on first use."""
         return record_all_cuts(self._pass().generate_series(), self.report_progress)
 
     def find_restart(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRefusal:
-        """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
+        """Return the restart point of a line at its ``visit``-th execution, or the refusal of the restart.
 
-        A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
-        program.
+        A ``visit`` of 0 selects the interrupted pass, or the first pass without an interruption.
+        ``interruption`` is the interruption of the program.
         """
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
@@ -176,7 +176,10 @@ class BlockSearch:
     def _machine_positions(
         self, here: Checkpoint, other: Checkpoint | None
     ) -> tuple[float | None, ...] | str:
-        """Return machine positions, with None for an axis that has not moved; or why they are unknown."""
+        """Return the machine positions, or the reason why they are unknown.
+
+        The position of an axis that has not moved is None.
+        """
         if other is None:
             return "the program before this line depends on the axis positions at Cycle Start."
         found: list[float | None] = []
@@ -230,9 +233,10 @@ class BlockSearch:
         return RestartPoint(line, point, clear, None, visit, skipped_lines=(first, last), axis_positions=at)
 
     def _nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest suitable line in one direction, or 0 if none of the first few lines is suitable.
+        """Return the nearest suitable line in one direction, or 0 if none of the first few lines is
+        suitable.
 
-        Each line is checked like a requested line.
+        Each candidate line is checked like a requested line.
         """
         near = [
             each
@@ -250,10 +254,10 @@ class BlockSearch:
 
 @dataclass(slots=True)
 class _PassState:
-    """State of a pass.
+    """The state of a pass during the search.
 
-    ``is_cutting`` means that the last move was a feed, and ``skipped_lines`` are the first and last line of
-    skipped cuts.
+    ``is_cutting`` means that the last move was a feed move. ``skipped_lines`` are the first and last line
+    of skipped cuts.
     """
 
     checkpoint: Checkpoint | None = None
@@ -266,7 +270,7 @@ class _PassState:
     skipped_lines: tuple[int, int] | None = None
 
     def process_block(self, block: Block, *, uncut: bool) -> None:
-        """Process the next block of the pass; ``uncut`` means that its cut is missing or incomplete."""
+        """Update the state with the next block; ``uncut`` means that its cut is missing or incomplete."""
         if block.swivel is not None:
             self.tool_length_mm = block.swivel.system.tool_length_mm
         if not block.moves:
@@ -283,7 +287,7 @@ class _PassState:
                 self.max_skipped_z = max(self.max_skipped_z, tip)
 
     def is_above_skipped_cuts(self, point: Checkpoint) -> bool:
-        """Return whether the position was reached in rapid and is not below the start of a skipped cut."""
+        """Return whether the position was reached at rapid and is not below the start of a skipped cut."""
         return (
             not (self.is_cutting or self.moves_rotary_axes)
             and point.at[2] - self.tool_length_mm >= self.max_skipped_z - _SAME
@@ -291,9 +295,10 @@ class _PassState:
 
 
 def _is_uncut(block: Block, interruption: Interruption) -> bool:
-    """Return whether the cut of a block was not begun, or was interrupted before its end.
+    """Return whether the cut of a block was not started, or was interrupted before its end.
 
-    A closed block, such as a full circle, counts as uncut, because its end does not show how far it was cut.
+    A closed block, such as a full circle, counts as uncut, because its end point does not show how much was
+    cut.
     """
     if block.n != interruption.block_number or block.travel is None:
         return block.n > interruption.last_complete_block
@@ -306,7 +311,7 @@ def _is_uncut(block: Block, interruption: Interruption) -> bool:
 
 
 def _is_same_position(one: Sequence[float], other: Sequence[float]) -> bool:
-    """Return whether two machine positions agree; whole revolutions of the rotary axes are ignored."""
+    """Return whether two machine positions agree, without regard to whole revolutions of the rotary axes."""
     offs = [b - a for a, b in zip(one, other, strict=False)]
     turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_LINEAR_AXIS_COUNT:]]
     return all(abs(each) <= ON_PATH_MM for each in (*offs[:_LINEAR_AXIS_COUNT], *turned))

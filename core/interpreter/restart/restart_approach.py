@@ -1,10 +1,10 @@
-"""Path from the present machine position to a line in the middle of a program, on a lathe or mill.
+"""Path from the present machine position to a line in the middle of a program, on a lathe or a mill.
 
-On a lathe, the tool leaves the part as the interrupted block requires. Z moves clear of the part, X moves
-over the start, spindle and coolant start, and the tool enters as the line requires. Rapids are only outside
-the material. On a mill, the tool retracts along its axis, and Z moves to its upper limit. The rotary axes
-move there, the tool is changed, and the tool moves over the position. Spindle and coolant start, and the tool
-enters along its axis, with a feed at the end.
+On a lathe, the tool leaves the part as the interrupted block requires. Z moves clear of the part, and X
+moves to the X of the start point. The spindle and the coolant start, and the tool enters as the line
+requires. Rapids are only outside the material. On a mill, the tool retracts along its axis, and Z moves to
+its upper limit. The rotary axes move there, the tool is changed, and the tool moves above the start
+position. The spindle and the coolant start. The tool then enters along its axis, at a feed near the end.
 """
 
 from __future__ import annotations
@@ -62,7 +62,10 @@ _MAX_LATER_ROWS = 400  # number of rows after the saved block in which the tool 
 
 @dataclass(frozen=True, slots=True)
 class PresentState:
-    """Present machine state: position (x, z, c) in mm and degrees, modal state, and the interruption."""
+    """The present state of the machine.
+
+    The state consists of the axis positions in mm and degrees, the modal state and the interruption.
+    """
 
     axis_positions: tuple[float, ...]
     modal: ModalState
@@ -71,8 +74,9 @@ class PresentState:
 
 @dataclass(frozen=True, slots=True)
 class OperatorChoices:
-    """Decisions of the operator. ``rapid`` and ``inside_speed_mm_s`` are speeds outside and inside the part,
-    in mm/s.
+    """Choices of the operator for the approach.
+
+    ``outside_speed_mm_s`` and ``inside_speed_mm_s`` are the speeds outside and inside the part.
     """
 
     coolant: bool = True
@@ -81,7 +85,7 @@ class OperatorChoices:
 
 
 def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tuple[Retract, int]:
-    """Return the retract of the tool from the part, and the number of that tool."""
+    """Return the retract of the tool from the part, and the number of this tool."""
     broken = present.interruption
     if broken is None or broken.tool_number not in cut_record.tool_offsets:
         return _unknown(cut_record, present), present.modal.tool
@@ -126,9 +130,9 @@ def _tip(cut: CutRecord, at: tuple[float, ...], tool: int) -> tuple[float, float
 
 
 def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
-    """Return the retract without a known interruption.
+    """Return the retract for an unknown interruption.
 
-    The tool is clear only if all tools of the program are outside the material.
+    The tool is known to be clear only if all tools of the program would be outside the material.
     """
     clear = present.axis_positions[1] >= cut_record.max_machine_z - _SAME or all(
         cut_record.is_outside_material(*_tip(cut_record, present.axis_positions, tool), tool)
@@ -140,7 +144,7 @@ def _unknown(cut_record: CutRecord, present: PresentState) -> Retract:
 def _find_stale_position(
     cut_record: CutRecord, interruption: Interruption, x: float, z: float
 ) -> ToolPosition | None:
-    """Return the first row, from the saved one on, at which the tool is now; otherwise None."""
+    """Return the present tool position, found from the saved row on, or None if no row matches."""
     row = max(0, cut_record.find_last_row(interruption.block_number))
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
         if int(cut_record.tool_number[each]) != interruption.tool_number:
@@ -151,7 +155,7 @@ def _find_stale_position(
 
 
 def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: float, z: float) -> Retract:
-    """Return the remaining retract after a stop on the approach or retract of an earlier restart."""
+    """Return the remaining retract after a stop during the approach or retract of an earlier restart."""
     row = cut_record.find_last_row(interruption.block_number)
     place = None if row < 0 else find_nearest_point(cut_record, row, x, z)
     if place is None or int(cut_record.tool_number[row]) != interruption.tool_number:
@@ -165,7 +169,7 @@ def _remaining_retract(cut_record: CutRecord, interruption: Interruption, x: flo
 
 
 def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
-    """Return the retract; a mill in its hole can leave only if C has not turned."""
+    """Return the retract, which becomes unknown if a mill is in its hole and C has turned."""
     broken = present.interruption
     if (
         retract.situation is not ToolSituation.MILLING
@@ -183,7 +187,7 @@ def _block_turned_mill(retract: Retract, present: PresentState) -> Retract:
 
 
 def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: float) -> Retract:
-    """Return the rest of a retract along which the tool has already moved."""
+    """Return the remaining part of a retract along which the tool has already moved."""
     at = RetractLeg(*start)
     for number, hop in enumerate(retract.legs):
         if distance_from_segment(at.x, at.z, hop.x, hop.z, x, z) <= ON_PATH_MM:
@@ -195,7 +199,7 @@ def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: 
 def make_lathe_start(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> PassStart:
-    """Return the start of a pass at the line, with the real number of revolutions of C."""
+    """Return the start of a pass at the line, with the actual number of revolutions of C."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     if modal.c_locked:
         modal = modal._replace(
@@ -228,7 +232,10 @@ def plan_lathe_approach(
 def plan_exit_moves(
     cut_record: CutRecord, present: PresentState, choices: OperatorChoices
 ) -> tuple[StraightLeg, ...]:
-    """Return the moves out of the part, with Z clear of it; empty if no safe path is known."""
+    """Return the moves that bring the tool out of the part, with Z clear of the part.
+
+    The result is empty if no safe path is known.
+    """
     found, tool = plan_retract_from_part(cut_record, present)
     if not found.is_known:
         return ()
@@ -246,7 +253,7 @@ def plan_exit_moves(
 def _free(cut_record: CutRecord, tool: int, start: tuple[float, float], end: tuple[float, float]) -> bool:
     """Return whether a straight move between two machine points remains outside the material.
 
-    The move must not cross the corner of the bar.
+    The move must also not cross the corner of the bar.
     """
     (x0, z0), (x1, z1) = _tip(cut_record, start, tool), _tip(cut_record, end, tool)
     over = min(abs(x0), abs(x1)) >= cut_record.retract_radius - _SAME and x0 * x1 > 0.0
@@ -261,7 +268,7 @@ def _free(cut_record: CutRecord, tool: int, start: tuple[float, float], end: tup
 def list_starting_functions(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices
 ) -> tuple[ApproachStep, ...]:
-    """Return the functions that will start or turn on, which the operator must confirm."""
+    """Return the functions that will start or turn on, for confirmation by the operator."""
     return tuple(step for step in _starts(restart_point, present, choices) if isinstance(step, FunctionStep))
 
 
@@ -299,14 +306,14 @@ def _starts(found: RestartPoint, now: PresentState, choices: OperatorChoices) ->
 
 
 def _target_c_angle(angle: float, present: float) -> float:
-    """Return the target angle of C, unless the program has counted many revolutions."""
+    """Return the target angle of C, or the nearest equivalent angle if it exceeds one revolution."""
     return angle if abs(angle) <= _TURN else _nearest_angle(angle, present)
 
 
 def _moves_above_part(
     restart_point: RestartPoint, at: tuple[float, float], choices: OperatorChoices
 ) -> Iterator[StraightLeg]:
-    """Yield the moves of Z clear of the part and of X over the first point outside the part."""
+    """Yield the move of Z clear of the part and the move of X to the first point outside the part."""
     x, z = _entry_points(restart_point)[0]
     clear = max(at[1], z)
     yield from _leg(at[0], at[1], at[0], clear, choices, rapid=True)
@@ -316,7 +323,7 @@ def _moves_above_part(
 def _entry_moves(
     restart_point: RestartPoint, at: tuple[float, float], choices: OperatorChoices
 ) -> Iterator[StraightLeg]:
-    """Yield the rapid to the start of the part, and the entry along the reversed retract path."""
+    """Yield the rapid to the part, and the entry along the reversed retract path."""
     places = _entry_points(restart_point)
     x, z = places[0][0], max(at[1], places[0][1])
     cut, tool = restart_point.cut_record, restart_point.checkpoint.modal.tool
@@ -328,7 +335,9 @@ def _entry_moves(
 
 
 def _entry_points(restart_point: RestartPoint) -> list[tuple[float, float]]:
-    """Return the machine points from the one outside the part to that of the line."""
+    """Return the machine points of the entry, from the point outside the part to the start point of the
+    line.
+    """
     goal = restart_point.checkpoint.machine
     modal = restart_point.checkpoint.modal
     hops = [
@@ -371,13 +380,13 @@ _LINEAR_AXES = "XYZ"
 
 @dataclass(slots=True)
 class _MovePlan:
-    """The moves so far, and their end in machine positions by axis."""
+    """The moves planned so far, and the machine position at their end by axis."""
 
     machine: Kinematics
     axis_positions: dict[str, float]
 
     def move_to(self, target: dict[str, float], feed: float | None) -> Iterator[AxesLeg]:
-        """Yield a move of the axes that are not yet at the target."""
+        """Yield a move of the axes that are not at the target yet."""
         moving = {
             name: value for name, value in target.items() if abs(value - self.axis_positions[name]) > _SAME
         }
@@ -396,7 +405,7 @@ class _MovePlan:
     def available_travel(self, start: Vector) -> float:
         """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
 
-        It is inf without limits.
+        The travel is inf if no axis has a limit.
         """
         ways = [inf]
         for slide, at, share in zip(self.machine.linear_axes, start, self.tool_axis, strict=True):
@@ -405,14 +414,14 @@ class _MovePlan:
         return min(ways) - LIMIT_CLEARANCE_MM
 
     def offset_position(self, start: Vector, length: float) -> dict[str, float]:
-        """Return the position at this distance from ``start`` along the tool."""
+        """Return the position at the distance ``length`` from ``start`` along the tool axis."""
         return dict(zip(_LINEAR_AXES, add_vectors(start, scale_vector(self.tool_axis, length)), strict=True))
 
 
 def make_mill_start(
     restart_point: RestartPoint, present: PresentState, choices: OperatorChoices, kinematics: Kinematics
 ) -> PassStart:
-    """Return the start of a pass at the line on a mill."""
+    """Return the start of a pass at the restart line on a mill."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
     modal = modal._replace(coolant=modal.coolant and choices.coolant)
     steps = tuple(_steps(restart_point, present, choices, kinematics))
@@ -425,7 +434,9 @@ def make_mill_start(
 
 
 def explain_missing_path(kinematics: Kinematics) -> str:
-    """Return why no path can be planned on this machine; empty if it is possible."""
+    """Return the reason why no path can be planned on this machine, or an empty string if planning is
+    possible.
+    """
     return (
         ""
         if all(slide.travel_max < inf for slide in kinematics.linear_axes)
@@ -436,7 +447,7 @@ def explain_missing_path(kinematics: Kinematics) -> str:
 def find_start_position(
     restart_point: RestartPoint, present: PresentState, kinematics: Kinematics
 ) -> dict[str, float]:
-    """Return the start position of the line; an axis that the program has not moved remains."""
+    """Return the start position of the line by axis; an axis that the program has not moved does not move."""
     places = zip(kinematics.axis_names, restart_point.axis_positions, present.axis_positions, strict=True)
     return {name: at if wanted is None else wanted for name, wanted, at in places}
 
@@ -469,7 +480,7 @@ def _steps(
 
 
 def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[AxesLeg]:
-    """Yield the retract along the tool, slow at first, and then Z to its upper limit."""
+    """Yield the retract along the tool axis, slow at first, and then the move of Z to its upper limit."""
     start = plan.linear_position
     room = max(plan.available_travel(start), 0.0)
     slowly = min(_SLOW_RETRACT_MM, room)

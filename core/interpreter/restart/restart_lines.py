@@ -1,4 +1,4 @@
-"""Lines from which a program can be restarted, as far as its text determines them."""
+"""Lines from which a program can be restarted, as far as the program text determines them."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
 
 class LineRange(NamedTuple):
-    """Lines ``first`` to ``last``, counted from 1.
+    """The lines ``first`` to ``last`` of a program, counted from 1.
 
     If a program cannot be restarted from these lines, ``reason`` is the template of the message. Its
-    placeholders are ``line``, the line of the restart, and ``start_line``, the line on which the contour,
-    corner or other section begins.
+    placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
+    other section begins.
     """
 
     first: int
@@ -29,12 +29,14 @@ class LineRange(NamedTuple):
     start_line: int = 0
 
     def make_message(self, line: int) -> Message:
-        """Return why a program cannot be restarted from this line, which must be within the range."""
+        """Return the reason why a program cannot be restarted from this line, which must be within the
+        range.
+        """
         return Message(self.reason, line=line, begin=self.start_line)
 
 
 class RestartSuitability:
-    """Suitability of each line of a program for a restart, determined from its text."""
+    """Suitability of each program line for a restart, as determined from the program text."""
 
     def __init__(self, program: Program) -> None:
         self._steps = program.executable_lines
@@ -46,7 +48,9 @@ class RestartSuitability:
         self._calls = _calls(program)
 
     def explain_unsuitable(self, line: int) -> str:
-        """Return why a restart from this line is not possible; empty if the text allows it."""
+        """Return the reason why a restart from this line is not possible, or an empty string if the text
+        allows it.
+        """
         if not 1 <= line <= self.line_count:
             return Message(
                 "Line {line} does not exist; the last line of the program is {lines_count}.",
@@ -59,17 +63,17 @@ class RestartSuitability:
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
     def is_repeated(self, line: int) -> bool:
-        """Return whether a line is in a loop or subroutine.
-
-        Such a line may be executed repeatedly or never.
+        """Return whether a line is in a loop or subroutine, so that it may be executed several times or
+        never.
         """
         return any(each.first <= line <= each.last for each in self.repeated_ranges)
 
     def find_nearest(self, line: int, direction: int) -> int:
-        """Return the nearest suitable line below (``direction`` 1) or above (-1), or 0 without one.
+        """Return the nearest suitable line after (``direction`` 1) or before (-1) this line, or 0 without
+        one.
 
-        Loops and subroutines are skipped. From inside a subroutine, the search upward continues at its first
-        call.
+        Loops and subroutines are skipped. From inside a subroutine, the backward search continues at its
+        first call.
         """
         if direction < 0:
             line = self._line_after_call(line)
@@ -85,7 +89,7 @@ class RestartSuitability:
         return 0
 
     def _line_after_call(self, line: int) -> int:
-        """Return the line after the call of the subroutine with this line; otherwise the line itself."""
+        """Return the line after the call of the subroutine that contains this line, or the line itself."""
         at = line
         for _ in self._calls:  # a call may be in another subroutine
             at = next((call for first, last, call in self._calls if first <= at <= last), at)
@@ -93,7 +97,7 @@ class RestartSuitability:
 
 
 def _calls(program: Program) -> list[tuple[int, int, int]]:
-    """Return first line, last line and first external call of each called subroutine."""
+    """Return the first line, the last line and the first external call of each called subroutine."""
     calls = [
         (number, get_subroutine_number(step))
         for number, step in enumerate(program.executable_lines, start=1)
@@ -108,9 +112,9 @@ def _calls(program: Program) -> list[tuple[int, int, int]]:
 
 
 def _structured(program: Program) -> Iterator[LineRange]:
-    """Yield contours and unreachable lines.
+    """Yield the ranges of contours and of unreachable lines.
 
-    The first line of a contour is suitable for a restart; its other lines are not.
+    Only the first line of a contour is suitable for a restart.
     """
     structure = program.structure
     for start, end in structure.contour_ends.items():
@@ -125,7 +129,7 @@ def _structured(program: Program) -> Iterator[LineRange]:
 
 
 def _repeated(program: Program) -> Iterator[LineRange]:
-    """Yield loops after their LS, and subroutines."""
+    """Yield the ranges of loops, from the line after LS, and of subroutines."""
     for start, end in program.structure.loop_ends.items():
         yield LineRange(start + 2, end + 1)
     for start, end, _number in _subroutines(program):
@@ -133,14 +137,14 @@ def _repeated(program: Program) -> Iterator[LineRange]:
 
 
 def _subroutines(program: Program) -> Iterator[tuple[int, int, int]]:
-    """Yield first line, last line and number of each subroutine."""
+    """Yield the first line, the last line and the number of each subroutine."""
     structure = program.structure
     for number, start in structure.subroutines.items():
         yield start + 1, structure.subroutine_ends.get(number, len(program.executable_lines) - 1) + 1, number
 
 
 def _open(lines: ExecutableLines) -> Iterator[LineRange]:
-    """Yield sections of plane switching, nose compensation and corners, from the line after their start."""
+    """Yield the ranges of plane switching, nose compensation and corners, from the line after their start."""
     plane = nose = corner = 0
     for number, step in enumerate(lines, start=1):
         if not isinstance(step, Statement):
@@ -167,7 +171,10 @@ def _open(lines: ExecutableLines) -> Iterator[LineRange]:
 
 
 def _plane(step: Statement, number: int, begun: int) -> tuple[int, int]:
-    """Return the start line of active plane switching or 0, and the start line of one that ends here or 0."""
+    """Return the start line of the active plane switching, and of the plane switching that ends here.
+
+    Each value is 0 if such plane switching does not exist.
+    """
     name = step.plane_line.name if step.plane_line is not None else ""
     if name == "END":
         return 0, begun

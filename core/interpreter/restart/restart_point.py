@@ -1,4 +1,4 @@
-"""Results of the search for a restart line: the restart point, or why it is not possible."""
+"""Results of the search for a restart line: the restart point, or the refusal with its reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from core.interpreter.shared.checkpoint import Checkpoint
 
 
 class LoopPass(NamedTuple):
-    """One pass of a loop; ``first_line`` and ``last_line`` are the lines of LS and LF."""
+    """One pass of a loop, whose LS and LF are on ``first_line`` and ``last_line``."""
 
     first_line: int
     last_line: int
@@ -20,14 +20,14 @@ class LoopPass(NamedTuple):
 
 
 class ActiveCall(NamedTuple):
-    """An active call: the line of the call, and the number of the subroutine."""
+    """An active subroutine call, with the line of the call and the number of the subroutine."""
 
     call_line: int
     subroutine_number: int
 
 
 class LineVisit(NamedTuple):
-    """The ``number``-th of ``of`` executions of a line in the whole run, with its loop passes and calls."""
+    """One of the executions of a line in a complete run, with its loop passes and calls."""
 
     visit_number: int = 1
     visit_count: int = 1
@@ -35,10 +35,10 @@ class LineVisit(NamedTuple):
 
 
 class Interruption(NamedTuple):
-    """Point of interruption of a program: elementary block, tool, and machine point in mm.
+    """The point at which a program was interrupted: elementary block, tool, and machine position in mm.
 
-    All blocks up to ``last_started_block`` were begun. ``is_stale`` means that the control lost power, so
-    that the tool may have moved for up to a second after this point.
+    All blocks up to ``last_started_block`` were started. ``is_stale`` means that the control lost power.
+    The tool may then have moved for up to a second after this point.
     """
 
     block_number: int
@@ -49,7 +49,7 @@ class Interruption(NamedTuple):
 
     @property
     def last_complete_block(self) -> int:
-        """Last block whose cut is known to be complete."""
+        """Return the last block whose cut is certainly complete."""
         return (
             max(self.last_started_block, self.block_number)
             if self.block_number <= self.last_started_block + 1
@@ -59,9 +59,10 @@ class Interruption(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class RestartPoint:
-    """A suitable line in one of its passes, with its inherited state and the retract from its start.
+    """A line that is suitable for a restart, in one of its passes.
 
-    ``skipped_lines`` are the first and last line of cuts that would be skipped, or (0, 0).
+    The restart point contains the inherited state and the retract from the start of the line.
+    ``skipped_lines`` are the first and last line of the cuts that the restart would skip, or (0, 0).
     """
 
     line: int
@@ -78,7 +79,7 @@ class RestartPoint:
 
 @dataclass(frozen=True, slots=True)
 class RestartRefusal:
-    """Reason why a restart at a line is not possible, and the nearest suitable lines (0 for none)."""
+    """The reason why a restart at a line is not possible, with the nearest suitable lines (0 for none)."""
 
     line: int
     why: str

@@ -1,7 +1,8 @@
-"""Rebuilding of the state at a program line by interpreting the program up to that line.
+"""Reconstruction of the state at a program line by interpreting the program up to that line.
 
-The positions at Cycle Start and the inputs of the run are unknown. A second pass with another start position
-and other inputs runs in parallel until both agree. While they differ, no line is suitable for a restart.
+The positions at Cycle Start and the inputs of the run are unknown. A second pass with another start
+position and other inputs therefore runs in parallel until the states of both passes agree. While the states
+differ, no line is suitable for a restart.
 """
 
 from __future__ import annotations
@@ -45,9 +46,10 @@ _UP, _DOWN = 3, 100  # number of lines that are tried upward and downward
 
 
 class OmniturnSearch:
-    """Search in one OmniTurn program with a fixed setup; a later line continues from an earlier one.
+    """Search for restart lines in one OmniTurn program with a fixed setup.
 
-    ``report_progress`` receives the number of blocks and may raise an exception to cancel the search.
+    The search for a later line continues from an earlier line. ``report_progress`` is called with the
+    number of blocks and may raise an exception to cancel the search.
     """
 
     def __init__(self, source: ProgramSource, setup: Setup, report_progress: ProgressCallback) -> None:
@@ -62,7 +64,7 @@ class OmniturnSearch:
 
     @property
     def cut_record(self) -> CutRecord:
-        """Record of all cuts of the program, calculated on first use."""
+        """Return the record of all cuts of the program, which is calculated on first use."""
         if self._cut is None:
             self._cut = record_all_cuts(
                 Interpreter(self._program, replace(self._setup, start=_SECOND_START_SHIFT)).generate_series(),
@@ -73,10 +75,10 @@ class OmniturnSearch:
     def find_restart(
         self, line: int, visit: int = 0, interruption: Interruption | None = None
     ) -> RestartPoint | RestartRefusal:
-        """Return the restart point of a line at its ``visit``-th execution, or why a restart is not possible.
+        """Return the restart point of a line at its ``visit``-th execution, or the refusal of the restart.
 
-        A ``visit`` of 0 is the interrupted pass, or the first one. ``broken`` is the interruption of the
-        program.
+        A ``visit`` of 0 selects the interrupted pass, or the first pass without an interruption.
+        ``interruption`` is the interruption of the program.
         """
         found = self._search(line, visit, interruption)
         if isinstance(found, RestartPoint):
@@ -115,9 +117,9 @@ class OmniturnSearch:
     def _search_in_loop(
         self, line: int, anchor: int, nth: int, visit: LineVisit, interruption: Interruption | None
     ) -> RestartPoint | str:
-        """Return the restart point of a line in a loop or subroutine, or why it is not possible.
+        """Return the restart point of a line in a loop or subroutine, or the reason why it is not possible.
 
-        The search begins at the main program line that contains the visit.
+        The search starts at the main program line that contains the visit.
         """
         walks = [self._walk_from(self._walk, anchor)]
         if self._other is not None:
@@ -139,9 +141,10 @@ class OmniturnSearch:
         return StoppablePass(self._program, setup)
 
     def _run_to_visit(self, line_pass: StoppablePass, line: int, nth: int) -> tuple[str, bool]:
-        """Run to the ``nth`` visit of a line.
+        """Run to the ``nth`` visit of a line, and return why its state is unknown and whether an axis has
+        moved.
 
-        Return why its state is unknown (empty if known), and whether an axis has moved.
+        The reason is empty if the state is known.
         """
         moved = False
         for number in range(nth):
@@ -168,9 +171,9 @@ class OmniturnSearch:
         return make_lathe_restart(line, walk.checkpoint, self.cut_record, visit, broken)
 
     def _find_nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest line that a pass confirms, or 0.
+        """Return the nearest line that a pass confirms as suitable, or 0.
 
-        Only a few lines are tried upward, because each needs another pass.
+        Only a few lines are tried upward, because each of these lines needs another pass.
         """
         for _ in range(_DOWN if direction > 0 else _UP):
             line = self.line_suitability.find_nearest(line, direction)
@@ -190,10 +193,10 @@ class OmniturnSearch:
         )
 
     def _pass_to_line(self, line: int, *, position_known: bool = True) -> str:
-        """Run to the line, and return why it is unsuitable; empty if it is suitable.
+        """Run to the line, and return why it is unsuitable, or an empty string if it is suitable.
 
-        Without ``position_known``, the position may still depend on the start, because later blocks may
-        determine it.
+        Without ``position_known``, the position may still depend on the start position, because later
+        blocks may determine the position.
         """
         if line < self._at:
             self._begin_anew()
@@ -208,7 +211,10 @@ class OmniturnSearch:
         return self._why_not(line, self._walk, known=known, moved=self._moved)
 
     def _stop(self, line: int) -> int:
-        """Return the line of the next comparison: each line while the state is unknown, and each input."""
+        """Return the line of the next comparison of both passes.
+
+        While the state is unknown, the passes are compared at each line and at each input.
+        """
         near = self._at + (1 if self._at < _NEAR else self._at) if self._other is not None else line
         if self._at in self._asks:
             return self._at + 1
@@ -217,7 +223,7 @@ class OmniturnSearch:
         return min(line, near, ask)
 
     def _run_passes_to(self, line: int) -> None:
-        """Run both passes to the line, and record motion, program end and inputs of the first one."""
+        """Run both passes to the line, and record the motion, program end and inputs of the first pass."""
         asked, self._at = self._at, line
         for block in self._walk.run_to_line(line):
             self._count_block()
@@ -236,7 +242,7 @@ class OmniturnSearch:
                 pass
 
     def _start_second_pass(self) -> None:
-        """Start a second pass in which the input of this line has the other state."""
+        """Start a second pass in which the input of this line has the opposite state."""
         if self._other is not None:
             self._lost = Message(
                 "line {position} depends on an input, and the state of this input is unknown.",
@@ -314,7 +320,7 @@ class OmniturnSearch:
 def make_lathe_restart(
     line: int, point: Checkpoint, cut_record: CutRecord, visit: LineVisit, interruption: Interruption | None
 ) -> RestartPoint | str:
-    """Return the restart point with the retract from its start; a message if no safe path exists."""
+    """Return the restart point with the retract from its start, or a message if no safe path exists."""
     done = _complete_blocks(cut_record, interruption) if interruption is not None else point.blocks
     back = _plan_retract(cut_record, point)
     if back.situation is ToolSituation.CLEAR or (back.is_known and point.blocks <= done):
@@ -333,7 +339,7 @@ def make_lathe_restart(
 
 
 def make_skipped_cuts_message(line: int, first: int, last: int) -> Message:
-    """Return the message that a line follows cuts that were skipped, from line ``first`` to ``last``."""
+    """Return the message that the line follows skipped cuts on the lines ``first`` to ``last``."""
     which = (
         Message("line {line}", line=first)
         if first == last
@@ -350,8 +356,8 @@ def _complete_blocks(cut_record: CutRecord, interruption: Interruption) -> int:
     """Return the last block whose cut is complete.
 
     The interrupted block is complete only if the tool is at its end. Otherwise, a restart after that block
-    would leave the rest of its cut in the part. A closed milled block, such as a full circle, never counts as
-    complete, because its end does not show how far it was cut.
+    would leave the rest of its cut in the part. A closed milled block, such as a full circle, never counts
+    as complete, because its end point does not show how much was cut.
     """
     row = cut_record.find_last_row(interruption.block_number)
     off = cut_record.tool_offsets.get(interruption.tool_number)
@@ -382,7 +388,10 @@ _RETRACT_TEXTS = {
 
 
 def _plan_retract(cut_record: CutRecord, point: Checkpoint) -> Retract:
-    """Return the retract from the start of the line; a new tool starts where the previous tool stopped."""
+    """Return the retract from the start of the line.
+
+    A new tool starts at the end position of the previous tool.
+    """
     row = cut_record.find_last_row(point.blocks)
     if row < 0:
         return Retract(ToolSituation.CLEAR)
@@ -393,7 +402,10 @@ def _plan_retract(cut_record: CutRecord, point: Checkpoint) -> Retract:
 
 
 def _skipped_lines(cut_record: CutRecord, last_complete_block: int, blocks: int) -> tuple[int, int]:
-    """Return the lines of the first and last cut between the executed blocks and the line, lower first."""
+    """Return the lines of the first and last cut between the executed blocks and the restart line.
+
+    The lower line is first. Both lines are 0 if no cut was skipped.
+    """
     rows = (
         (cut_record.block_number > last_complete_block)
         & (cut_record.block_number <= blocks)
@@ -406,14 +418,16 @@ def _skipped_lines(cut_record: CutRecord, last_complete_block: int, blocks: int)
 
 
 def _input_lines(program: Program, lines: RestartSuitability) -> list[int]:
-    """Return the lines of the main program, outside of loops, that read an input, in order."""
+    """Return the lines of the main program outside of loops that read an input, in ascending order."""
     steps = enumerate(program.executable_lines, start=1)
     asking = [n for n, step in steps if isinstance(step, Statement) and step.flow_code in {"M95", "M97"}]
     return [number for number in asking if not lines.explain_unsuitable(number)]
 
 
 def _same_state(one: StoppablePass, other: StoppablePass) -> bool:
-    """Return whether both passes are at the same point with the same state, so that they continue equally."""
+    """Return whether both passes are at the same point in the same state, so that they continue
+    identically.
+    """
     a, b = one.checkpoint, other.checkpoint
     if (
         one.next_line != other.next_line
@@ -428,5 +442,5 @@ def _same_state(one: StoppablePass, other: StoppablePass) -> bool:
 
 
 def _without_position(point: Checkpoint) -> Checkpoint:
-    """Return the checkpoint without position and block count."""
+    """Return the checkpoint with position and block count set to 0."""
     return point._replace(x=0.0, z=0.0, c=0.0, px=0.0, pz=0.0, blocks=0)

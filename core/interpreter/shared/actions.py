@@ -1,4 +1,4 @@
-"""Actions of ``action`` and ``dwell`` blocks: everything that a block does other than move an axis."""
+"""Actions of elementary blocks of the kinds ``action`` and ``dwell``, which do not move an axis."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from core.plain_value import PlainValue
 
 
 class SpindleRun(PlainValue):
-    """Run the spindle (M03, M04, S) at ``rpm``, which is negative for M04.
+    """Action that runs the spindle at ``rpm`` (M03, M04, S), which is negative for M04.
 
-    With ``surface_speed`` (mm/s), the rpm follows the radius of the cut.
+    With ``surface_speed`` in mm/s, the spindle speed follows the radius of the cut.
     """
 
     __slots__ = __match_args__ = ("rpm", "surface_speed")
@@ -21,7 +21,10 @@ class SpindleRun(PlainValue):
 
 
 class SpindleStop(PlainValue):
-    """Stop the spindle (M05). With ``stands``, the next block waits until the spindle is at rest."""
+    """Action that stops the spindle (M05).
+
+    With ``stands``, the next block waits until the spindle is at rest.
+    """
 
     __slots__ = __match_args__ = ("stands",)
 
@@ -30,9 +33,9 @@ class SpindleStop(PlainValue):
 
 
 class SpindleLock(PlainValue):
-    """Stop the spindle and hold it as the C axis (M19, M89, G89).
+    """Action that stops the spindle and locks it as the C axis (M19, M89, G89).
 
-    With ``orient`` (M19), C then turns to 0.
+    With ``orient`` (M19), C then rotates to 0.
     """
 
     __slots__ = __match_args__ = ("orient",)
@@ -42,9 +45,10 @@ class SpindleLock(PlainValue):
 
 
 class SpindlePositioning(PlainValue):
-    """Stop the spindle (M19 of Klartext, SPOS) and hold it at ``angle``, in degrees from its index.
+    """Action that stops the spindle at an angle and holds it there (M19 of Klartext, SPOS).
 
-    ``sense`` is the direction of rotation: 1 as for M3, -1 as for M4, 0 by the shorter distance.
+    ``angle`` is in degrees from the spindle index. ``sense`` is the direction of rotation: 1 as for M3, -1
+    as for M4, or 0 for the shorter distance.
     """
 
     __slots__ = __match_args__ = ("angle", "sense")
@@ -55,7 +59,7 @@ class SpindlePositioning(PlainValue):
 
 
 class CoolantSwitch(PlainValue):
-    """Turn the coolant on (M08) or off (M09)."""
+    """Action that turns the coolant on (M08) or off (M09)."""
 
     __slots__ = __match_args__ = ("on",)
 
@@ -64,7 +68,7 @@ class CoolantSwitch(PlainValue):
 
 
 class ColletSwitch(PlainValue):
-    """Clamp (M12) or unclamp (M13) the collet."""
+    """Action that clamps (M12) or unclamps (M13) the collet."""
 
     __slots__ = __match_args__ = ("closed",)
 
@@ -73,7 +77,7 @@ class ColletSwitch(PlainValue):
 
 
 class OutputSwitch(PlainValue):
-    """Switch the output that the machine file assigns to an M function, such as M25 or M26."""
+    """Action that switches the output that the machine file assigns to an M function, such as M25 or M26."""
 
     __slots__ = __match_args__ = ("name", "on")
 
@@ -83,7 +87,7 @@ class OutputSwitch(PlainValue):
 
 
 class ToolChange(PlainValue):
-    """Activate another tool offset (T). No axis moves."""
+    """Action that activates another tool offset (T) without axis motion."""
 
     __slots__ = __match_args__ = ("tool",)
 
@@ -92,7 +96,7 @@ class ToolChange(PlainValue):
 
 
 class WorkShift(PlainValue):
-    """Add to the work shift (G10) that the next T activates, in mm with X as a radius."""
+    """Action that adds to the work shift (G10), which the next T activates, in mm with X as a radius."""
 
     __slots__ = __match_args__ = ("x", "z")
 
@@ -102,7 +106,7 @@ class WorkShift(PlainValue):
 
 
 class Preset(PlainValue):
-    """Assign these program coordinates to the present position (G92), in mm with X as a radius."""
+    """Action that assigns program coordinates to the present position (G92), in mm with X as a radius."""
 
     __slots__ = __match_args__ = ("x", "z")
 
@@ -112,7 +116,7 @@ class Preset(PlainValue):
 
 
 class ProgramStop(PlainValue):
-    """Wait for Cycle Start (M00, or M01 if ``optional``) and show ``message`` in large type."""
+    """Action that waits for Cycle Start (M00, or M01 if ``optional``) and shows ``message`` in large type."""
 
     __slots__ = __match_args__ = ("optional", "message")
 
@@ -122,7 +126,10 @@ class ProgramStop(PlainValue):
 
 
 class ProgramEnd(PlainValue):
-    """End the program: M30 resets the M functions (``reset``), and M02 leaves them as they are."""
+    """Action that ends the program.
+
+    M30 resets the M functions (``reset``), and M02 does not change them.
+    """
 
     __slots__ = __match_args__ = ("reset",)
 
@@ -131,13 +138,13 @@ class ProgramEnd(PlainValue):
 
 
 class CycleRepeatCancel(PlainValue):
-    """Cancel Cycle Repeat (M31)."""
+    """Action that cancels Cycle Repeat (M31)."""
 
     __slots__ = ()
 
 
 class InputWait(PlainValue):
-    """Wait until the terminal is closed (``closed`` is True) or open (M91 to M94)."""
+    """Action that waits until a terminal is closed (``closed`` is True) or open (M91 to M94)."""
 
     __slots__ = __match_args__ = ("terminal", "closed")
 
@@ -147,7 +154,7 @@ class InputWait(PlainValue):
 
 
 class InputRead(PlainValue):
-    """Stop all motion, because the interpreter reads this input next (M95, M97)."""
+    """Action that stops all motion before the interpreter reads an input (M95, M97)."""
 
     __slots__ = __match_args__ = ("terminal",)
 
@@ -156,7 +163,7 @@ class InputRead(PlainValue):
 
 
 class Dwell(PlainValue):
-    """Wait at rest for a number of seconds (G04)."""
+    """Action that waits for a number of seconds with the axes at rest (G04)."""
 
     __slots__ = __match_args__ = ("seconds",)
 

@@ -1,4 +1,7 @@
-"""Turning of C at the axis of a virtual mill, until the path leads out along X, in all languages."""
+"""Rotation of C while the tool is on the spindle centerline, until the path leads outward along X.
+
+All dialects with a virtual mill use this module.
+"""
 
 from __future__ import annotations
 
@@ -11,9 +14,9 @@ _WARNING_ANGLE_DEG = 1.0  # degrees; C may turn by this angle without a warning
 
 
 def check_centerline_turn(log: DiagnosticLog, line: int, turn_rad: float) -> bool:
-    """Return whether C turns at the axis by ``turn_rad`` radians.
+    """Return whether C must rotate by ``turn_rad`` radians on the centerline.
 
-    A large turn is logged as a warning, because the tool does not move during the turn.
+    A large rotation is logged as a warning, because the tool does not move during the rotation.
     """
     angle = abs(degrees(turn_rad))
     if angle > _WARNING_ANGLE_DEG:

@@ -1,7 +1,7 @@
-"""State from which a pass begins: the first line, or a saved pass (MDI, restart, block search).
+"""State from which a pass starts: the first line, or a saved pass (MDI, restart, block search).
 
-The state of a language is in the parts of its interpreter. A checkpoint copies these parts completely, so
-that it includes everything that a family of codes adds.
+The state of a dialect is in the parts of its interpreter. A saved pass copies these parts completely, so
+that it includes the state of every function.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ _numbers = count(1)
 
 
 class StateLine(NamedTuple):
-    """One line of the modal state in the terms of the control; ``key`` identifies its group."""
+    """One line of the modal state in the terms of the control, whose group is identified by ``key``."""
 
     key: str
     value: str
@@ -30,10 +30,9 @@ class StateLine(NamedTuple):
 class SavedPass(Generic[PartsType]):
     """The state of an interpreter between two blocks.
 
-    Each saved pass has a name that is unique in all processes.
-
-    It is equal only to itself and to its copies in other processes. ``shared`` are objects that are not
-    copied, such as the setup, the log and program texts.
+    Each saved pass has a name that is unique in all processes. A saved pass is equal only to itself and to
+    its copies in other processes. ``shared`` contains the objects that are not copied, such as the setup,
+    the log and program texts.
     """
 
     def __init__(
@@ -54,17 +53,19 @@ class SavedPass(Generic[PartsType]):
         return hash(self._name)
 
     def copy_parts(self, *instead: object) -> PartsType:
-        """Return a copy of the saved parts, in which ``instead`` replaces the first shared objects."""
+        """Return a copy of the saved parts, in which the objects ``instead`` replace the first shared
+        objects.
+        """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})
 
 
 class FlowLevel(NamedTuple):
-    """The main program or one active subroutine. Positions are line indices from 0.
+    """The main program or one active subroutine, with positions as line indices from 0.
 
     ``return_index`` is the line at which execution continues after a call, or the next line.
-    ``remaining_repeats`` has a pair for each active loop, the outermost first: the line of its LS and the
-    number of repeats that remain.
+    ``remaining_repeats`` contains a pair for each active loop, from the outermost to the innermost. The
+    pair is the line of LS and the number of remaining repeats.
     """
 
     return_index: int
@@ -77,9 +78,10 @@ FlowPosition = tuple[FlowLevel, ...]
 
 
 class Checkpoint(NamedTuple):
-    """Everything that a line inherits from earlier lines: mm, X as a radius, degrees, program frame.
+    """The complete state that a line inherits from earlier lines.
 
-    ``x z c`` is the point reached. ``px pz`` is the programmed point, which does not include the secondary
+    Lengths are in mm in the program frame, with X as a radius. Angles are in degrees. ``x``, ``z`` and
+    ``c`` are the present position. ``px`` and ``pz`` are the programmed position without the secondary
     offset.
     """
 
@@ -101,15 +103,12 @@ class Checkpoint(NamedTuple):
 
     @property
     def machine(self) -> tuple[float, float]:
-        """Machine X (radius) and Z of the point reached, in mm."""
+        """Return machine X (as a radius) and Z of the present position, in mm."""
         return self.x + self.modal.offset_x, self.z + self.modal.offset_z
 
 
 class StraightLeg(NamedTuple):
-    """A straight move to a machine position in mm; an axis whose value is None does not move.
-
-    ``feed`` is in mm/s.
-    """
+    """A straight move to a machine position in mm, with None for an axis that does not move."""
 
     x: float | None
     z: float | None
@@ -121,7 +120,7 @@ class StraightLeg(NamedTuple):
 class AxesLeg(NamedTuple):
     """A straight move of some axes of a mill to machine positions, in mm and degrees.
 
-    ``feed`` is in mm/s or degrees/s, and None for a rapid.
+    ``feed`` is in mm/s or degrees/s, or None for a rapid.
     """
 
     target_positions: tuple[tuple[str, float], ...]
@@ -130,7 +129,7 @@ class AxesLeg(NamedTuple):
 
 
 class CAxisMove(NamedTuple):
-    """A move of the C axis alone to a machine angle in degrees, at ``speed`` degrees/s."""
+    """A move of only the C axis to a machine angle in degrees, at ``speed`` in degrees/s."""
 
     angle_deg: float
     speed: float
@@ -138,7 +137,7 @@ class CAxisMove(NamedTuple):
 
 
 class FunctionStep(NamedTuple):
-    """An M function of the approach, such as spindle, coolant or an output."""
+    """A step of the approach that executes an M function, such as spindle, coolant or an output."""
 
     action: Action
     text: str
@@ -149,10 +148,11 @@ ApproachStep = StraightLeg | AxesLeg | CAxisMove | FunctionStep
 
 
 class PassStart(NamedTuple):
-    """The start of a pass. ``is_mdi_line`` means that the text is one line of MDI instead of a program.
+    """The start of a pass.
 
-    The moves of ``approach`` come before the line and must end at the position of the checkpoint. With
-    ``skips_cuts``, the part is not counted, because earlier cuts are incomplete.
+    ``is_mdi_line`` means that the text is one MDI line instead of a program. The moves of ``approach``
+    precede the line and must end at the position of the checkpoint. With ``skips_cuts``, the part is not
+    counted, because earlier cuts are incomplete.
     """
 
     checkpoint: Checkpoint
@@ -163,7 +163,7 @@ class PassStart(NamedTuple):
 
     @property
     def key(self) -> str:
-        """Text that is equal for two starts only if the starts are equal."""
+        """Return a text that is the same for two starts only if the starts are equal."""
         modal = self.checkpoint.modal
         whole = self._replace(checkpoint=self.checkpoint._replace(modal=modal._replace(outputs=frozenset())))
         return repr((whole, sorted(modal.outputs)))

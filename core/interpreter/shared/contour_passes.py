@@ -1,4 +1,4 @@
-"""Passes of canned cycles: passes of equal depth, and roughing passes along a contour."""
+"""Passes of canned cycles, which are passes of equal depth or roughing passes along a contour."""
 
 from __future__ import annotations
 
@@ -14,21 +14,19 @@ _ROUNDING_TOLERANCE = 1e-6  # of a pass; tolerance for the rounding of decimal f
 
 
 def count_passes(total_depth_mm: float, max_depth_mm: float) -> int:
-    """Return the number of passes, each at most ``max_depth_mm`` mm deep, for a total depth of
-    ``total_depth_mm`` mm.
-    """
+    """Return the number of passes of at most ``max_depth_mm`` that cut the total depth ``total_depth_mm``."""
     return ceil(total_depth_mm / max_depth_mm - _ROUNDING_TOLERANCE)
 
 
 def compute_equal_depths(total_depth_mm: float, count: int) -> list[float]:
-    """Return the depths of ``count`` equal passes in mm; the last depth is ``total_depth_mm``."""
+    """Return the depths of ``count`` equal passes in mm, ending with ``total_depth_mm``."""
     return [total_depth_mm * k / count for k in range(1, count + 1)]
 
 
 class CycleMove(NamedTuple):
     """One motion of a cycle to a point in the program frame, in mm.
 
-    ``rapid`` is the rapid rate in mm/s, or None for a move at the feed.
+    ``rapid_rate_mm_s`` is the rapid rate, or None for a move at the feed.
     """
 
     x: float
@@ -51,17 +49,15 @@ MAX_COMPARISONS = 200_000  # elements times passes; takes a few seconds
 
 
 class StartTooCloseError(Exception):
-    """The approach to the contour or the retract would come closer to the contour than permitted."""
+    """Error for an approach or retract that would come closer to the contour than permitted."""
 
 
 class RoughingPlanner:
     """Planner of roughing passes.
 
-    ``add_pass`` adds passes of growing depth to ``moves``, and ``add_finishing_pass`` adds a cut along the
-    contour.
-
-    The tool feeds into a span from the end of the previous pass. Between spans, it moves at ``rapid`` mm/s,
-    ``lift`` mm above the remaining material.
+    ``add_pass`` adds passes of increasing depth to ``moves``, and ``add_finishing_pass`` adds a cut along
+    the contour. The tool feeds into a span from the end of the previous pass. Between spans, it moves at
+    ``rapid`` mm/s, with the distance ``lift`` in mm above the remaining material.
     """
 
     def __init__(self, area: RoughingArea, rapid: float, lift: float) -> None:
@@ -74,7 +70,9 @@ class RoughingPlanner:
         self._free = area.find_spans(0.0)
 
     def add_pass(self, depth: float) -> None:
-        """Add one pass through all spans at a depth in mm that exceeds the depth of all earlier passes."""
+        """Add one pass through all spans at a depth in mm, which must exceed the depths of all earlier
+        passes.
+        """
         spans = self._area.find_spans(depth)
         before = self._done[-1][0] if self._done else 0.0
         for start, end in spans:
@@ -93,7 +91,7 @@ class RoughingPlanner:
     def add_finishing_pass(self, *, is_reversed: bool) -> None:
         """Add a cut along the contour and the return to the start.
 
-        Raises StartNearError if the approach or the retract would come too close to the contour.
+        Raises StartTooCloseError if the approach or the retract would come too close to the contour.
         """
         path = self._area.path
         if is_reversed:
@@ -110,7 +108,7 @@ class RoughingPlanner:
     def _approach(self, to: Point, *, front: bool) -> None:
         """Add the moves to the start of the path.
 
-        The front end is reached from in front of the area, the back end from above.
+        The tool reaches the front end from in front of the area, and the back end from above.
         """
         way = min(to[1], 0.0) if front else to[1]
         self._move_above(way)
@@ -139,7 +137,7 @@ class RoughingPlanner:
         self._go(0.0, 0.0)
 
     def _move_above(self, target: float) -> None:
-        """Add a move to another position above all remaining material."""
+        """Add a move to another position, above all remaining material."""
         if abs(target - self._at[1]) < _SAME:
             return
         level = min(self._clear_depth(self._at[1], target), self._at[0])
@@ -147,14 +145,16 @@ class RoughingPlanner:
         self._go(level, target)
 
     def _sink(self, depth: float) -> None:
-        """Add a move down to ``lift`` above a depth that has already been cut here."""
+        """Add a move down to the distance ``lift`` above a depth that has already been cut at this
+        position.
+        """
         if depth - self._lift > self._at[0]:
             self._go(depth - self._lift, self._at[1])
 
     def _clear_depth(self, a: float, b: float) -> float:
         """Return the depth at which the tool can move between two positions.
 
-        It is ``lift`` above the deepest pass that covers the whole distance.
+        The depth is ``lift`` above the deepest pass that covers the whole distance.
         """
         low, high = min(a, b), max(a, b)
         for depth, spans in reversed(self._done):
@@ -178,7 +178,10 @@ class RoughingPlanner:
             here = there
 
     def _is_too_close(self, start: Point, end: Point) -> bool:
-        """Return whether a move along one axis comes too close to the contour, or crosses it if U is 0."""
+        """Return whether a move along one axis comes too close to the contour.
+
+        If the allowance U is 0, a move is too close only if it crosses the contour.
+        """
         left, way = self._area.allowance_mm, Line(start, end)
         if left > _CLEARANCE_TOLERANCE_MM:
             return any(
@@ -205,7 +208,8 @@ def _covering(spans: list[ZSpan], low: float, high: float) -> bool:
 class ContourFrame(NamedTuple):
     """The frame of a contour, relative to the start point of the cycle.
 
-    ``x`` and ``z`` are +1 or -1. With ``is_reversed``, the tool is on the left of the reversed contour.
+    ``x_sign`` and ``z_sign`` are +1 or -1. With ``is_reversed``, the tool is on the left of the reversed
+    contour.
     """
 
     start: Point
@@ -214,12 +218,12 @@ class ContourFrame(NamedTuple):
     is_reversed: bool
 
     def transform_contour(self, contour: Sequence[Element]) -> list[Element]:
-        """Return the contour in depth and length from the start point, with the tool on its left."""
+        """Return the contour in depth and length from the start point, oriented with the tool on its left."""
         elements = [self._element(element) for element in contour]
         return [element.reversed() for element in reversed(elements)] if self.is_reversed else elements
 
     def transform_move(self, move: CycleMove) -> CycleMove:
-        """Return a motion, given in depth and length, in the program frame."""
+        """Convert a motion from depth and length to the program frame."""
         centre = None if move.center is None else self._out(move.center)
         x, z = self._out((move.x, move.z))
         return CycleMove(
@@ -244,7 +248,9 @@ class ContourFrame(NamedTuple):
 
 
 def make_contour_frame(start: Point, first: Point, last: Point) -> ContourFrame:
-    """Return the view of a contour from ``first`` to ``last``, both in one quadrant of ``start``."""
+    """Return the frame of a contour from ``first`` to ``last``, which are in the same quadrant of
+    ``start``.
+    """
     a, b = _off(start, first), _off(start, last)
     x = 1.0 if a[0] + b[0] > 0 else -1.0
     z = 1.0 if a[1] + b[1] > 0 else -1.0

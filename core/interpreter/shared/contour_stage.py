@@ -1,7 +1,7 @@
-"""Stages between the moves of the lines and the final blocks: corner rounding, then nose compensation.
+"""Stages that convert the moves of lines to final blocks: corner rounding, then nose compensation.
 
-All languages whose moves are blocks use these stages. A language specifies its corners, the start and end of
-compensation, and its errors. A stage buffers moves until no later move can change them.
+The dialects whose moves are blocks use these stages. A dialect defines its corners, the start and end of
+compensation, and its errors. A stage buffers moves until later moves can no longer change them.
 """
 
 from __future__ import annotations
@@ -37,23 +37,25 @@ def make_element(block: Block) -> Element:
 
 
 class AdjustedMoveFactory(ABC):
-    """Factory of the blocks for adjusted moves, implemented by each language."""
+    """Factory of the blocks for adjusted moves, which each dialect implements."""
 
     @property
     @abstractmethod
     def max_rpm(self) -> float:
-        """The speed limit of the spindle in rpm."""
+        """Return the speed limit of the spindle in rpm."""
 
     @abstractmethod
     def replace_element(self, block: Block, element: Element) -> Block:
-        """Return the block with its move along another element of the same kind."""
+        """Return the block with its move changed to another element of the same kind."""
 
     @abstractmethod
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
+        """Return a new move along an element, to be inserted after ``block`` with the same line, feed and
+        state.
+        """
 
     def make_motionless_block(self, block: Block, point: Point) -> Block:
-        """Return a block without motion at another point."""
+        """Return a block without motion, moved to another point."""
         x, z = point
         rpm = self._rpm(block, x)
         action = block.action
@@ -91,7 +93,7 @@ MarkType = TypeVar("MarkType")
 
 @dataclass(slots=True)
 class BufferedMove(Generic[CornerType, MarkType]):
-    """A buffered move with a corner, and the blocks between it and the next move."""
+    """A buffered move with a corner, and the blocks between this move and the next move."""
 
     block: Block
     corner: CornerType
@@ -99,9 +101,9 @@ class BufferedMove(Generic[CornerType, MarkType]):
 
 
 class CornerStage(ABC, Generic[CornerType, MarkType]):
-    """Stage that buffers a move with a corner C until the next move is known, and then trims both moves.
+    """Stage that buffers a move with a corner until the next move is known, and then trims both moves.
 
-    Marks M may be among the blocks. They pass through unchanged.
+    Markers can be among the blocks and are passed through unchanged.
     """
 
     def __init__(self, moves: AdjustedMoveFactory) -> None:
@@ -110,7 +112,7 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
 
     @property
     def has_buffered_move(self) -> bool:
-        """Whether a move is buffered until the next move is known."""
+        """Return whether a move is buffered until the next move is known."""
         return self._held is not None
 
     def discard(self) -> None:
@@ -118,7 +120,7 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
         self._held = None
 
     def accept(self, item: Block | MarkType, corner: CornerType | None) -> Iterator[Block | MarkType]:
-        """Accept a block or mark, and yield all items that no later item can change.
+        """Accept a block or marker, and yield all items that later items cannot change.
 
         Raises ProgramError if the corner is not possible.
         """
@@ -176,15 +178,24 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
 
     @abstractmethod
     def _keeps_waiting(self, buffered: BufferedMove[CornerType, MarkType], item: Block | MarkType) -> bool:
-        """Return whether the item is not a move, so that the corner remains open. Raises ProgramError."""
+        """Return whether the corner remains open because the item is not a move.
+
+        Raises ProgramError if the item is not allowed at this point.
+        """
 
     @abstractmethod
     def _forms_corner(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> bool:
-        """Return whether the next block forms the corner, or no corner is programmed. Raises ProgramError."""
+        """Return whether the next block forms a corner with the buffered move.
+
+        Returns False if no corner is programmed. Raises ProgramError if the corner is not possible.
+        """
 
     @abstractmethod
     def _elements(self, corner: CornerType, first: Element, last: Element) -> Sequence[Element]:
-        """Return the first element trimmed, the corner, and the last element trimmed. Raises CornerError."""
+        """Return the first element trimmed, the corner, and the last element trimmed.
+
+        Raises CornerError if the corner is not possible.
+        """
 
     @abstractmethod
     def _report_straight(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> None:
@@ -194,7 +205,7 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
     def _make_size_error(
         self, buffered: BufferedMove[CornerType, MarkType], block: Block, needed_mm: float
     ) -> ProgramError:
-        """Return the error for a corner that needs ``needed`` mm of the move ``block``."""
+        """Return the error for a corner that needs ``needed_mm`` of the move ``block``."""
 
     @abstractmethod
     def _make_corner_error(
@@ -210,12 +221,12 @@ _END_CLEARANCE_RATIO = 0.5
 
 
 def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
-    """Return whether the center of a nose of ``nose_radius_mm`` mm comes too close to the contour.
+    """Return whether the center of a nose with the radius ``nose_radius_mm`` comes too close to the
+    contour.
 
-    The elements of the contour begin with the nearest one.
-
-    Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
-    There, only ``_END_CLEARANCE_RATIO`` times the radius is required.
+    The elements of the contour start with the nearest element. Near the end of the contour, an approach
+    that is not perpendicular always comes closer than the radius. At this point, only
+    ``_END_CLEARANCE_RATIO`` times the radius is required.
     """
     if path.length < SAME_POINT_TOLERANCE_MM:
         return False
@@ -234,18 +245,17 @@ def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float)
 
 @dataclass(slots=True)
 class ContourMove:
-    """A programmed move and the blocks without motion that follow the move."""
+    """A programmed move with the blocks without motion that follow it."""
 
     block: Block
     following_blocks: list[Block] = field(default_factory=list)
 
 
 class ContourStage(ABC):
-    """Stage that offsets one contour for the nose radius.
+    """Stage that offsets one contour by the nose radius.
 
-    The nose center is ``left_offset_mm`` mm to the left of the contour.
-
-    ``tip_offset`` is the position in mm of the programmed tip relative to the center.
+    The nose center is ``left_offset_mm`` to the left of the contour. ``tip_offset`` is the position in mm
+    of the programmed tip relative to the nose center.
     """
 
     def __init__(
@@ -267,13 +277,16 @@ class ContourStage(ABC):
         self._at: Point | None = None  # position of the tip at the end of the yielded blocks
 
     def _add_move(self, move: ContourMove, element: Element) -> list[OffsetPiece]:
-        """Add a move of the contour, and return the pieces that are final. Raises ProgramError."""
+        """Add a move to the contour, and return the pieces that are final.
+
+        Raises ProgramError if the move cannot be offset.
+        """
         self._held[self.move_count] = move
         self.move_count += 1
         return self._sure(self._offset.add(element))
 
     def _remaining_pieces(self) -> list[OffsetPiece]:
-        """Return the remaining pieces after the last move. Raises ProgramError."""
+        """Return the remaining pieces after the last move. Raises ProgramError if a move cannot be offset."""
         return self._sure(self._offset.finish())
 
     def _sure(self, pieces: Iterator[OffsetPiece]) -> list[OffsetPiece]:
@@ -285,7 +298,10 @@ class ContourStage(ABC):
             ) from None
 
     def _yield_pieces(self, pieces: Iterable[OffsetPiece]) -> Iterator[Block]:
-        """Yield the blocks of these pieces, preceded by the approach at the start. Raises ProgramError."""
+        """Yield the blocks of these pieces, preceded by the approach at the start of the contour.
+
+        Raises ProgramError if the approach is not possible.
+        """
         for piece in pieces:
             if self._at is None:
                 way = self._approach_path(piece.element.start)
@@ -303,7 +319,7 @@ class ContourStage(ABC):
                 yield self._arrived(make(block, shift_element(element, *self.tip_offset)))
 
     def _depart(self, move: ContourMove, path: Sequence[Element]) -> Iterator[Block]:
-        """Yield the departure after the remaining blocks of the contour."""
+        """Yield the departure, preceded by the remaining blocks of the contour."""
         yield from self._standing(self._held.pop(self._index))
         yield from self._lead(move, path)
 
@@ -324,14 +340,17 @@ class ContourStage(ABC):
         return block
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """Return the path around an outside corner, by default the given arc."""
+        """Return the path around an outside corner, which is the given arc by default."""
         del block
         return [element]
 
     @abstractmethod
     def _approach_path(self, to: Point) -> Sequence[Element]:
-        """Return the path of the nose center from the approach to the contour. Raises ProgramError."""
+        """Return the path of the nose center from the approach to the contour.
+
+        Raises ProgramError if the approach is not possible.
+        """
 
     @abstractmethod
     def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
-        """Return the error for a move that the nose would gouge."""
+        """Return the error for a move along which the nose would gouge the contour."""

@@ -1,4 +1,4 @@
-"""Program flow for all dialects: active calls, remaining repeats, and detection of endless loops."""
+"""Program flow for all dialects, with active calls, remaining repeats and detection of endless loops."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ RoutineType = TypeVar("RoutineType")
 
 @dataclass(slots=True)
 class FlowFrame(Generic[RoutineType]):
-    """The main program or an active subprogram. Positions are line indices from 0.
+    """The main program or an active subprogram, with positions as line indices from 0.
 
-    ``next_index`` is the line at which execution continues after a call, and ``end_index`` is one past the
-    last line. ``remaining_repeats`` maps the line of each active repeat to the number of repeats that
-    remain, the outermost first. A program from another file has the name ``file_name``. Its lines are shown
-    at ``call_line``, the line of the main file with the call.
+    ``next_index`` is the line at which execution continues after a call. ``end_index`` is the index after
+    the last line. ``remaining_repeats`` maps the line of each active repeat to the number of remaining
+    repeats, from the outermost to the innermost. ``file_name`` is the name of a program from another file.
+    Its lines are displayed at ``call_line``, the line of the call in the main file.
     """
 
     routine: RoutineType
@@ -34,7 +34,7 @@ class FlowFrame(Generic[RoutineType]):
 
     @property
     def comparison_key(self) -> tuple[object, ...]:
-        """The file, the next line and the remaining repeats, for comparison."""
+        """Return the file name, the next line and the remaining repeats for comparison."""
         return self.file_name, self.next_index, tuple(sorted(self.remaining_repeats.items()))
 
 
@@ -42,7 +42,7 @@ FrameType = TypeVar("FrameType", bound=FlowFrame[Any])
 
 
 class ControlFlow(Generic[FrameType]):
-    """Position in a program.
+    """The position in a program.
 
     ``next_index`` is the index of the next line, and ``end_index`` is the index at which execution ends.
     """
@@ -56,16 +56,16 @@ class ControlFlow(Generic[FrameType]):
 
     @property
     def is_in_subprogram(self) -> bool:
-        """Whether a subprogram is active."""
+        """Return whether a subprogram is active."""
         return len(self.frames) > 1
 
     @property
     def is_in_other_file(self) -> bool:
-        """Whether a program from another file is active."""
+        """Return whether a program from another file is active."""
         return bool(self.active_frame.call_line)
 
     def enter(self, frame: FrameType) -> None:
-        """Continue in a subprogram."""
+        """Continue execution in a subprogram."""
         self.active_frame.next_index = self.next_index
         self.frames.append(frame)
         self.active_frame, self.next_index, self.end_index = frame, frame.next_index, frame.end_index
@@ -76,7 +76,7 @@ class ControlFlow(Generic[FrameType]):
         self._resume_frame()
 
     def _resume_frame(self) -> None:
-        """Continue at the saved position of the last frame."""
+        """Continue execution at the saved position of the last frame."""
         self.active_frame = here = self.frames[-1]
         self.next_index, self.end_index = here.next_index, here.end_index
 
@@ -87,13 +87,14 @@ class ControlFlow(Generic[FrameType]):
         self.next_index = self.end_index
 
     def get_displayed_line(self, number: int) -> int:
-        """Return the line of the main file at which line ``number`` of the active program is shown."""
+        """Return the line of the main file at which line ``number`` of the active program is displayed."""
         return self.active_frame.call_line or number
 
     def relocate_finding(self, finding: Diagnostic) -> Diagnostic:
-        """Return a finding for the main file.
+        """Return a finding with its location in the main file.
 
-        A finding in another file is moved to the line of the call, and its text states the file and the line.
+        A finding in another file is moved to the line of the call, and the file and line are added to its
+        text.
         """
         here = self.active_frame
         if not here.call_line:
@@ -105,12 +106,12 @@ class ControlFlow(Generic[FrameType]):
 
 
 class EndlessLoopDetector:
-    """Detector of endless loops, which compares the program state at each jump back.
+    """Detector of endless loops, which compares the program state at each backward jump.
 
-    A program always does the same from the same state. If a jump back occurs in the same state as an earlier
-    jump, the loop is endless. The reference state is renewed at jumps 1, 2, 4, 8 and so on (Brent's cycle
-    detection), so that a loop of any length is detected within three rounds. Each jump of a normal loop costs
-    one comparison, which ends at the first difference.
+    Execution from the same state always continues identically. If a backward jump occurs in the same state
+    as an earlier jump, the loop is therefore endless. The reference state is renewed at jumps 1, 2, 4, 8
+    and so on (Brent's cycle detection), so that a loop of any length is detected within three rounds. Each
+    jump of a normal loop costs one comparison, which ends at the first difference.
     """
 
     def __init__(self) -> None:
@@ -119,9 +120,9 @@ class EndlessLoopDetector:
         self._kept: object = None
 
     def is_repeated_state(self, flow: ControlFlow[FrameType], *held: object) -> bool:
-        """Return whether a jump back occurs in the same state as an earlier jump.
+        """Return whether a backward jump occurs in the same state as an earlier jump.
 
-        ``held`` are all values, other than the position, on which later jumps can depend.
+        ``held`` contains all values other than the position on which later jumps can depend.
         """
         flow.active_frame.next_index = flow.next_index
         now = [each.comparison_key for each in flow.frames], held

@@ -25,7 +25,7 @@ _DIGITS = re.compile(r"[0-9.]+")
 
 
 def merge_repeated_findings(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
-    """Return the findings with each repeated finding only at its first location, with its count."""
+    """Return the findings, with repeated findings merged at their first location and counted."""
     each_once = list(
         {(each.code, each.severity, each.line, each.column, each.message): each for each in findings}.values()
     )
@@ -52,7 +52,7 @@ def _form(finding: Diagnostic) -> object:
 class DiagnosticLog:
     """Log of findings.
 
-    Each combination of line, code and column is stored once, up to 100 errors and 100 others.
+    The log stores each combination of line, code and column once, up to 100 errors and 100 other findings.
     """
 
     def __init__(self, initial_findings: Iterable[Diagnostic] = ()) -> None:
@@ -65,16 +65,16 @@ class DiagnosticLog:
 
     @property
     def is_full(self) -> bool:
-        """Whether the log has so many errors that the pass can end."""
+        """Return whether the log contains so many errors that the pass can end."""
         return len(self.error_findings) >= MAX_PER_KIND
 
     @property
     def is_muted(self) -> bool:
-        """Whether the log has reached its limit of warnings and notes."""
+        """Return whether the log has reached its limit of warnings and notes."""
         return self._others >= MAX_PER_KIND or self._counted >= MAX_COUNTED
 
     def add(self, finding: Diagnostic) -> None:
-        """Store a finding, unless it is already in the log or the limit of its kind is reached."""
+        """Store a finding, unless the log already contains it or the limit of its kind is reached."""
         key = (finding.line, finding.code, finding.column)
         if key in self._known:
             return
@@ -106,7 +106,7 @@ class DiagnosticLog:
             )
 
     def count_repeat(self, finding: Diagnostic) -> None:
-        """Replace the text and increase the count of the earlier finding with the same code.
+        """Increase the count of the earlier finding with the same code, and replace its text.
 
         The finding remains at its first location.
         """
@@ -124,7 +124,10 @@ class DiagnosticLog:
         self.findings.append(finding)
 
     def warn(self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object) -> None:
-        """Store a warning; ``values`` are the values for the placeholders of ``text`` and ``hint``."""
+        """Store a warning.
+
+        ``values`` are the values for the placeholders of ``text`` and ``hint``.
+        """
         found = Diagnostic(
             line, column, Severity.WARNING, code, fill_template(text, values), fill_template(hint, values)
         )

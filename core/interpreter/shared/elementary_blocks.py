@@ -1,8 +1,8 @@
 """Elementary blocks, which the executor runs, the proof checks and the screen draws.
 
-Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores them as
-arrays, because single objects would cost more than their processing. ``SectionEndDetector`` finds the blocks
-that start from a standstill, both in a run and in its forecast.
+Most blocks of a long program are straight moves with the same state. A ``StraightMoveSeries`` stores such
+blocks as arrays, because individual objects would take longer to create than to process.
+``SectionEndDetector`` finds the blocks that start from a standstill, both in a run and in its forecast.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 class BlockKind(StrEnum):
-    """Kind of an elementary block. The values are part of the public JSON."""
+    """Kind of an elementary block, whose values are part of the public JSON format."""
 
     RAPID = "rapid"
     FEED = "feed"
@@ -47,17 +47,17 @@ _POSSIBLE_RAPID_KINDS = frozenset({BlockKind.PLANE, BlockKind.PLANE_LINE})
 
 @dataclass(slots=True, eq=False)
 class Block:
-    """One elementary block, which is never modified. Lengths are in mm, X is a radius, and C is in degrees.
+    """One elementary block, which is never modified.
 
-    ``x z c`` is the end point in the program frame, including secondary offset and nose compensation. ``x0 z0
-    c0`` is the start in the same frame. Add ``offset_x``, ``offset_z`` and ``modal.offset_c`` for the machine
-    positions. ``feed`` is in mm/s, or in mm/rev with ``per_rev``. For a rapid, it is the rapid rate in mm/s;
-    for a move of C alone, it is in degrees/s.
+    Lengths are in mm, X is a radius, and C is in degrees. ``x``, ``z`` and ``c`` are the end point in the
+    program frame, including secondary offset and nose compensation. ``x0``, ``z0`` and ``c0`` are the start
+    point in the same frame. The machine position is the sum of the point and ``offset_x``, ``offset_z`` and
+    ``modal.offset_c``. ``feed`` is in mm/s, or in mm/rev with ``per_rev``. For a rapid, it is the rapid
+    rate in mm/s. For a move of only C, it is in degrees/s.
 
-    ``rpm`` is the commanded spindle speed at the end of the block: negative under M04, and 0 if the spindle
-    is stopped. Where C turns at its own speed, it is that speed with its sign.
-
-    ``modal`` is the state after the block and the checkpoint for a restart.
+    ``rpm`` is the commanded spindle speed at the end of the block, which is negative under M04 and 0 if the
+    spindle is stopped. If C rotates at its own speed, ``rpm`` is the signed speed of C. ``modal`` is the
+    state after the block and is the checkpoint for a restart.
     """
 
     n: int  # count from 1, in the order of execution
@@ -94,28 +94,30 @@ class Block:
 
     @property
     def mx(self) -> float:
-        """Machine X of the end point, in mm as a radius."""
+        """Return machine X of the end point as a radius, in mm."""
         return self.x + self.offset_x
 
     @property
     def mz(self) -> float:
-        """Machine Z of the end point, in mm."""
+        """Return machine Z of the end point in mm."""
         return self.z + self.offset_z
 
     @property
     def mc(self) -> float:
-        """Machine C of the end point, in degrees."""
+        """Return machine C of the end point in degrees."""
         return self.c + self.modal.offset_c
 
     @property
     def machine_end(self) -> tuple[float, ...]:
-        """Machine positions of all axes at the end point, in the machine's axis order."""
+        """Return the machine positions of all axes at the end point, in the machine's axis order."""
         return (self.mx, self.mz, self.mc) if self.travel is None else self.travel.end
 
     def reach(self) -> tuple[float, float, float, float]:
-        """Return (min x, max x, min z, max z) of the block without its start, in mm in the program frame.
+        """Return (min x, max x, min z, max z) of the block without its start point, in mm in the program
+        frame.
 
-        The start belongs to the previous block. Arcs and moves of a mill include all points of their path.
+        The start point belongs to the previous block. Arcs and moves of a virtual mill include all points
+        of their path.
         """
         if self.plane is not None:
             (low_x, low_z, _), (high_x, high_z, _) = (
@@ -128,7 +130,10 @@ class Block:
         return self.x, self.x, self.z, self.z
 
     def compute_machine_bounds(self) -> tuple[tuple[float, float], ...]:
-        """Return the (min, max) machine positions of each axis in the machine's order, without the start."""
+        """Return the (min, max) machine positions of each axis, without the start point.
+
+        The axes are in the machine's order.
+        """
         if self.travel is not None:
             low, high = (side.tolist() for side in self.travel.reach())
             return tuple(zip(low, high, strict=True))
@@ -138,7 +143,9 @@ class Block:
 
     @property
     def length(self) -> float:
-        """Path length to which the feed applies, in mm; in degrees if only C or rotary axes move."""
+        """Return the path length to which the feed applies in mm, or in degrees if only rotary axes or C
+        move.
+        """
         if self.travel is not None:
             return self.travel.length
         if self.kind is BlockKind.ARC:
@@ -149,14 +156,18 @@ class Block:
 
     @property
     def rapid(self) -> bool:
-        """Whether the block is a rapid: the rapid override applies, and the spindle need not be at speed."""
+        """Return whether the block is a rapid.
+
+        The rapid override applies to a rapid, and a rapid does not wait for the spindle speed.
+        """
         return self.kind is BlockKind.RAPID or (self.kind in _POSSIBLE_RAPID_KINDS and self.modal.rapid)
 
     @property
     def has_angular_feed(self) -> bool:
-        """Whether the feed of a mill's block is in degrees.
+        """Return whether the feed of a mill's block is in degrees.
 
-        This is so if only rotary axes move, or if they determine the time of the linear axes.
+        This is the case if only rotary axes move, or if the rotary axes determine the time of the linear
+        axes.
         """
         travel = self.travel
         if travel is None or not self.moves:
@@ -165,7 +176,7 @@ class Block:
 
     @property
     def moves(self) -> bool:
-        """Whether any axis moves in this block."""
+        """Return whether any axis moves in this block."""
         return self.action is None
 
 
@@ -174,11 +185,12 @@ IntArray = npt.NDArray[np.int64]
 
 
 class StraightMoveSeries(Sequence[Block]):
-    """A sequence of m straight moves of X and Z, each of which starts at the end of the previous move.
+    """A series of m straight moves of X and Z, each of which starts at the end of the previous move.
 
-    The arrays ``n line x0 z0 x z`` of shape (m,) have one value per block. All other values are common to the
-    blocks and are stored in the block ``pattern``. If F varies, ``feed`` of shape (m,) has the feed of each
-    block; otherwise it is None. ``texts`` are the lines of the program.
+    The arrays ``n``, ``line``, ``x0``, ``z0``, ``x`` and ``z`` of shape (m,) contain one value per block.
+    The block ``pattern`` contains all other values, which are common to the blocks. If F varies, ``feed``
+    of shape (m,) contains the feed of each block; otherwise, it is None. ``texts`` contains the lines of
+    the program.
     """
 
     __slots__ = ("feed", "line", "n", "pattern", "texts", "x", "x0", "z", "z0")
@@ -228,7 +240,7 @@ class StraightMoveSeries(Sequence[Block]):
         return [self.texts[line - 1] for line in self.line.tolist()]
 
     def feeds(self) -> Iterator[tuple[ModalState, float]]:
-        """Return an iterator of the state and feed of each block, which is endless if F does not vary."""
+        """Return an iterator over the state and feed of each block, which is endless if F does not vary."""
         modal, feed = self.pattern.modal, self.pattern.feed
         if self.feed is None:
             return repeat((modal, feed))
@@ -244,12 +256,12 @@ class StraightMoveSeries(Sequence[Block]):
 
 
 def replace_feed(modal: ModalState, feed: float) -> ModalState:
-    """Return the modal state with another cutting feed, in mm/s or mm/rev."""
+    """Return the modal state with another cutting feed in mm/s or mm/rev."""
     return modal._replace(feed=feed, last_cutting_feed=feed)
 
 
 class TimedSeries(NamedTuple):
-    """A series of moves with the start and end times (m,) of the moves in program time, in seconds."""
+    """A series of moves, with the start and end time (m,) of each move in program time, in seconds."""
 
     series: StraightMoveSeries
     start_times_s: FloatArray
@@ -257,16 +269,20 @@ class TimedSeries(NamedTuple):
 
 
 def needs_spindle_at_speed(block: Block) -> bool:
-    """Return whether the spindle must be at speed before this block begins; rapids do not wait."""
+    """Return whether the spindle must be at speed before this block starts.
+
+    Rapids do not wait for the spindle.
+    """
     return block.moves and not block.rapid
 
 
 class SectionEndDetector:
-    """Detector of the ends of path sections in the elementary blocks of one pass, in their order.
+    """Detector of the ends of path sections in the elementary blocks of one pass.
 
-    A standstill is required before every action, before the first block that needs a new spindle speed, and
-    before and after each thread pass. A thread pass is a thread or a chain of threads with its pull-out. All
-    other blocks are executed without a standstill and form one path section.
+    The blocks must be passed in order. A standstill is required before every action, before the first block
+    that needs a new spindle speed, and before and after each thread pass. A thread pass is a thread or a
+    chain of threads with its pull-out. All other blocks are executed without a standstill and form one path
+    section.
     """
 
     def __init__(self) -> None:
@@ -275,7 +291,7 @@ class SectionEndDetector:
 
     @property
     def is_in_thread(self) -> bool:
-        """Whether the previous block belongs to a thread pass, which the next block may end."""
+        """Return whether the previous block belongs to a thread pass, which the next block may end."""
         return self._pass > 0
 
     def needs_standstill_before(self, block: Block) -> bool:
@@ -296,12 +312,14 @@ class SectionEndDetector:
         )
 
     def record_standstill(self, block: Block) -> None:
-        """Record that all axes are at rest and that ``block``, which required the standstill, begins."""
+        """Record that all axes are at rest and that ``block``, which required the standstill, starts."""
         if block.action is None:
             self._new_speed = self._new_speed and not needs_spindle_at_speed(block)
             self._pass = int(block.kind is BlockKind.THREAD)
 
 
 def _is_thread_exit(block: Block) -> bool:
-    """Return whether a block after a thread is its pull-out or a rapid straight out in X."""
+    """Return whether a block after a thread is the pull-out of the thread or a rapid straight
+    outward in X.
+    """
     return block.kind is BlockKind.THREAD or (block.kind is BlockKind.RAPID and block.z == block.z0)

@@ -1,4 +1,4 @@
-"""Evaluation of formulas in floating-point numbers. Angles are in degrees."""
+"""Evaluation of formulas with floating-point numbers and angles in degrees."""
 
 from __future__ import annotations
 
@@ -17,9 +17,10 @@ MissingValueFactory = Callable[[int, str], ProgramError]
 def compute_formula(
     formula: Formula, get_parameter: Callable[[Parameter], float], make_missing_error: MissingValueFactory
 ) -> float:
-    """Return the value of a formula; ``get_parameter`` returns the value of a parameter.
+    """Return the value of a formula.
 
-    Raises the error that ``make_missing_error`` creates if an operation has no value.
+    ``get_parameter`` is called for the value of each parameter. If an operation has no result, the function
+    raises the error that ``make_missing_error`` returns.
     """
     if isinstance(formula, Number):
         return formula.value
@@ -53,7 +54,7 @@ def _tangent(degrees: float) -> float:
 
 
 def _vector_angle(opposite: float, adjacent: float) -> float:
-    """Return the angle of a vector, from 0 to less than 360 degrees."""
+    """Return the angle of a vector in degrees, from 0 to less than 360."""
     return math.degrees(math.atan2(opposite, adjacent)) % 360.0
 
 

@@ -1,4 +1,4 @@
-"""One pass through a program in any language: its results, its lines and the approach to its first line."""
+"""Base classes of a pass through a program in any dialect: its results, its lines and its approach."""
 
 from __future__ import annotations
 
@@ -29,7 +29,9 @@ MAX_CALL_DEPTH = 16
 
 
 class ToolUsage:
-    """Tool numbers used so far, in the order of first use, and the used tools whose offset was never set."""
+    """The tool numbers used so far in the order of first use, and the used tools whose offsets were never
+    set.
+    """
 
     def __init__(self) -> None:
         self.used_tools: list[int] = []
@@ -41,7 +43,7 @@ class ToolUsage:
             self.used_tools.append(number)
 
     def use_tool_offset(self, number: int, offsets: Mapping[int, ToolOffset]) -> ToolOffset | None:
-        """Record the use of a tool and return its offset, or None if its offset was never set."""
+        """Record the use of a tool and return its offset, or None if the offset was never set."""
         self.record_tool(number)
         if number not in offsets and number not in self.tools_without_offset:
             self.tools_without_offset.append(number)
@@ -49,10 +51,10 @@ class ToolUsage:
 
 
 class InterpreterPass(ABC):
-    """One pass through a program. It raises no exceptions; all problems are in ``diagnostics``.
+    """One pass through a program, which raises no exceptions and reports all errors in ``diagnostics``.
 
-    No block follows an error, but the pass continues as far as possible to find other errors. All results
-    grow while blocks are generated.
+    No block follows an error, but the pass continues as far as possible to find other errors. The results
+    are extended while blocks are generated.
     """
 
     def __init__(self, log: DiagnosticLog) -> None:
@@ -68,66 +70,68 @@ class InterpreterPass(ABC):
 
     @abstractmethod
     def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """Return an iterator that generates the elementary blocks. Call this method once.
+        """Generate the elementary blocks of the program. Call this method only once.
 
         The blocks end at the first error. By default, the rest of the program is then checked for errors
-        before the iterator ends. With ``to_first_error``, the iterator ends without delay.
+        before the iterator ends. With ``to_first_error``, the iterator ends immediately.
         """
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Return the same blocks, with straight moves combined in series where possible."""
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series where
+        possible.
+        """
         return self.generate_blocks()
 
     @property
     @abstractmethod
     def source_block_count(self) -> int:
-        """Number of lines that contain more than a comment."""
+        """Return the number of program lines that contain more than a comment."""
 
     @property
     @abstractmethod
     def modal(self) -> ModalState:
-        """Modal state after the last generated block."""
+        """Return the modal state after the last generated block."""
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State that the next line inherits; in this base class, only the modal state."""
+        """Return the state that the next line inherits, which is only the modal state in this base class."""
         return Checkpoint(self.modal)
 
     @property
     def blocking_reason(self) -> str:
-        """Reason why no other pass can continue from here, or an empty text.
+        """Return the reason why another pass cannot continue from the present line, or an empty string.
 
-        For example, some moves may wait for later lines.
+        For example, buffered moves may depend on later lines.
         """
         return ""
 
     @property
     def diagnostics(self) -> list[Diagnostic]:
-        """All findings so far, beginning with the findings from reading the program."""
+        """Return all findings so far, starting with the findings from parsing the program."""
         return self._log.findings
 
     @property
     def has_errors(self) -> bool:
-        """Whether the findings so far include an error."""
+        """Return whether the findings so far include an error."""
         return bool(self._log.error_findings)
 
     @property
     def used_tools(self) -> list[int]:
-        """Tool numbers used so far, in the order of first use."""
+        """Return the tool numbers used so far, in the order of first use."""
         return self._tools.used_tools
 
     @property
     def missing_functions(self) -> list[MachineRequirement]:
-        """Functions of the machine builder that the program needs and this machine does not have."""
+        """Return the machine-builder functions that the program needs but this machine lacks."""
         return self._lacking
 
     @property
     def tools_without_offset(self) -> list[int]:
-        """Used tools whose offset was never set."""
+        """Return the used tools whose offsets were never set."""
         return self._tools.tools_without_offset
 
     def _stop_endless(self, line: int, hint: str) -> None:
-        """Report a program with too many blocks or lines and end the pass at this line."""
+        """Report that a program has too many blocks or lines, and end the pass at this line."""
         self._stopped = True
         text = Message(
             "The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.",
@@ -138,7 +142,7 @@ class InterpreterPass(ABC):
 
 
 class RejectedPass(InterpreterPass):
-    """Pass through a program that this machine cannot run at all: one finding and no blocks."""
+    """Pass through a program that this machine cannot run, with one finding and no blocks."""
 
     source_block_count = 0
     modal = ModalState()
@@ -147,13 +151,13 @@ class RejectedPass(InterpreterPass):
         super().__init__(DiagnosticLog([make_error_diagnostic(0, 0, "machine-kind", message, hint)]))
 
     def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """Return an empty iterator."""
+        """Return an empty iterator, because the program cannot run."""
         del to_first_error
         return iter(())
 
 
 class NumberedLine(Protocol):
-    """A line of a program with its ``number``, from 1."""
+    """A line of a program with its ``number``, counted from 1."""
 
     @property
     def number(self) -> int: ...
@@ -163,7 +167,7 @@ Line = TypeVar("Line", bound=NumberedLine)
 
 
 class LinePass(InterpreterPass, Generic[Line]):
-    """The lines of a program in the order of execution, up to the limits of a program."""
+    """Base class of passes that execute a program line by line, up to the limits of a program."""
 
     def __init__(self, log: DiagnosticLog) -> None:
         super().__init__(log)
@@ -174,7 +178,10 @@ class LinePass(InterpreterPass, Generic[Line]):
 
     @abstractmethod
     def _can_stop(self, line: Line) -> bool:
-        """Return whether block search may stop before this line, a line with a function in the main file."""
+        """Return whether block search may stop before this line.
+
+        Block search stops only before lines of the main file that have a function.
+        """
 
     @abstractmethod
     def _report_limit(self, line: Line) -> None:
@@ -202,10 +209,11 @@ class LinePass(InterpreterPass, Generic[Line]):
 def generate_lathe_approach(
     pass_start: PassStart, modal: ModalState, start: Sequence[float], rpm_at: Callable[[float], float]
 ) -> Iterator[Block]:
-    """Yield the blocks of the approach, numbered so that later blocks have the same numbers as in a full run.
+    """Yield the blocks of the approach.
 
-    ``start`` is the present machine position. ``rpm_at`` returns the commanded spindle speed at a radius in
-    the program frame.
+    The blocks are numbered so that later blocks have the same numbers as in a full run. ``start`` is the
+    present machine position. ``rpm_at`` returns the commanded spindle speed at a radius in the program
+    frame.
     """
     point, offsets = pass_start.checkpoint, (modal.offset_x, modal.offset_z, modal.offset_c)
     at = [value - offset for value, offset in zip(start, offsets, strict=False)]

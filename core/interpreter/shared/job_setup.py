@@ -1,4 +1,4 @@
-"""Input of the interpreter other than the program: offsets, limits, switches and inputs."""
+"""Input of the interpreter in addition to the program: offsets, limits, switches and inputs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class ToolOffset:
-    """Machine position at which the tool tip is at part zero, in mm with X as a radius."""
+    """The machine position at which the tool tip is at part zero, in mm with X as a radius."""
 
     x: float = 0.0
     z: float = 0.0
@@ -26,9 +26,8 @@ class ToolOffset:
 class MillTool:
     """A row of a mill's tool table.
 
-    L, R, R2 and their deltas are in mm, the point angle is in degrees and the tool life in minutes.
-
-    A point angle or tool life of 0 is not specified.
+    Lengths, radii and their deltas are in mm, the point angle is in degrees, and the tool life is in
+    minutes. A point angle or tool life of 0 is not specified.
     """
 
     length: float = 0.0
@@ -44,7 +43,7 @@ class MillTool:
 
 @dataclass(frozen=True, slots=True)
 class SecondaryOffset:
-    """Stored secondary offset (D) in mm, with X as a radius; ``r`` is the nose radius."""
+    """A stored secondary offset (D) in mm with X as a radius, including the nose radius."""
 
     x: float = 0.0
     z: float = 0.0
@@ -53,9 +52,9 @@ class SecondaryOffset:
 
 @dataclass(frozen=True, slots=True)
 class ZeroOffset:
-    """Settable zero offset (G54 to G59).
+    """A settable zero offset (G54 to G59).
 
-    The machine position of program zero, in mm and degrees, with X as a radius.
+    The offset is the machine position of program zero, in mm and degrees with X as a radius.
     """
 
     x: float = 0.0
@@ -65,7 +64,7 @@ class ZeroOffset:
 
 @dataclass(frozen=True, slots=True)
 class ControlLimits:
-    """Limits and abilities of the machine from the machine file."""
+    """Limits and capabilities of the machine, as specified in the machine file."""
 
     max_feed: float = 300 * 25.4 / 60  # mm/s
     max_rpm: float = 3500.0
@@ -106,10 +105,10 @@ def _no_inputs(_terminal: str) -> bool:
 class Setup:
     """Conditions of one pass through a program.
 
-    ``start`` is the machine position of all axes (x, z, c on a lathe) before the first block. ``metric`` and
-    ``last_rapid`` are from the previous job or from power-up. ``inputs`` returns the state of a terminal such
-    as ``"TB2-5"`` or of a PLC input such as ``"10"``. ``begin`` is present if a pass does not begin at the
-    first line.
+    ``start`` is the machine position of all axes (x, z, c on a lathe) before the first block. ``metric``
+    and ``last_rapid`` come from the previous job or from power-up. ``inputs`` returns the state of a
+    terminal such as ``"TB2-5"`` or of a PLC input such as ``"10"``. ``begin`` is set if a pass does not
+    start at the first line.
     """
 
     tools: Mapping[int, ToolOffset] = field(

@@ -1,4 +1,7 @@
-"""Functions other than straight moves that a program requires. A machine without them rejects the program."""
+"""Functions that a program requires in addition to straight moves.
+
+A machine that lacks one of these functions rejects the program.
+"""
 
 from __future__ import annotations
 
@@ -49,20 +52,22 @@ _WORDS = {
 
 
 class MachineRequirement(NamedTuple):
-    """A machine function that a program needs, and the first line that needs it."""
+    """A machine function that a program requires, and the first line that requires it."""
 
     function: str
     line: int
 
     @property
     def builder_m_code(self) -> int:
-        """Number of the M function that this machine does not have; 0 for other needs."""
+        """Return the number of the required M function that this machine lacks, or 0 for other
+        requirements.
+        """
         number = self.function.removeprefix(BUILDER_M_PREFIX)
         return int(number) if self.function != number and number.isdigit() else 0
 
     @property
     def description(self) -> str:
-        """Description of the need for the operator."""
+        """Return the description of the requirement for the operator."""
         if self.builder_m_code:
             return Message(
                 "{what}; {builders_m}",
@@ -73,7 +78,7 @@ class MachineRequirement(NamedTuple):
 
 
 def format_binding_lines(code: int) -> Message:
-    """Return the lines of a machine file that assign a function to a builder's M code."""
+    """Return the machine file lines that assign a function to a machine builder's M code."""
     return Message(
         'write {code} = {{ output = "NAME", on = true }} under [m_codes] in the machine '
         "file, where NAME is an output under [io.out], or {code2} = {{ ignored = true }} if "
@@ -86,7 +91,7 @@ def format_binding_lines(code: int) -> Message:
 def find_requirements(
     blocks: Iterable[Block], previous_block: Block | None = None
 ) -> Iterator[MachineRequirement]:
-    """Yield the needs of these blocks; ``before`` is the block that precedes the first one."""
+    """Yield the requirements of these blocks; ``previous_block`` precedes the first block."""
     for block in blocks:
         yield from (MachineRequirement(what, block.line) for what in _needs(block, previous_block))
         previous_block = block
@@ -95,7 +100,7 @@ def find_requirements(
 def remove_repeated_requirements(
     requirements: Iterable[MachineRequirement],
 ) -> tuple[MachineRequirement, ...]:
-    """Return each need once, with the first line that needs it."""
+    """Return each requirement once, with the first line that has it."""
     first: dict[str, MachineRequirement] = {}
     for need in requirements:
         first.setdefault(need.function, need)
@@ -126,7 +131,7 @@ def _needs(block: Block, before: Block | None) -> Iterator[str]:
 
 
 def _action_requirements(action: Action) -> Iterator[str]:
-    """Yield the inputs, outputs and spindle functions that an action needs."""
+    """Yield the inputs, outputs and spindle functions that an action requires."""
     match action:
         case SpindleLock():
             yield C_AXIS

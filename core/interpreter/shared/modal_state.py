@@ -12,10 +12,10 @@ if TYPE_CHECKING:
 
 
 class VirtualMill(NamedTuple):
-    """Frame of the virtual mill and the point reached in it, in mm.
+    """The frame of the virtual mill, and the present position in this frame, in mm.
 
-    Z is a radius on the side of the part. ``polar_angle_rad`` is the continuous polar angle of the point in
-    radians. ``is_newly_active`` is True until the first move or F; H is allowed only until then.
+    Z is a radius on the side of the part. ``polar_angle_rad`` is the continuous polar angle of the position
+    in radians. ``is_newly_active`` is True until the first move or F; H is allowed only until then.
     """
 
     frame: FacePlane | SidePlane
@@ -27,7 +27,7 @@ class VirtualMill(NamedTuple):
 
 
 class ModalState(NamedTuple):
-    """State between two blocks. Lengths are in mm with X as a radius, speeds in mm/s or rpm.
+    """The modal state between two blocks, with lengths in mm, X as a radius, and speeds in mm/s or rpm.
 
     ``_replace`` creates a new state. Blocks share one state until a word changes it, so that each block
     stores only a reference.
@@ -92,13 +92,14 @@ class ModalState(NamedTuple):
 
     @property
     def active_surface_speed(self) -> float | None:
-        """The active constant surface speed in mm/s; None under G97."""
+        """Return the active constant surface speed in mm/s, or None under G97."""
         return self.surface_speed if self.css else None
 
     def compute_surface_rpm(self, x: float, max_rpm: float) -> float:
-        """Return the signed speed in rpm at radius ``x`` (mm) under constant surface speed.
+        """Return the signed spindle speed in rpm at radius ``x`` (mm) under constant surface speed.
 
-        The result is within the programmed limits and ``max_rpm``, the speed limit of the spindle in rpm.
+        The speed is within the programmed limits and does not exceed ``max_rpm``, the limit of the spindle
+        in rpm.
         """
         if self.max_css_rpm is not None:
             max_rpm = min(max_rpm, self.max_css_rpm)
@@ -106,20 +107,20 @@ class ModalState(NamedTuple):
 
     @property
     def offset_x(self) -> float:
-        """Machine X minus program X, in mm as a radius."""
+        """Return machine X minus program X as a radius, in mm."""
         return self.drawing_zero_x + self.shift_x + self.preset_x + self.zero_x
 
     @property
     def offset_z(self) -> float:
-        """Machine Z minus program Z, in mm."""
+        """Return machine Z minus program Z in mm."""
         return self.drawing_zero_z + self.shift_z + self.preset_z + self.zero_z
 
     @property
     def drawing_zero_x(self) -> float:
-        """Machine X of the drawing's zero, in mm: the sum of tool offset and settable offset."""
+        """Return machine X of the drawing zero in mm, which is the sum of tool offset and settable offset."""
         return self.settable_x if self.edge == 0 else self.tool_x + self.settable_x
 
     @property
     def drawing_zero_z(self) -> float:
-        """Machine Z of the drawing's zero, in mm: the sum of tool offset and settable offset."""
+        """Return machine Z of the drawing zero in mm, which is the sum of tool offset and settable offset."""
         return self.settable_z if self.edge == 0 else self.tool_z + self.settable_z

@@ -1,4 +1,4 @@
-"""Conversion between the units of the program, millimeters and message texts."""
+"""Conversion between program units, millimeters and message texts."""
 
 from __future__ import annotations
 
@@ -11,12 +11,15 @@ METRIC_STEP_MM = 0.0001  # mm; the last decimal place of the metric display
 
 
 def get_mm_per_unit(*, is_metric: bool) -> float:
-    """Return the millimeters in one length unit of the program."""
+    """Return the number of millimeters in one length unit of the program."""
     return 1.0 if is_metric else MM_PER_INCH
 
 
 def format_length(mm: float, *, metric: bool) -> str:
-    """Return a length (mm) as text with its unit: five decimal places in inches, four in millimeters."""
+    """Return a length in mm as text with its unit.
+
+    The text has five decimal places in inches and four in millimeters.
+    """
     return (
         Message("{unit} mm", unit=f"{mm:.4f}") if metric else Message("{mm} in", mm=f"{mm / MM_PER_INCH:.5f}")
     )

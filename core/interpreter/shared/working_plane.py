@@ -1,4 +1,4 @@
-"""Working plane data of a mill's block."""
+"""Data of the working plane in a block of a mill."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ RotaryAngles = tuple[float | None, float | None, float | None]
 
 @dataclass(frozen=True, slots=True)
 class PlaneSystem:
-    """Coordinate system of a working plane with a tool, in mm and degrees.
+    """The coordinate system of a working plane with a tool, in mm and degrees.
 
-    Blocks share it until either changes.
-
-    ``place`` converts points of the system to machine X Y Z. ``frame`` (rows) and ``datum`` are its axes and
-    origin in the workpiece system. ``is_tilted`` is True if a PLANE block defined it, and
-    ``plane_block_line`` is the line of that block or 0. ``target_angles`` are Q120, Q121 and Q122.
-    ``blank_corners`` are corners of BLK FORM in the workpiece system.
+    Blocks share a plane system until the plane or the tool changes. ``transform`` converts points of the
+    system to machine X, Y and Z. ``frame`` (rows) and ``datum`` are the axes and the origin of the system
+    in the workpiece system. ``is_tilted`` is True if a PLANE block defined the system, and
+    ``plane_block_line`` is the line of this block or 0. ``target_angles`` are Q120, Q121 and Q122.
+    ``blank_corners`` are the corners of BLK FORM in the workpiece system.
     """
 
     transform: FrameTransform
@@ -38,11 +37,11 @@ class PlaneSystem:
 
     @property
     def is_workpiece_system(self) -> bool:
-        """Whether this is the workpiece system, without a tilted plane or a datum shift."""
+        """Return whether this is the workpiece system, which has no tilted plane and no datum shift."""
         return not self.is_tilted and self.datum == (0.0, 0.0, 0.0)
 
     def make_workpiece_system(self) -> PlaneSystem:
-        """Return the workpiece system with the same tool, which applies after a program is canceled."""
+        """Return the workpiece system with the same tool, which is active after a program was canceled."""
         place = self.kinematics.make_transform(
             self.kinematics.zero_angles, self.kinematics.workpiece_rotation, tool_length=self.tool_length_mm
         )
@@ -53,11 +52,11 @@ class PlaneSystem:
 
 @dataclass(frozen=True, slots=True)
 class PlanePosition:
-    """Position of one block in the system that is active at the end of the block.
+    """The position of one block in the system that is active at the end of the block.
 
-    ``start end`` are points of that system, and ``machine_position`` is machine X Y Z of the end, in mm.
-    ``rotary_angles`` are the displayed A B C (0 to 360 degrees on a modulo axis), with None for an axis that
-    the machine does not have.
+    ``start`` and ``end`` are points of that system. ``machine_position`` is machine X, Y and Z of the end,
+    in mm. ``rotary_angles`` are the displayed angles A, B and C (0 to 360 degrees on a modulo axis), with
+    None for each axis that the machine lacks.
     """
 
     start: Vector
@@ -67,7 +66,7 @@ class PlanePosition:
     system: PlaneSystem
 
     def convert_to_workpiece_system(self) -> PlanePosition:
-        """Return the same position in the workpiece system."""
+        """Return the same position converted to the workpiece system."""
         system = self.system.make_workpiece_system()
         end = system.transform.to_frame_point(self.machine_position)
         return replace(self, start=end, end=end, system=system)

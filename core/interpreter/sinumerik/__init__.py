@@ -1,1 +1,1 @@
-"""Interpreter of the SINUMERIK turning dialect, with C as the third axis."""
+"""Interpreter of the SINUMERIK turning dialect, in which C is the third axis."""

@@ -1,4 +1,4 @@
-"""State between two blocks of a SINUMERIK program: modal functions and positions."""
+"""State between two blocks of a SINUMERIK program, with modal functions and positions."""
 
 from __future__ import annotations
 
@@ -36,34 +36,34 @@ from core.message import Message
 
 
 class ActivePlane(Protocol):
-    """Plane of an active transformation; see ``transformed_plane``."""
+    """Protocol for the plane of an active transformation (see ``transformed_plane``)."""
 
     @property
     def name(self) -> str:
-        """Word that started the transformation."""
+        """Return the word that activated the transformation."""
         ...
 
     @property
     def has_z_depth(self) -> bool:
-        """Whether the depth is along Z, so that drilling cycles are allowed."""
+        """Return whether the depth is along Z, so that drilling cycles are allowed."""
         ...
 
     @property
     def plane_code(self) -> int:
-        """Plane of its arcs and compensation: 17 or 19, for G17 or G19."""
+        """Return the G code of the plane for arcs and compensation, which is 17 or 19."""
         ...
 
     @property
     def depth(self) -> float:
-        """Position of the tool perpendicular to the plane in the program frame, in mm."""
+        """Return the tool position perpendicular to the plane in the program frame, in mm."""
         ...
 
     def move_to_depth(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
-        """Return a move to a depth in the program frame, in mm; without a feed, it is a rapid."""
+        """Return a move to a depth in the program frame, in mm, which is a rapid if ``feed`` is None."""
         ...
 
     def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """Return a rapid to a point of the plane, in mm."""
+        """Return a rapid to a point of the plane in mm."""
         ...
 
 
@@ -72,7 +72,10 @@ IDENTITY_FRAME = ProgrammedFrame()
 
 
 class MotionKind(IntEnum):
-    """Kind of motion of the axis words: the number of the G code, or a value for CIP and CT."""
+    """Kind of motion that the axis words program.
+
+    The value is the number of the G code, or a separate number for CIP and CT.
+    """
 
     RAPID = 0
     LINE = 1
@@ -88,7 +91,7 @@ class MotionKind(IntEnum):
 
 
 def format_motion(motion: int) -> str:
-    """Return the word of a motion in a program, such as G1 or CIP."""
+    """Return a kind of motion as a program word, such as G1 or CIP."""
     return {MotionKind.ARC_BY_POINT: "CIP", MotionKind.TANGENTIAL_ARC: "CT"}.get(
         MotionKind(motion), f"G{int(motion)}"
     )
@@ -105,11 +108,11 @@ TAP_MOTIONS = frozenset({MotionKind.TAP, MotionKind.TAP_RETRACT})
 
 
 class State:
-    """Machine position in mm and degrees, with X as a radius and continuous C, and modal functions.
+    """The machine position and the modal functions of a pass.
 
-    ``modal`` is stored in the blocks. ``motion`` is the function of group 1, ``plane`` is the G code of the
-    plane, ``programmed_frame`` is the frame of TRANS, ROT, SCALE and MIRROR, and ``edge`` is the row of T
-    and D.
+    Positions are in mm and degrees, with X as a radius and continuous C. Blocks store ``modal``. ``motion``
+    is the active function of group 1, and ``plane`` is the G code of the plane. ``programmed_frame`` is the
+    frame of TRANS, ROT, SCALE and MIRROR. ``edge`` is the offset of the active T and D.
     """
 
     def __init__(self, setup: Setup, log: DiagnosticLog) -> None:
@@ -158,12 +161,14 @@ class State:
         )
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state; if it is equal to the present one, blocks continue to share that object."""
+        """Set the modal state unless it equals the present state, so that blocks continue to share one
+        object.
+        """
         if modal != self.modal:
             self.modal = modal
 
     def derive_offsets(self) -> None:
-        """Set the offsets in the modal state from the edge, the settable offset and the frame."""
+        """Set the offsets in the modal state from the edge, the settable offset and the programmed frame."""
         one, other, edge = self.settable, self.programmed_frame, self.edge
         self.set_modal(
             self.modal._replace(
@@ -173,15 +178,15 @@ class State:
         )  # fmt: skip
 
     def length(self, statement: Statement, word: Word) -> float:
-        """Return a length in mm: as written under G71, converted from inches under G70."""
+        """Return the length of a word in mm, which is converted from inches under G70."""
         return self.number(statement, word) * (1.0 if self.modal.metric else MM_PER_INCH)
 
     def third(self, statement: Statement, word: Word) -> float:
-        """Return the value of a word of the third axis: degrees, or mm for a linear axis."""
+        """Return the value of a word of the third axis in degrees, or in mm for a linear axis."""
         return self.length(statement, word) if self.modal.is_c_linear else self.number(statement, word)
 
     def number(self, statement: Statement, word: Word) -> float:
-        """Return the number or the formula value of a word. Raises ProgramError without a value."""
+        """Return the number of a word or the value of its formula. Raises ProgramError if it has no value."""
         if word.value is not None:
             return word.value
         assert word.formula is not None
@@ -190,7 +195,10 @@ class State:
         )
 
     def evaluate_formula(self, formula: Formula, make_error: ErrorFactory) -> float:
-        """Return the value of a formula. ``make_error`` creates the error from a code, a text and a hint."""
+        """Return the value of a formula.
+
+        ``make_error`` creates the error from a code, a text and a hint.
+        """
 
         def parameter(asked: Parameter) -> float:
             if asked.letters.startswith("$"):
@@ -224,13 +232,14 @@ class State:
         return compute_formula(formula, parameter, no_value)
 
     def _warn_unset(self, finding: Diagnostic) -> None:
-        """Warn once for each R parameter without a value, which is treated as 0."""
+        """Log a warning, once, for each R parameter without a value, which is treated as 0."""
         if finding.hint not in self.told:  # the hint identifies the parameter, independent of the line
             self.told.add(finding.hint)
             self.log.add(replace(finding, severity=Severity.WARNING))
 
     def compute_rpm_at(self, x: float) -> float:
-        """Return the commanded signed speed in rpm with the tip at radius ``x`` of the program.
+        """Return the commanded signed speed in rpm with the tip at radius ``x`` in the program frame, in
+        mm.
 
         The speed is 0 if the spindle is stopped.
         """
@@ -244,9 +253,10 @@ class State:
         return modal.spindle * max(min(modal.rpm, most), self.lowest if modal.rpm else 0.0)
 
     def position(self, axis: str) -> float | None:
-        """Return the position of an axis in the program frame: X by DIAMON, C from 0 to 360 if modulo.
+        """Return the position of an axis in the program frame, or None if it is not known.
 
-        Returns None if the position is not known: in TRANSMIT and TRACYL, under G70, and for other axes.
+        X is a diameter or a radius according to DIAMON. C is from 0 to less than 360 degrees if it is a
+        modulo axis. The position is unknown in TRANSMIT and TRACYL, under G70, and for other axes.
         """
         modal = self.modal
         if self.transformation is not None or not modal.metric:
@@ -259,17 +269,17 @@ class State:
 
     @property
     def rpm(self) -> float:
-        """Commanded signed spindle speed at the present position, in rpm."""
+        """Return the commanded signed spindle speed at the present position, in rpm."""
         return self.compute_rpm_at(self.x - self.modal.offset_x)
 
     @property
     def css(self) -> float | None:
-        """Active surface speed of the spindle in mm/s; None if the spindle is stopped or not under G96."""
+        """Return the active surface speed in mm/s, or None if the spindle is stopped or G96 is not active."""
         modal = self.modal
         return modal.surface_speed if modal.css and modal.spindle and modal.surface_speed else None
 
     def action(self, line: int, text: str, action: Action) -> Block:
-        """Return a block without motion."""
+        """Return a block that executes an action without motion."""
         self.is_after_program_stop = self.is_after_program_stop or isinstance(action, ProgramStop)
         modal = self.modal
         x, z, c = self.x - modal.offset_x, self.z - modal.offset_z, self.c - modal.offset_c
@@ -294,7 +304,7 @@ class State:
 
 
 def check_positive(statement: Statement, word: Word, value: float, description: str) -> float:
-    """Return a number that must be above 0. Raises ProgramError otherwise."""
+    """Return a number, or raise ProgramError if it is not above 0."""
     if value > 0.0:
         return value
     raise statement.make_error(

@@ -1,4 +1,4 @@
-"""Statements: the words of a block, sorted by function and checked for conflicts."""
+"""Statements, which contain the words of a block sorted by function and checked for conflicts."""
 
 from __future__ import annotations
 
@@ -24,10 +24,11 @@ _ENDS = frozenset({2, 17, 30})
 
 @dataclass(slots=True)
 class Statement:
-    """One block. ``g_words`` are its G functions by group, ``words`` other words by name, ``assignments``
-    the assignments.
+    """One block, with its words sorted by function.
 
-    ``named_functions`` are the functions with a name, by their name.
+    ``g_words`` contains the G functions by group, ``m_words`` the M functions by number, and ``words`` the
+    other words by name. ``assignments`` contains the assignments. ``named_functions`` contains the
+    functions without a G number by name.
     """
 
     line: LexedBlock
@@ -39,46 +40,47 @@ class Statement:
     live_tool_words: list[Word] = field(default_factory=list)  # words of spindle 2, the live tool
 
     def get_g_code(self, group: str) -> int | None:
-        """Return the G code of this group, or None if the block has none or has a named function."""
+        """Return the G code of this group, or None if the group has no word or a named function."""
         word = self.g_words.get(group)
         return None if word is None or word.value is None else int(word.value)
 
     def get_named_function(self, group: str) -> str:
-        """Return the named function of this group; empty without one."""
+        """Return the named function of this group, or an empty string without a named function."""
         word = self.g_words.get(group)
         return "" if word is None or word.value is not None else word.name
 
     @property
     def axis_names(self) -> list[str]:
-        """Names of the axes with a word in the block."""
+        """Return the names of the axes that have a word in the block."""
         return [name for name in known.AXIS_NAMES if name in self.words]
 
     @property
     def frame_word(self) -> Word | None:
-        """The word TRANS, ROT, SCALE or MIRROR of the block, or its A form; None without one."""
+        """Return the word TRANS, ROT, SCALE or MIRROR of the block, or its A form, or None."""
         return next((word for name, word in self.named_functions.items() if name in known.FRAME_WORDS), None)
 
     @property
     def has_position_word(self) -> bool:
-        """Whether the block has a position word."""
+        """Return whether the block contains a position word."""
         return bool(known.POSITION_WORDS & self.words.keys())
 
     @property
     def corner_word(self) -> Word | None:
-        """The word CHF, CHR or RND of the block, or None."""
+        """Return the word CHF, CHR or RND of the block, or None."""
         return next((self.words[name] for name in sorted(known.CORNER_WORDS) if name in self.words), None)
 
     @property
     def ends_program(self) -> bool:
-        """Whether the block has M2, M17 or M30."""
+        """Return whether the block contains M2, M17 or M30."""
         return bool(_ENDS & self.m_words.keys())
 
     def make_error(
         self, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> ProgramError:
-        """Return the error to raise at this word, with an alarm number of the control or a TurnDesk code.
+        """Return an error at this word.
 
-        ``values`` are the values for the placeholders of ``text`` and ``hint``.
+        ``code`` is an alarm number of the control or a TurnDesk code. ``values`` are the values for the
+        placeholders of ``text`` and ``hint``.
         """
         text, hint = fill_template(text, values), fill_template(hint, values)
         line, column = self.line, word.column if word else 1
@@ -88,12 +90,12 @@ class Statement:
     def check(
         self, condition: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_error(word, code, text, hint, **values)
 
     def make_warning(self, word: Word | None, code: str, text: str, hint: str) -> Diagnostic:
-        """Return the diagnostic of ``make_error`` as a warning."""
+        """Return the diagnostic of ``make_error`` with the severity changed to warning."""
         return replace(self.make_error(word, code, text, hint).diagnostic, severity=Severity.WARNING)
 
 
@@ -204,7 +206,7 @@ def _check_m(statement: Statement) -> None:
 
 
 def _check_separate_block(statement: Statement) -> None:
-    """Check that G4, TRANS and the other frame words are in a separate block."""
+    """Raise ProgramError unless G4, TRANS or another frame word is in a separate block."""
     dwell, key = statement.g_words.get(table.DWELL_GROUP), statement.frame_word
     if dwell is not None:
         others = (

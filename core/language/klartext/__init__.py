@@ -1,4 +1,4 @@
-"""Reader of the Klartext dialect: lines, words and syntax errors."""
+"""Parser of the Klartext dialect, with lines, words and syntax errors."""
 
 from core.language.klartext.klartext_line import parse_line
 

@@ -1,4 +1,7 @@
-"""Klartext lines in the notation of the control: signs, order of words and single blanks."""
+"""Conversion of Klartext lines to the notation of the control.
+
+The conversion normalizes signs, the order of words and blanks.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,9 @@ _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
 
 def format_block(line: nodes.KlartextLine) -> str:
-    """Return the block of a line without its number and comment; empty if the line has no block."""
+    """Return the block of a line without its number and comment, or an empty string if the line has no
+    block.
+    """
     return "" if line.node is None else _block(line.node) or line.code
 
 
@@ -112,7 +117,7 @@ def _value(value: nodes.Value, *, plus: bool = True) -> str:
 
 
 def format_name(name: int | str) -> str:
-    """Return the number of a label or tool, or its name in quotation marks."""
+    """Return the number of a label or tool as text, or its name in quotation marks."""
     return f'"{name}"' if isinstance(name, str) else str(name)
 
 

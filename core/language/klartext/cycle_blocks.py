@@ -1,7 +1,7 @@
-"""Readers of CYCL DEF, CYCL CALL, CONTOUR DEF and PATTERN DEF.
+"""Parsers of CYCL DEF, CYCL CALL, CONTOUR DEF and PATTERN DEF.
 
-Cycles from 200 on have Q parameters. Older cycles have numbered lines. Contours and machining points are the
-data that cycles use.
+Cycles numbered 200 or higher have Q parameters. Older cycles have numbered lines. Contours and machining
+points are data that cycles use.
 """
 
 from __future__ import annotations
@@ -44,9 +44,10 @@ _DATUM, _MIRROR, _ROTATION, _SCALE = 7, 8, 10, 11
 
 
 def read_cycle_definition(cursor: LineCursor, column: int) -> Node:
-    """Read the block after ``CYCL DEF``. Raises ProgramError for a syntax error.
+    """Read the block after ``CYCL DEF``.
 
-    Whether the control supports the cycle is checked when the cycle is called.
+    The support of the cycle is checked only when the cycle is called. Raises ProgramError for a syntax
+    error.
     """
     match = cursor.match(_NUMBER)
     if match is None:
@@ -81,7 +82,9 @@ _SELECTED = re.compile(r"#")
 
 
 def read_global_definition(cursor: LineCursor, column: int) -> GlobalDefinition:
-    """Read the block after ``GLOBAL DEF``: a group number without effect, and the parameters."""
+    """Read the block after ``GLOBAL DEF``, which consists of a group number without effect and the
+    parameters.
+    """
     match = cursor.match(_NUMBER)
     if match is None:
         raise cursor.make_expected_error("GLOBAL DEF needs a number")
@@ -101,7 +104,7 @@ def read_preset_selection(cursor: LineCursor, column: int) -> CycleDefinition:
 
 
 def _values(cursor: LineCursor, owner: str) -> tuple[CycleParameter, ...]:
-    """Read the Q parameters that follow the cycle name. The name itself has no effect."""
+    """Read the Q parameters that follow the cycle name, which has no effect."""
     if text := _TEXT_VALUE.search(cursor.uppercase_text, cursor.index):
         raise make_unsupported_error(
             cursor.line_number, text.start() + 1, Message("{total} with a string parameter (QS)", total=owner)
@@ -151,7 +154,7 @@ _SCL = re.compile(r"SCL(?![A-Z])")
 
 
 def _transform(cursor: LineCursor, number: int, column: int) -> CoordinateTransform:
-    """Read a line of the cycles 8, 10 and 11, such as ``8.1 X Y`` or ``10.1 ROT+35``."""
+    """Read a line of cycle 8, 10 or 11, such as ``8.1 X Y`` or ``10.1 ROT+35``."""
     if number == _MIRROR:
         return CoordinateTransform("MIRROR", axes=read_mirrored_axes(cursor), column=column)
     if number == _ROTATION:
@@ -160,7 +163,10 @@ def _transform(cursor: LineCursor, number: int, column: int) -> CoordinateTransf
 
 
 def read_mirrored_axes(cursor: LineCursor) -> str:
-    """Read the letters of mirrored axes to the end of the line. An empty result cancels mirroring."""
+    """Read the letters of the mirrored axes up to the end of the line.
+
+    An empty result cancels mirroring.
+    """
     axes = ""
     while match := cursor.match(_LETTERS):
         axes += match.group()
@@ -195,7 +201,9 @@ _TEXT = re.compile(r"[^\s+\-0-9]+|[+-](?!\s*[0-9.Q])")
 
 
 def _line(cursor: LineCursor, number: int, part: int, column: int) -> CycleLine:
-    """Read one line of a cycle below 200, in which the order of the numbers determines their meaning."""
+    """Read one line of a cycle numbered below 200, in which the order of the numbers determines their
+    meaning.
+    """
     words: list[AxisWord] = []
     text: list[str] = []
     speed: FeedWord | None = None
@@ -253,7 +261,7 @@ _QC = re.compile(r"QC\s*[0-9]")
 def read_contour_definition(cursor: LineCursor, column: int) -> ContourDefinition:
     """Read the block after ``CONTOUR DEF``, such as ``P1 = LBL 1 I2 = "ISLE.H"``.
 
-    Raises ProgramError for a syntax error and for contours with separate depths.
+    Raises ProgramError for a syntax error or for contours with separate depths.
     """
     parts: list[ContourPart] = []
     while not cursor.is_at_end:
@@ -276,7 +284,7 @@ def read_contour_definition(cursor: LineCursor, column: int) -> ContourDefinitio
 
 
 def _contour_source(cursor: LineCursor) -> ContourPart:
-    """Read the source of a contour: a subprogram label or a separate program."""
+    """Read the source of a contour, which is a subprogram label or a separate program."""
     if cursor.read_keyword("LBL"):
         return ContourPart(cursor.read_name("LBL", q_parameters.MAX_LABEL_NUMBER), None)
     if file := cursor.read_quoted_text():

@@ -1,6 +1,6 @@
 """Klartext errors, and the codes that are rejected by name with an alternative.
 
-``code`` is the message name of the original control if it is known.
+The code of an error is the message of the original control if this message is known.
 """
 
 from __future__ import annotations
@@ -46,13 +46,19 @@ DATUM_TABLE_MISSING = "Datum table missing"
 
 
 def make_klartext_error(line: int, column: int, code: str, message: str, hint: str = "") -> ProgramError:
-    """Return the error to raise. Its message starts with the code, which is the message of the control."""
+    """Return a ProgramError whose message starts with the code.
+
+    The code is the message of the original control.
+    """
     text = message if message.startswith(code) else Message("{code}: {message}", code=code, message=message)
     return make_program_error(line, column, code, text, hint)
 
 
 class MissingValueError(ProgramError):
-    """Read access to a parameter without a value. ``parameter`` is its kind (Q, QL or QR) and number."""
+    """Error for reading a parameter without a value.
+
+    ``parameter`` is the kind (Q, QL or QR) and the number of the parameter.
+    """
 
     def __init__(self, line: int, column: int, parameter: tuple[str, int]) -> None:
         name = f"{parameter[0]}{parameter[1]}"
@@ -68,7 +74,7 @@ class MissingValueError(ProgramError):
 
 
 def make_syntax_error(line: int, column: int, message: str, hint: str = "") -> ProgramError:
-    """Return the error for text that is missing or cannot be read."""
+    """Return the error for text that is missing or cannot be parsed."""
     return make_klartext_error(line, column, SYNTAX_ERROR, message, hint)
 
 
@@ -80,13 +86,13 @@ def make_unsupported_error(line: int, column: int, function: str, alternative: s
 
 
 class UnsupportedCodes(NamedTuple):
-    """Unsupported codes that are reported together, once per program, with their name and an alternative."""
+    """A group of unsupported codes that are reported once per program, with their name and an alternative."""
 
     name: str
     alternative: str
 
     def make_error(self, line: int, column: int) -> ProgramError:
-        """Return the error to raise for one of these codes."""
+        """Return the error for one of these codes."""
         return make_unsupported_error(line, column, self.name, self.alternative)
 
 

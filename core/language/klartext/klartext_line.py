@@ -1,4 +1,4 @@
-"""Reader of one Klartext line: number, skip character, block and comment."""
+"""Parser of one Klartext line, with its number, skip character, block and comment."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _WORD = re.compile(rf"(I?)([XYZABC])({_NUMBER})")
 
 
 def parse_plain_move(number: int, text: str) -> KlartextLine | None:
-    """Return the line if it contains only an L move with plain numbers; None for any other line."""
+    """Return the line if it contains only an L move with plain numbers, or None for any other line."""
     match = _MOVE.fullmatch(text)
     if match is None:
         return None
@@ -73,7 +73,9 @@ _FN = re.compile(r"FN\s*([0-9]+)\s*")
 
 
 def _any_of(names: Iterable[str], end: str) -> re.Pattern[str]:
-    """Return a pattern for the first of these names, with any blanks between its words, before ``end``."""
+    """Return a pattern for the first of these names that precedes ``end``, with any blanks between its
+    words.
+    """
     return re.compile("|".join(r"\s+".join(name.split()) + end for name in names))
 
 
@@ -97,7 +99,10 @@ _UNSUPPORTED_STARTS = _any_of(_UNSUPPORTED_FUNCTIONS, r"(?![A-Z])")
 
 
 def parse_line(number: int, text: str) -> KlartextLine:
-    """Read line ``number``. This function never raises an exception; the returned line contains any error."""
+    """Parse line ``number``, and return it with its syntax error if any.
+
+    The function does not raise exceptions.
+    """
     if (plain := parse_plain_move(number, text)) is not None:
         return plain
     if len(text) > MAX_LINE_LENGTH:
@@ -203,7 +208,7 @@ def _by_letter(cursor: LineCursor) -> Node:
 
 
 def _make_start_error(cursor: LineCursor) -> ProgramError:
-    """Return the error for a text that cannot begin a block, with the function's name if it is known."""
+    """Return the error for a text that cannot start a block, with the name of the function if it is known."""
     column = cursor.column
     if match := _UNSUPPORTED_STARTS.match(cursor.uppercase_text, cursor.index):
         name = " ".join(match.group().split())

@@ -1,4 +1,4 @@
-"""Parsed Klartext blocks. Numbers are as written, in the program's unit; F is as programmed."""
+"""Parsed Klartext blocks, with numbers as written in the program's unit and F as programmed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from core.language.formulas import Formula, Number, Operation, Parameter
 
 
 class Value(NamedTuple):
-    """A number, or a reference to a parameter Q, QL or QR. ``column`` is its position, from 1."""
+    """A number, or a reference to a parameter Q, QL or QR, with its column from 1."""
 
     number: float
     parameter_number: int | None = None
@@ -20,7 +20,7 @@ class Value(NamedTuple):
 
     @property
     def formula(self) -> Formula:
-        """The value as a formula."""
+        """Return the value as a formula."""
         if self.parameter_number is None:
             return Number(self.number)
         made = Parameter(self.parameter_kind, self.parameter_number, self.column)
@@ -49,14 +49,17 @@ class FeedWord(NamedTuple):
 
 
 class RetractWord(NamedTuple):
-    """A retract distance ``MB50``, or ``MB MAX`` with the distance None."""
+    """A retract distance such as ``MB50``; the distance is None for ``MB MAX``."""
 
     distance: Value | None = None
     column: int = 0
 
 
 class MFunction(NamedTuple):
-    """An M function such as ``M3``. M128 can have a feed, M103 a factor, and M140 a retract and a feed."""
+    """An M function such as ``M3``.
+
+    M128 can have a feed, M103 can have a factor, and M140 can have a retract and a feed.
+    """
 
     number: int
     column: int = 0
@@ -84,7 +87,8 @@ class EndBlock:
 class BlankCorner:
     """One corner of a rectangular blank.
 
-    ``BLK FORM 0.1 Z X Y Z`` is the minimum corner with the tool axis. ``BLK FORM 0.2`` is the maximum corner.
+    ``BLK FORM 0.1 Z X Y Z`` defines the tool axis and the minimum corner. ``BLK FORM 0.2`` defines the
+    maximum corner.
     """
 
     part_number: int
@@ -94,8 +98,9 @@ class BlankCorner:
 
 @dataclass(frozen=True, slots=True)
 class CylinderBlank:
-    """The block ``BLK FORM CYLINDER Z R50 L100 DIST+5``; ``height_above_datum`` is its height above the
-    datum.
+    """The block ``BLK FORM CYLINDER Z R50 L100 DIST+5``.
+
+    ``height_above_datum`` is the height of the cylinder above the datum (DIST).
     """
 
     tool_axis: str
@@ -106,7 +111,7 @@ class CylinderBlank:
 
 @dataclass(frozen=True, slots=True)
 class ToolCall:
-    """The block ``TOOL CALL 1 Z S3000 F500 DL+0.1``; without a tool, only speed or feed changes."""
+    """The block ``TOOL CALL 1 Z S3000 F500 DL+0.1``, which changes only speed or feed if it has no tool."""
 
     tool: int | str | Value | None = None  # a Value if the number is in a Q parameter
     tool_axis: str = ""
@@ -123,7 +128,7 @@ class ToolCall:
 class PathFunction:
     """A path function such as ``L X+10 IY-5 R0 F200 M3`` or ``APPR CT X+0 Y+0 CCA90 R+5 RL``.
 
-    ``words`` are the other words by name: PR and PA (polar radius and angle), R, CCA and LEN.
+    ``words`` contains the other words PR and PA (polar radius and angle), R, CCA and LEN.
     """
 
     axes: tuple[AxisWord, ...] = ()
@@ -142,7 +147,7 @@ class PathFunction:
 
 @dataclass(frozen=True, slots=True)
 class Pole:
-    """The block ``CC X+50 Y+50``; without axes, the pole is the current position."""
+    """The block ``CC X+50 Y+50``; without axis words, the pole is the current position."""
 
     axes: tuple[AxisWord, ...] = ()
     column: int = 1
@@ -150,7 +155,10 @@ class Pole:
 
 @dataclass(frozen=True, slots=True)
 class CornerBlock:
-    """The block ``RND R5 F100`` or ``CHF 2``: a corner between the previous and the next path element."""
+    """The block ``RND R5 F100`` or ``CHF 2``.
+
+    The block defines a corner between the previous and the next path element.
+    """
 
     kind: str  # RND or CHF
     size: Value
@@ -167,7 +175,7 @@ class MFunctionBlock:
 
 @dataclass(frozen=True, slots=True)
 class DatumShift:
-    """The block ``TRANS DATUM AXIS …``, ``TRANS DATUM RESET`` (no axes), or a block of cycle 7."""
+    """The block ``TRANS DATUM AXIS …`` or ``TRANS DATUM RESET`` (without axes), or a block of cycle 7."""
 
     axes: tuple[AxisWord, ...] = ()
     is_reset: bool = False
@@ -180,7 +188,10 @@ class DatumShift:
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A label such as ``LBL 1`` or ``LBL "NAME"``; ``LBL 0`` ends a subprogram."""
+    """A label such as ``LBL 1`` or ``LBL "NAME"``.
+
+    ``LBL 0`` ends a subprogram.
+    """
 
     name: int | str
     column: int = 0
@@ -188,7 +199,7 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class LabelCall:
-    """The block ``CALL LBL 1``; with ``REP n``, it repeats the section that follows the label."""
+    """The block ``CALL LBL 1``, which repeats the section after the label if it has ``REP n``."""
 
     name: int | str
     repeat_count: Value | None = None
@@ -207,7 +218,7 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class ConditionalJump:
-    """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``; ``condition`` is the complete comparison."""
+    """A jump such as ``FN 9: IF +Q1 EQU +5 GOTO LBL 3``, whose ``condition`` is the complete comparison."""
 
     condition: Formula
     name: int | str
@@ -242,7 +253,7 @@ class SystemWrite:
 
 @dataclass(frozen=True, slots=True)
 class ErrorMessage:
-    """The block ``FN 14: ERROR = 1000``, in which the program itself raises an error and stops."""
+    """The block ``FN 14: ERROR = 1000``, with which the program raises an error and stops."""
 
     error_number: int
     column: int = 0
@@ -250,14 +261,14 @@ class ErrorMessage:
 
 @dataclass(frozen=True, slots=True)
 class IgnoredBlock:
-    """A block that has no effect here, such as ``FN 16: F-PRINT``; ``function_name`` is its name."""
+    """A block without effect on this control, such as ``FN 16: F-PRINT``, with the name of its function."""
 
     function_name: str
     column: int = 0
 
 
 class CycleParameter(NamedTuple):
-    """A cycle parameter such as ``Q200=+2``. In a cycle_number below 200, ``q`` is 0."""
+    """A cycle parameter such as ``Q200=+2``. In a cycle numbered below 200, ``parameter_number`` is 0."""
 
     parameter_number: int
     formula: Formula
@@ -266,7 +277,7 @@ class CycleParameter(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CycleDefinition:
-    """The definition of a cycle from 200 on with its parameters: ``CYCL DEF 200 DRILLING Q200=+2 …``."""
+    """The definition of a cycle numbered 200 or higher, such as ``CYCL DEF 200 DRILLING Q200=+2 …``."""
 
     cycle_number: int
     values: tuple[CycleParameter, ...] = ()
@@ -277,7 +288,7 @@ class CycleDefinition:
 class GlobalDefinition:
     """The block ``GLOBAL DEF 100 GENERAL Q200=+2 …``.
 
-    It sets the values for ``Q200=PREDEF`` in later cycles.
+    The block sets the values for ``Q200=PREDEF`` in later cycles.
     """
 
     values: tuple[CycleParameter, ...]
@@ -286,9 +297,10 @@ class GlobalDefinition:
 
 @dataclass(frozen=True, slots=True)
 class CycleLine:
-    """One line of a cycle below 200, such as ``CYCL DEF 1.2 DEPTH-15``.
+    """One line of a cycle numbered below 200, such as ``CYCL DEF 1.2 DEPTH-15``.
 
-    ``part`` is the number after the point. The words and numbers are in their order.
+    ``line_number`` is the number after the decimal point. The words and numbers are in the order of the
+    line.
     """
 
     cycle_number: int
@@ -321,16 +333,17 @@ class PatternPart(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PatternDefinition:
-    """The block ``PATTERN DEF`` with its parts, which are the points of CYCL CALL PAT."""
+    """The block ``PATTERN DEF``, whose parts define the points for CYCL CALL PAT."""
 
     parts: tuple[PatternPart, ...]
     column: int = 0
 
 
 class ContourPart(NamedTuple):
-    """The subprogram of one contour. ``is_pocket`` is False for an island.
+    """The subprogram or program of one contour.
 
-    With cycle 14, ``is_pocket`` is None, because RL or RR determines whether the contour is a pocket.
+    ``is_pocket`` is False for an island. With cycle 14, it is None, because RL or RR determines whether the
+    contour is a pocket.
     """
 
     label_name: int | str
@@ -342,7 +355,7 @@ class ContourPart(NamedTuple):
 class ContourDefinition:
     """The block ``CONTOUR DEF P1 = LBL 1 I2 = LBL 2``.
 
-    It is like cycle 14, but specifies which contours are pockets and which are islands.
+    The block is like cycle 14, but also specifies which contours are pockets and which are islands.
     """
 
     parts: tuple[ContourPart, ...]
@@ -351,7 +364,10 @@ class ContourDefinition:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A block such as ``SEL TABLE "N.D"`` or ``SEL PGM "A.H"``; ``kind`` is the word that follows SEL."""
+    """A block such as ``SEL TABLE "N.D"`` or ``SEL PGM "A.H"``.
+
+    ``selected_kind`` is the word that follows SEL.
+    """
 
     selected_kind: str
     name: str
@@ -360,7 +376,7 @@ class Selection:
 
 @dataclass(frozen=True, slots=True)
 class ProgramCall:
-    """The block ``CALL PGM name``; without a name, it calls the program of SEL PGM."""
+    """The block ``CALL PGM name``, which calls the program of SEL PGM if it has no name."""
 
     name: str
     column: int = 0
@@ -368,7 +384,10 @@ class ProgramCall:
 
 @dataclass(frozen=True, slots=True)
 class ToolDefinition:
-    """The block ``TOOL DEF 5 L+10 R+5`` in the program's unit; without L and R, it only prepares the tool."""
+    """The block ``TOOL DEF 5 L+10 R+5`` in the program's unit.
+
+    Without L and R, the block only prepares the tool.
+    """
 
     tool: int | str
     length: Value | None = None
@@ -378,9 +397,10 @@ class ToolDefinition:
 
 @dataclass(frozen=True, slots=True)
 class CoordinateTransform:
-    """A transformation with TRANS MIRROR, TRANS ROTATION, TRANS SCALE or one of the cycles 8, 10 and 11.
+    """A transformation with TRANS MIRROR, TRANS ROTATION, TRANS SCALE, or cycle 8, 10 or 11.
 
-    ``value`` is the angle or the factor. Without a value and without ``axes``, the transformation is reset.
+    ``value`` is the angle or the factor. If ``value`` is None and ``axes`` is empty, the transformation is
+    reset.
     """
 
     kind: str  # MIRROR, ROTATION or SCALE
@@ -414,7 +434,9 @@ class HeadingLine:
 
 @dataclass(frozen=True, slots=True)
 class RotaryPositioning:
-    """How a PLANE block positions the rotary axes, and which of the two solutions it selects."""
+    """The positioning mode of the rotary axes in a PLANE block, and the selection of one of the two
+    solutions.
+    """
 
     mode: str = ""  # MOVE, TURN or STAY
     distance: Value | None = None  # DIST
@@ -476,7 +498,7 @@ Node = (
 class KlartextLine(NamedTuple):
     """One line of a Klartext program.
 
-    ``node`` is None if the line has nothing to execute, or if ``error`` reports a syntax error.
+    ``node`` is None if the line has nothing to execute or if ``error`` contains a syntax error.
     """
 
     number: int

@@ -1,4 +1,4 @@
-"""Cursor of a Klartext line, and readers of the words at the cursor.
+"""Cursor in a Klartext line, and parsers of the words at the cursor.
 
 Case is ignored. Columns count from 1.
 """
@@ -40,14 +40,15 @@ _MAX_Q_NUMBER = 1999
 def _keyword(words: str) -> re.Pattern[str]:
     """Return a pattern for a keyword such as ``TRANS DATUM``.
 
-    Any blanks may separate its words, and no letter may follow the last word.
+    Any number of blanks may separate its words, and no letter may follow the last word.
     """
     return re.compile(r"\s+".join(map(re.escape, words.split())) + r"(?![A-Z])")
 
 
 class LineCursor(LineReader):
-    """Reader of one line from left to right; ``uppercase_text`` is the line in capitals, with the same
-    length.
+    """Cursor that reads one line from left to right.
+
+    ``uppercase_text`` is the line in capitals, with the same length.
     """
 
     def __init__(self, line: int, text: str, index: int = 0) -> None:
@@ -58,24 +59,24 @@ class LineCursor(LineReader):
 
     @property
     def column(self) -> int:
-        """Column of the next character."""
+        """Return the column of the next character."""
         return self.index + 1
 
     @property
     def is_at_end(self) -> bool:
-        """Whether the end of the line is reached."""
+        """Return whether the cursor is at the end of the line."""
         return self.index >= len(self.uppercase_text)
 
     @property
     def next_word(self) -> str:
-        """The text from here to the next blank, as written."""
+        """Return the text from the cursor to the next blank, as written."""
         match = _WORD.match(self.text, self.index)
         return match.group() if match else ""
 
     def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         """Return the match of the pattern at the cursor, or None without a match.
 
-        After a match, the cursor is past the match and the blanks after it.
+        The cursor then moves past the match and the following blanks.
         """
         match = pattern.match(self.uppercase_text, self.index)
         if match is not None:
@@ -83,7 +84,7 @@ class LineCursor(LineReader):
         return match
 
     def read_keyword(self, *choices: str) -> str | None:
-        """Read the first of these keywords that is at the cursor; return None without a match."""
+        """Read the first of these keywords that is at the cursor, or return None without a match."""
         for words in choices:
             if self.match(_keyword(words)):
                 return words
@@ -96,9 +97,9 @@ class LineCursor(LineReader):
         return text
 
     def read_value(self, description: str) -> Value:
-        """Read a signed number or a Q parameter. Raises ProgramError if it is missing.
+        """Read a signed number or a Q parameter.
 
-        The message names ``description``.
+        Raises ProgramError with ``description`` in the message if the value is missing.
         """
         column, match = self.column, self.match(_VALUE)
         if match is None:
@@ -113,9 +114,9 @@ class LineCursor(LineReader):
         return Value(_number(sign, number), column=column)
 
     def read_number(self, description: str) -> Value:
-        """Read a number, but not a Q parameter. Raises ProgramError if it is missing.
+        """Read a number, but not a Q parameter.
 
-        The message names ``description``.
+        Raises ProgramError with ``description`` in the message if the number is missing.
         """
         column, match = self.column, self.match(_PLAIN)
         if match is None:
@@ -125,8 +126,9 @@ class LineCursor(LineReader):
         return Value(_number(*match.groups()), column=column)
 
     def read_whole_number(self, description: str, maximum: int) -> int:
-        """Read an unsigned whole number up to ``maximum``. Raises ProgramError if it is missing or too
-        large.
+        """Read an unsigned whole number up to ``maximum``.
+
+        Raises ProgramError if the number is missing or too large.
         """
         column, match = self.column, self.match(_WHOLE)
         if match is None:
@@ -140,7 +142,10 @@ class LineCursor(LineReader):
         return int(digits)
 
     def read_name(self, description: str, maximum: int) -> int | str:
-        """Read a number or a name in quotation marks. Raises ProgramError if it is missing or invalid."""
+        """Read a number, or a name in quotation marks.
+
+        Raises ProgramError if the name or number is missing or invalid.
+        """
         self._check_no_text_parameter()
         start = self.index
         match = self.match(_QUOTED)
@@ -157,9 +162,9 @@ class LineCursor(LineReader):
         return name
 
     def read_file_name(self) -> str:
-        """Read the rest of the line as a file name, without quotation marks.
+        """Read the rest of the line as a file name, and return it without quotation marks.
 
-        The result is empty if nothing remains.
+        The result is empty if no text remains.
         """
         self._check_no_text_parameter()
         return self.read_rest().strip('"')
@@ -170,13 +175,13 @@ class LineCursor(LineReader):
             raise STRING_FUNCTIONS.make_error(self.line_number, self.column)
 
     def read_quoted_text(self) -> str | None:
-        """Read a text in quotation marks; return None if the cursor is not at a quotation mark."""
+        """Read a text in quotation marks, or return None if the cursor is not at a quotation mark."""
         start = self.index
         match = self.match(_QUOTED)
         return None if match is None else self.text[start + 1 : start + len(match.group(1)) + 1]
 
     def make_expected_error(self, message: str, hint: str = "") -> ProgramError:
-        """Return a syntax error at the cursor, with the text found there."""
+        """Return a syntax error at the cursor that also shows the text at the cursor."""
         here = (
             Message("; found '{next_word}'", next_word=self.next_word)
             if not self.is_at_end
@@ -190,12 +195,14 @@ class LineCursor(LineReader):
         )
 
     def check_at_end(self, message: str, hint: str = "") -> None:
-        """Raise ProgramError with this message if anything follows."""
+        """Raise ProgramError with this message if the line continues after the cursor."""
         if not self.is_at_end:
             raise self.make_expected_error(message, hint)
 
     def choose_hint(self, hint: str) -> str:
-        """Return the hint, or a better hint if the cursor is at plain text or at a typographic character."""
+        """Return a specific hint if plain text or a typographic character is at the cursor, or ``hint``
+        otherwise.
+        """
         word = "" if self.is_at_end else self.next_word
         instead = next(filter(None, map(describe_typographic_character, word)), None)
         if instead is not None:
@@ -237,7 +244,7 @@ _RETRACT = re.compile(r"MB(?![A-Z])|MB(?=MAX)")
 def read_feed(cursor: LineCursor) -> FeedWord | None:
     """Read a feed such as ``F200``, ``FQ5``, ``FU0.1``, ``FMAX`` or ``F AUTO``.
 
-    Returns None without F. Raises ProgramError for a feed that is invalid or not supported.
+    Returns None without F. Raises ProgramError for an invalid or unsupported feed.
     """
     column = cursor.column
     fixed = cursor.match(_FEED)
@@ -255,7 +262,7 @@ def read_feed(cursor: LineCursor) -> FeedWord | None:
 
 
 def read_retract(cursor: LineCursor) -> RetractWord | None:
-    """Read ``MB50``, ``MB 50`` or ``MB MAX``; return None without MB."""
+    """Read ``MB50``, ``MB 50`` or ``MB MAX``, or return None without MB."""
     column = cursor.column
     if cursor.match(_RETRACT) is None:
         return None
@@ -284,9 +291,9 @@ def read_axis_words(cursor: LineCursor, letters: str, *, incremental: bool = Tru
 
 
 def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str, AxisWord]:
-    """Read all words at the cursor, and return them by name, which is the group of the pattern.
+    """Read all words at the cursor, and return them by name.
 
-    Raises ProgramError if a word is repeated.
+    The name is the group of the pattern. Raises ProgramError if a word is repeated.
     """
     found: dict[str, AxisWord] = {}
     while True:
@@ -299,7 +306,7 @@ def read_words_by_name(cursor: LineCursor, pattern: re.Pattern[str]) -> dict[str
 
 
 def check_not_repeated(cursor: LineCursor, column: int, previous_words: object, description: str) -> None:
-    """Raise ProgramError if the block already has the word."""
+    """Raise ProgramError if the block already contains the word."""
     if previous_words:
         raise make_repeated_error(cursor, column, description)
 

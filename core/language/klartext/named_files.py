@@ -1,7 +1,7 @@
-"""Files that a Klartext program names: other programs, datum tables (.D) and point tables (.PNT).
+"""Files that a Klartext program names, such as other programs, datum tables (.D) and point tables (.PNT).
 
-A table has ``BEGIN NAME.D MM``, a line with the column names, one line per row, and ``[END]``. A cell extends
-from the start of its column's name to the start of the next name. An empty cell has no value.
+A table consists of ``BEGIN NAME.D MM``, a line with the column names, one line per row, and ``[END]``. A
+cell extends from the start of its column name to the start of the next name. An empty cell has no value.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ TableRow = dict[str, float]
 
 
 def is_table(name: str) -> bool:
-    """Return whether the file name is that of a table."""
+    """Return whether a file name is the name of a table."""
     return name.upper().endswith(TABLE_EXTENSIONS)
 
 
 def read_table_rows(source: ProgramSource) -> dict[int, TableRow]:
     """Return the rows by number in file order, with values by column name and lengths in mm.
 
-    Rows that FADE hides are left out. The result is empty if the file has no column names.
+    Rows that FADE hides are omitted. The result is empty if the file has no column names.
     """
     lines = source.lines
     head = next((at for at, text in enumerate(lines) if text.strip().upper().startswith("NR")), None)
@@ -48,9 +48,9 @@ def read_table_rows(source: ProgramSource) -> dict[int, TableRow]:
 
 
 def _cells(text: str, columns: Sequence[tuple[str, int]]) -> dict[str, str]:
-    """Return the cells of a row that have a value.
+    """Return the cells of a row that contain a value.
 
-    A row number may start to the left of its column's name.
+    A row number may start to the left of the name of its column.
     """
     if len(split := text.split()) == len(columns):
         return {name: cell for (name, _), cell in zip(columns, split, strict=True)}
@@ -94,7 +94,7 @@ def find_called_programs(source: ProgramSource) -> Iterator[str]:
 
 
 def normalize_file_name(written_name: str) -> str:
-    r"""Return the file name in capitals: ``TNC:\PARTS\HOLE`` is HOLE.H."""
+    """Return the file name in capitals without its folder, with the extension .H if it has no extension."""
     name = (
         written_name.strip()
         .strip('"')

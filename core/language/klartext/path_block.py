@@ -1,4 +1,4 @@
-"""Readers of the path functions L, C, CR, CT, LP, CP, CTP, CC, RND, CHF, APPR and DEP, and of M functions."""
+"""Parsers of the path functions L, C, CR, CT, LP, CP, CTP, CC, RND, CHF, APPR and DEP, and of M functions."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ ROTATION_PATTERN = re.compile(r"DR\s*([+-])(?![0-9Q])")
 
 
 class _Form(NamedTuple):
-    """Words of a path function other than axes, compensation, feed and M functions.
+    """The words of a path function in addition to axes, compensation, feed and M functions.
 
-    The words ``required_words`` are required.
+    ``required_words`` are the words that must not be missing.
     """
 
     allowed_words: tuple[str, ...] = ()
@@ -118,7 +118,10 @@ def read_path_function(cursor: LineCursor, form: str, column: int) -> PathFuncti
 
 
 def read_paraxial_move(cursor: LineCursor, column: int) -> PathFunction:
-    """Read a block with one axis and without L, such as ``Z+100 R0 FMAX M3``. Raises ProgramError."""
+    """Read a block with one axis and without L, such as ``Z+100 R0 FMAX M3``.
+
+    Raises ProgramError for a syntax error.
+    """
     made = read_path_function(cursor, "L", column)
     if len(made.axes) > 1:
         text = "A block without L can move only one axis."
@@ -183,12 +186,12 @@ def read_corner(cursor: LineCursor, form: str, column: int) -> CornerBlock:
 
 
 def read_m_function_block(cursor: LineCursor) -> MFunctionBlock:
-    """Read a block of M functions."""
+    """Read a block that contains only M functions."""
     return MFunctionBlock(read_remaining_m_functions(cursor))
 
 
 def read_remaining_m_functions(cursor: LineCursor) -> tuple[MFunction, ...]:
-    """Read M functions to the end of the line. Raises ProgramError for any other word."""
+    """Read M functions up to the end of the line. Raises ProgramError for any other word."""
     codes: list[MFunction] = []
     while not cursor.is_at_end:
         code = read_m_function(cursor)
@@ -207,7 +210,7 @@ _WITH_WORDS = {
 
 
 def read_m_function(cursor: LineCursor) -> MFunction | None:
-    """Read one M function; return None if the cursor is not at an M function."""
+    """Read one M function, or return None if the cursor is not at an M function."""
     column = cursor.column
     if cursor.match(_M) is None:
         return None
@@ -227,7 +230,10 @@ def read_m_function(cursor: LineCursor) -> MFunction | None:
 
 
 def _factor(cursor: LineCursor) -> FeedWord | None:
-    """Read the factor of M103, in percent and written as F; without it, M103 is canceled."""
+    """Read the factor of M103, which is in percent and written as F.
+
+    Without a factor, M103 is canceled.
+    """
     found = read_feed(cursor)
     if found is not None and (found.kind != "value" or found.base):
         text = "M103 accepts its factor only as F with a number."

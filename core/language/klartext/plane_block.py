@@ -1,4 +1,4 @@
-"""Reader of PLANE blocks: the definition of the plane and the positioning of the rotary axes."""
+"""Parser of PLANE blocks, which define the plane and the positioning of the rotary axes."""
 
 from __future__ import annotations
 
@@ -107,7 +107,7 @@ def _positioning(cursor: LineCursor, form: str) -> RotaryPositioning:
 
 
 def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) -> RotaryPositioning:
-    """Read the next word after the kind of positioning."""
+    """Return the positioning with the next word at the cursor added."""
     column = cursor.column
     if form != "RESET" and (side := cursor.match(_SIDE)):
         check_not_repeated(cursor, column, positioning.solution, "SYM or SEQ")

@@ -1,4 +1,4 @@
-"""Readers of Q parameter blocks: formulas, and the functions FN 0 to FN 38."""
+"""Parsers of Q parameter blocks, with formulas and the functions FN 0 to FN 38."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ MAX_LABEL_NUMBER = 65535
 
 
 def read_full_formula(cursor: LineCursor, description: str) -> Formula:
-    """Read the complete formula for ``description``. Raises ProgramError if it is invalid."""
+    """Read a complete formula. Raises ProgramError with ``description`` in the message if it is invalid."""
     reader = FormulaReader(KLARTEXT_GRAMMAR, cursor.uppercase_text, cursor.index)
     try:
         made = reader.read_formula()
@@ -120,7 +120,7 @@ def read_full_formula(cursor: LineCursor, description: str) -> Formula:
 
 
 def read_assignment(cursor: LineCursor) -> Assignment:
-    """Read ``Q5 = …`` to the end of the line. Raises ProgramError for string functions."""
+    """Read ``Q5 = …`` up to the end of the line. Raises ProgramError for string functions."""
     column, (kind, number) = cursor.column, _target(cursor)
     if _TEXT_FUNCTIONS.match(cursor.uppercase_text, cursor.index):
         raise STRING_FUNCTIONS.make_error(cursor.line_number, cursor.column)
@@ -198,7 +198,7 @@ def _arithmetic(cursor: LineCursor, number: int, column: int) -> Assignment:
 
 
 def _operand(cursor: LineCursor, q: int) -> Formula:
-    """Read a number or a parameter with its sign. FN does not accept formulas."""
+    """Read a number or a parameter with its sign, because FN functions do not accept formulas."""
     value = cursor.read_value(f"Q{q}")
     return value.formula
 
@@ -232,7 +232,7 @@ def _jump(cursor: LineCursor, number: int, column: int) -> ConditionalJump:
 
 
 def _read_jump(cursor: LineCursor, condition: Formula) -> ConditionalJump:
-    """Read the label after GOTO. Raises ProgramError if it is missing."""
+    """Read the label after GOTO. Raises ProgramError if the label is missing."""
     if not cursor.read_keyword("GOTO LBL"):
         raise cursor.make_expected_error("A jump needs GOTO LBL")
     at = cursor.column

@@ -1,4 +1,4 @@
-"""Readers of program start and end, blank form, tool, datum, label and call blocks."""
+"""Parsers of program start and end, blank form, tool, datum, label and call blocks."""
 
 from __future__ import annotations
 
@@ -65,7 +65,10 @@ def read_end(cursor: LineCursor) -> EndBlock:
 
 
 def _name_and_unit(cursor: LineCursor, what: str) -> tuple[str, bool]:
-    """Read the optional name and whether the unit is INCH; END PGM without a unit means MM."""
+    """Read the optional program name and the unit, and return whether the unit is INCH.
+
+    END PGM without a unit means MM.
+    """
     match = _PROGRAM.match(cursor.text[cursor.index :].upper())
     if match is None and what == "END PGM":
         return cursor.read_rest(), False
@@ -87,7 +90,7 @@ _ROUND_WORD = re.compile(r"(RI|DI|R|D|L|DIST)(?=\s*[+\-0-9.,Q])")
 def _round_blank(cursor: LineCursor) -> CylinderBlank:
     """Read the words after ``BLK FORM CYLINDER``.
 
-    The words are the axis, the radius or diameter, the length and the height above the datum.
+    The words are the tool axis, the radius or diameter, the length, and the height above the datum.
     """
     axis = cursor.match(_AXIS)
     words = {name: word.value for name, word in read_words_by_name(cursor, _ROUND_WORD).items()}
@@ -99,9 +102,9 @@ def _round_blank(cursor: LineCursor) -> CylinderBlank:
 
 
 def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | IgnoredBlock:
-    """Read the block after ``BLK FORM``: a corner of a block, or a cylinder.
+    """Read the block after ``BLK FORM``, which defines a corner of a block or a cylinder.
 
-    A blank that is defined by a contour or a file is read but not drawn.
+    A blank that is defined by a contour or a file is accepted but not drawn.
     """
     column = cursor.column
     if cursor.read_keyword("CYLINDER"):
@@ -138,7 +141,7 @@ def _demand_all(cursor: LineCursor, corner: tuple[AxisWord, ...]) -> None:
 
 
 def read_tool_call(cursor: LineCursor) -> ToolCall:
-    """Read the words after ``TOOL CALL``: tool, axis, S, F (FU, FZ), DL and DR."""
+    """Read the words after ``TOOL CALL``: the tool, the tool axis, S, F (FU, FZ), DL and DR."""
     column = cursor.column
     tool: int | str | Value | None = None
     _check_no_index(cursor)
@@ -172,7 +175,7 @@ def read_tool_call(cursor: LineCursor) -> ToolCall:
 
 
 def _check_no_index(cursor: LineCursor) -> None:
-    """Raise ProgramError for a tool index such as 5.1, because the tool table has one row per tool."""
+    """Raise ProgramError for a tool index such as 5.1, because the tool table has only one row per tool."""
     if found := _INDEXED.match(cursor.uppercase_text, cursor.index):
         text = Message(
             "The tool table has one row per tool and does not use an index, so the table does "
@@ -190,7 +193,7 @@ _LENGTHS = re.compile(r"([LR])(?=\s*[+\-0-9.,Q])")
 
 
 def read_tool_definition(cursor: LineCursor, column: int) -> ToolDefinition:
-    """Read the words after ``TOOL DEF``: the tool, and its length and radius if the program defines them."""
+    """Read the words after ``TOOL DEF``, which are the tool and optionally its length and radius."""
     _check_no_index(cursor)
     tool = cursor.read_name("TOOL DEF", MAX_TOOL_NUMBER)
     words = {name: word.value for name, word in read_words_by_name(cursor, _LENGTHS).items()}
@@ -272,7 +275,7 @@ def call(cursor: LineCursor) -> LabelCall:
 
 
 def _repeats(cursor: LineCursor) -> Value:
-    """Read the number of repeats: a whole number or a Q parameter."""
+    """Read the number of repeats, which is a whole number or a Q parameter."""
     column = cursor.column
     if cursor.uppercase_text[cursor.index : cursor.index + 1] == "Q":
         return cursor.read_value("REP")
@@ -310,7 +313,7 @@ _PROBE = re.compile(r"[0-9]+(?:\.[0-9]+)?")
 
 
 def make_touch_probe_error(cursor: LineCursor, column: int) -> ProgramError:
-    """Return the error for ``TCH PROBE``, because no machine has a touch probe."""
+    """Return the error for ``TCH PROBE``, because TurnDesk does not support touch probes."""
     cursor.read_keyword("TCH PROBE")
     match = cursor.match(_PROBE)
     what = Message("TCH PROBE {word}", word=match.group()) if match else "TCH PROBE"
@@ -346,9 +349,11 @@ def read_material(cursor: LineCursor, column: int) -> IgnoredBlock:
 
 
 def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | IgnoredBlock | CycleLine:
-    """Read the block after ``FUNCTION``: TCPM, DWELL, or a function without effect here.
+    """Read the block after ``FUNCTION``, which is TCPM, DWELL, or a function without effect on this
+    control.
 
-    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, with which the same words mean other motions.
+    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, which change the motion that the same words
+    program.
     """
     if cursor.read_keyword("TCPM"):
         while not cursor.is_at_end:

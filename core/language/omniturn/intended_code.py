@@ -1,7 +1,7 @@
-"""Lines that are written for another control, and the OmniTurn codes to use instead.
+"""Detection of lines that are written for another control, with the OmniTurn codes to use instead.
 
-Each pattern matches the code of a line in upper case, without blanks and comments. A line that matches gets
-one error. Its other words are not examined, because they belong to the other control too.
+Each pattern matches the code of a line in upper case, without blanks and comments. A matching line causes
+one error. Its other words are not checked, because they also belong to the other control.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from core.message import Message
 
 
 class IntendedCode(NamedTuple):
-    """A mistake in a line: index of its first character, diagnostic code, message and remedy."""
+    """A mistake in a line, with the index of its first character, diagnostic code, message and remedy."""
 
     at: int
     code: str
@@ -26,7 +26,7 @@ class IntendedCode(NamedTuple):
 
 
 class _Pattern(NamedTuple):
-    """A form that belongs to another control. The message and the remedy may depend on the match."""
+    """The pattern of a code for another control, whose message and remedy may depend on the match."""
 
     form: str
     message: str
@@ -44,7 +44,9 @@ def _dwell(match: re.Match[str]) -> str:
 
 
 def _plain(value: float) -> str:
-    """Return a number in the notation of programs: no zero before the point and no trailing zeros."""
+    """Return a number in program notation, without a zero before the decimal point and without trailing
+    zeros.
+    """
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return text[1:] if text.startswith("0.") else text
 
@@ -140,12 +142,15 @@ _PATTERNS = (
 
 @cache
 def _compiled() -> tuple[tuple[re.Pattern[str], str, Callable[[re.Match[str]], str]], ...]:
-    """Return the patterns, compiled for the first line that may match; many programs have no such line."""
+    """Return the compiled patterns.
+
+    They are compiled only for the first line that may match, because many programs have no such line.
+    """
     return tuple((re.compile(form), message, hint) for form, message, hint in _PATTERNS)
 
 
 def find_intended_code(code: str) -> IntendedCode | None:
-    """Return the intended code of a line for another control; None for any other line."""
+    """Return the mistake in a line that is written for another control, or None for any other line."""
     for form, message, hint in _compiled():
         match = form.search(code)
         if match is not None:
@@ -174,5 +179,5 @@ _LETTER_L = r"(?<=[A-Za-z0-9.+-])l(?=[0-9.A-Za-z]|\s|$)"
 
 
 def replace_letter_l(code: str) -> str:
-    """Return the line with 1 in place of each letter l that is part of a number."""
+    """Return the line with each letter l in a number replaced by the digit 1."""
     return re.sub(_LETTER_L, "1", code)

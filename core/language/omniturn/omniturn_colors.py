@@ -22,7 +22,7 @@ _KIND_BY_LETTER = {
 def color_line(text: str, state_before: int) -> tuple[list[ColoredSpan], int]:
     """Return the colored spans of a line, with errors last, and the state for the next line.
 
-    ``state_before`` is the state that the previous line returned.
+    ``state_before`` is the state that was returned for the previous line.
     """
     inside = state_before == PLANE_STATE and not is_program_end(text)
     if not inside and parse_plane_entry(text) is not None:

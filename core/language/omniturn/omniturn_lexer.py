@@ -1,4 +1,4 @@
-"""Lexer of OmniTurn lines. Numbers have a strict syntax, and any other text is an error."""
+"""Lexer of OmniTurn lines, in which numbers have a strict syntax and any other text is an error."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ _SPACE = re.compile(r"\s")
 class _Code(NamedTuple):
     """The code of a line in upper case, without blanks and comment.
 
-    ``columns`` has the source column of each character.
+    ``columns`` contains the source column of each character.
     """
 
     text: str
@@ -53,7 +53,7 @@ class _Code(NamedTuple):
 def lex_line(number: int, text: str) -> LexedLine:
     """Read the words of line ``number``.
 
-    This function never raises; the line contains its errors with columns.
+    The function does not raise exceptions. The returned line contains its errors with their columns.
     """
     if len(text) > MAX_LINE_LENGTH:
         return LexedLine(number, errors=(word_faults.make_length_error(number, len(text)),))
@@ -83,9 +83,9 @@ def lex_line(number: int, text: str) -> LexedLine:
 
 
 def _nested_comment(text: str) -> int | None:
-    """Return the index of a parenthesis that opens inside a comment, or None.
+    """Return the index of an opening parenthesis inside a comment, or None.
 
-    The result is also None if a parenthesis is not closed.
+    Returns None also if a parenthesis is not closed.
     """
     depth, inner = 0, None
     for at, sign in enumerate(text):
@@ -96,9 +96,9 @@ def _nested_comment(text: str) -> int | None:
 
 
 def _letter_l(number: int, text: str) -> Diagnostic | None:
-    """Return the error for a letter l in place of the digit 1, or None.
+    """Return the error for a letter l instead of the digit 1, or None.
 
-    The result is also None if the line has other errors.
+    Returns None also if the line has other errors.
     """
     code = _with_blank_comments(text)
     fixed = replace_letter_l(code)
@@ -111,7 +111,7 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
 
 
 def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
-    """Return the line with blanks in place of text that is not code, and one error for each such text."""
+    """Return the line with text that is not code replaced by blanks, and one error for each such text."""
     bare = _with_blank_comments(text)
     habit = other_controls.explain_foreign_line(bare)
     if habit is not None:
@@ -131,12 +131,12 @@ def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
 
 
 def _with_blank_comments(text: str) -> str:
-    """Return the line with blanks in place of its comments."""
+    """Return the line with its comments replaced by blanks."""
     return _COMMENT.sub(lambda found: " " * len(found[0]), text)
 
 
 def _prose_in(bare: str) -> Iterator[re.Match[str]]:
-    """Yield the matches of plain text, with the characters between its words."""
+    """Yield the matches of plain text, including the characters between its words."""
     thread = _THREAD.search(bare.upper().replace(" ", "")) is not None
     for found in _PROSE.finditer(bare):
         words = _LETTERS.findall(found[0].upper())
@@ -147,7 +147,7 @@ def _prose_in(bare: str) -> Iterator[re.Match[str]]:
 
 
 def _usual_words(text: str) -> tuple[Word, ...] | None:
-    """Return the words of a line of usual words; None if a word needs a full check."""
+    """Return the words of a line that contains only usual words, or None if a word needs a complete check."""
     words: list[Word] = []
     column = 1
     for written, letter, number in _USUAL_WORD.findall(text):
@@ -212,7 +212,7 @@ class _Scanner:
         return tuple(found)
 
     def _read(self, match: re.Match[str], words: list[Word]) -> int:
-        """Read one word and check for errors after it; return the index of the next word."""
+        """Read one word, check for errors after the word, and return the index of the next word."""
         letter, digits, end = match[1], match[2], match.end()
         text = self._code.text
         if letter == "O" and not self._thread:
@@ -253,14 +253,19 @@ class _Scanner:
         return at
 
     def _is_letter_o(self, index: int) -> bool:
-        """Return whether a letter O at this index is part of a number; in a thread, O can be a word."""
+        """Return whether a letter O at this index is part of a number.
+
+        In a thread, O can also be a word.
+        """
         text = self._code.text
         return text[index : index + 1] == "O" and (
             not self._thread or text[index + 1 : index + 2] in _NUMBER_SIGNS
         )
 
     def _letter_o(self, start: int, index: int) -> int:
-        """Report the letter O at ``at`` in the word that begins at ``start``; return the end of the word."""
+        """Report the letter O at ``index`` in the word that starts at ``start``, and return the end of the
+        word.
+        """
         match = _ZERO_LETTER.match(self._code.text, index)
         end = match.end() if match else index + 1
         word = self._code.written[start:end]

@@ -1,4 +1,4 @@
-"""Words and lines of OmniTurn programs, and the ranges of their numbers."""
+"""Words and lines of OmniTurn programs, with the ranges of their numbers."""
 
 from __future__ import annotations
 
@@ -30,10 +30,11 @@ VALUE_RANGES: dict[str, tuple[float, float]] = {
 
 
 class Word(NamedTuple):
-    """One word of a line. ``letter`` is in upper case; ``LS LF RF CA CI`` and ``}`` count as letters.
+    """One word of a line.
 
-    ``value`` is its number, or None without a number. ``column`` is the column of its letter, from 1.
-    ``text`` is the word as written, without blanks.
+    ``letter`` is in upper case; LS, LF, RF, CA, CI and } count as letters. ``value`` is the number of the
+    word, or None without a number. ``column`` is the column of the letter, from 1. ``text`` is the word as
+    written, without blanks.
     """
 
     letter: str
@@ -43,12 +44,11 @@ class Word(NamedTuple):
 
 
 class LexedLine(NamedTuple):
-    """One line of a program.
+    """One line of a program, split into words.
 
-    ``text`` is its code as written, without blanks and comment; ``number`` counts from 1.
-
-    ``comment`` is None if the line has no parenthesis, and ``comment_column`` is the column of the
-    parenthesis. A line with ``errors`` must not be executed.
+    ``text`` is the code as written, without blanks and comment. ``number`` counts from 1. ``comment`` is
+    None if the line has no parenthesis, and ``comment_column`` is the column of the parenthesis. A line
+    with ``errors`` must not be executed.
     """
 
     number: int

@@ -1,6 +1,6 @@
-"""Codes and characters of other controls with their OmniTurn equivalents.
+"""Codes and characters of other controls, with their OmniTurn equivalents.
 
-This module also detects programs for other controls.
+This module also detects programs that were written for other controls.
 """
 
 from __future__ import annotations
@@ -119,9 +119,8 @@ _TOOL = re.compile(r"T0*([0-9]{1,2})([0-9]{2})")
 
 
 def explain_foreign_word(word: str) -> tuple[str, str] | None:
-    """Return the explanation and the remedy for a code or letter of other controls.
-
-    Returns None for any other word.
+    """Return the explanation and the remedy for a code or letter of other controls, or None for any other
+    word.
     """
     return _EQUIVALENTS.get(word)
 
@@ -135,7 +134,7 @@ def explain_character(character: str) -> tuple[str, str] | None:
 
 
 def explain_foreign_line(code: str) -> tuple[str, str, str] | None:
-    """Return code, message and hint for a line that only other controls need; otherwise None."""
+    """Return code, message and hint for a line that only other controls need, or None for any other line."""
     if _TRANSFER.fullmatch(code):
         return (
             "transfer-line",
@@ -157,9 +156,9 @@ def explain_foreign_line(code: str) -> tuple[str, str, str] | None:
 
 
 def explain_foreign_tool(text: str) -> tuple[str, str] | None:
-    """Return message and hint for ``T0101``, which selects tool and wear offset on other controls.
+    """Return the message and hint for a word such as ``T0101``, or None for any other word.
 
-    Returns None for any other word.
+    On other controls, ``T0101`` selects a tool and its wear offset.
     """
     match = _TOOL.fullmatch(text)
     if match is None:
@@ -205,7 +204,7 @@ _FANUC = (
 
 
 def recognize_control(lines: Sequence[str]) -> Diagnostic | None:
-    """Return one warning that names the control a program was written for; None for an OmniTurn program."""
+    """Return a warning with the control for which a program was written, or None for an OmniTurn program."""
     codes = [_COMMENT.sub("", line).replace(" ", "").upper() for line in lines[:_MAX_LINES]]
     control = next((name for name, form in _CONTROL_MARKERS if any(map(form.search, codes))), "")
     if not control and sum(any(map(form.search, codes)) for form in _FANUC) > 1:

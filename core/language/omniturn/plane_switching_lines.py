@@ -1,6 +1,6 @@
-"""Lines of plane switching: statements in parentheses, from (~PLXC) or (~PLZC) to (END).
+"""Lines of plane switching, which are statements in parentheses from (~PLXC) or (~PLZC) to (END).
 
-The checker of the original control does not know these statements, so programs hide them in comments.
+The checker of the original control does not know these statements, so programs write them as comments.
 """
 
 from __future__ import annotations
@@ -26,9 +26,10 @@ _HINT = "Between (~PLXC) or (~PLZC) and (END), write only (X Y Z F), (G02 or G03
 
 
 class PlaneLine(NamedTuple):
-    """One line of plane switching. ``name`` is PLXC, PLZC or END; it is empty for a statement with ``words``.
+    """One line of plane switching.
 
-    ``arc_code`` is 2 for G02, 3 for G03 and otherwise 0. The numbers of the words are in program units.
+    ``name`` is PLXC, PLZC or END, or empty for a statement with ``words``. ``arc_code`` is 2 for G02, 3 for
+    G03 and 0 otherwise. The numbers of the words are in program units.
     """
 
     name: str
@@ -37,16 +38,17 @@ class PlaneLine(NamedTuple):
 
 
 def parse_plane_entry(text: str) -> PlaneLine | None:
-    """Return the line if it starts plane switching; None for any other line."""
+    """Return the line if it starts plane switching, or None for any other line."""
     match = _ENTRY.fullmatch(text) if "~" in text else None
     return PlaneLine(match[1].upper(), {}) if match else None
 
 
 def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
-    """Return whether an entry to plane switching lacks its ~, so that it is read as a comment.
+    """Return whether a line that starts plane switching lacks its ~.
 
-    True means that the next line in ``following_lines`` is a plane statement. With False, the line may be a
-    comment. The result is None if the line is not an entry.
+    The control treats a line without ~ as a comment. True means that the next line in ``following_lines``
+    is a plane statement. False means that the line may be a comment. Returns None if the line does not
+    start plane switching.
     """
     if _BARE_ENTRY.fullmatch(text) is None:
         return None
@@ -57,12 +59,15 @@ def is_missing_tilde(text: str, following_lines: Iterable[str]) -> bool | None:
 
 
 def is_program_end(text: str) -> bool:
-    """Return whether a line is M30 or M02, so that (END) is missing."""
+    """Return whether a line is M30 or M02, which means that (END) is missing."""
     return _END.fullmatch(text) is not None
 
 
 def lex_plane_line(number: int, text: str) -> PlaneLine:
-    """Read a line between the entry and (END). Raises ProgramError for a statement that is not allowed."""
+    """Read a line between the start of plane switching and (END).
+
+    Raises ProgramError for a statement that is not allowed.
+    """
     match = _STATEMENT.fullmatch(text) if text.isascii() else None
     if match is None:
         raise make_program_error(

@@ -66,12 +66,12 @@ def make_text_error(line: int, column: int, text: str) -> Diagnostic:
 
 
 def make_standard_error(line: int, column: int, code: str) -> Diagnostic:
-    """Return the error for a code that always has the same message."""
+    """Return the error for a code whose message is always the same."""
     return make_error_diagnostic(line, column, code, *_ERROR_TEXTS[code])
 
 
 def make_letter_o_error(line: int, column: int, word: str) -> Diagnostic:
-    """Return the error for a letter O in place of a zero, such as GO2, MO5 or XO."""
+    """Return the error for a letter O instead of a zero, such as GO2, MO5 or XO."""
     message = Message("{word}: letter O in a number.", word=word)
     return make_error_diagnostic(
         line, column, "letter-o", message, Message("Write {name}.", name=word.upper().replace("O", "0"))
@@ -79,7 +79,7 @@ def make_letter_o_error(line: int, column: int, word: str) -> Diagnostic:
 
 
 def make_missing_number_error(line: int, column: int, letter: str, next_character: str) -> Diagnostic:
-    """Return the error for a letter that no valid number follows."""
+    """Return the error for a letter that is not followed by a valid number."""
     if next_character in {"+", "-"}:
         return make_error_diagnostic(
             line,
@@ -137,7 +137,7 @@ def make_character_error(line: int, column: int, character: str, *, after_number
 
 
 def find_word_error(line: int, word: Word, digits: str | None) -> Diagnostic | None:
-    """Return the error in the letter or the value of a word, or None."""
+    """Return the error for the letter or the value of a word, or None."""
     letter, value, column, _ = word
     if letter not in VALUE_RANGES and letter not in {"LF", "RF", "O"}:
         return _unknown_letter(line, column, letter)

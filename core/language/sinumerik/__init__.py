@@ -1,4 +1,4 @@
-"""Reader of the SINUMERIK turning dialect: words, lines and syntax errors."""
+"""Parser of the SINUMERIK turning dialect, with words, lines and syntax errors."""
 
 from core.language.sinumerik.sinumerik_lexer import lex_line
 from core.language.sinumerik.sinumerik_words import LexedBlock, PositionForm, Word

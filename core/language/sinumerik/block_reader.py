@@ -1,4 +1,4 @@
-"""Reader of a SINUMERIK block: formulas, lists of values and other items at a position."""
+"""Parser of formulas, lists of values and other items at a position in a SINUMERIK block."""
 
 from __future__ import annotations
 
@@ -51,7 +51,10 @@ SINUMERIK_GRAMMAR = FormulaGrammar(
 
 
 def parse_formula(text: str, index: int) -> tuple[Formula, int]:
-    """Return the formula that starts at ``index`` and the index after it. Raises FormulaError."""
+    """Return the formula that starts at ``index``, and the index after the formula.
+
+    Raises FormulaError for an invalid formula.
+    """
     reader = FormulaReader(SINUMERIK_GRAMMAR, text, index)
     return reader.read_formula(), reader.index
 
@@ -63,9 +66,9 @@ _Item = TypeVar("_Item")
 
 
 class BlockReader(FormulaReader):
-    """Reader of a block from index ``index`` on.
+    """Parser of a block that starts at ``index``.
 
-    ``uppercase_text`` is the block in capitals, and ``written`` is the original text.
+    ``uppercase_text`` is the block in capitals, and ``original_text`` is the block as written.
     """
 
     def __init__(self, uppercase_text: str, original_text: str, index: int) -> None:
@@ -74,11 +77,13 @@ class BlockReader(FormulaReader):
 
     @property
     def remaining_text(self) -> str:
-        """The remaining text without leading blanks."""
+        """Return the remaining text without leading blanks."""
         return self.uppercase_text[self.index :].lstrip()
 
     def match(self, pattern: re.Pattern[str], *, in_original: bool = False) -> re.Match[str] | None:
-        """Return the match of the pattern at this position and move past it; None without a match."""
+        """Return the match of the pattern at this position and move past it, or return None without a
+        match.
+        """
         match = pattern.match(self.original_text if in_original else self.uppercase_text, self.index)
         if match is not None:
             self.index = match.end()
@@ -87,7 +92,7 @@ class BlockReader(FormulaReader):
     def match_required(self, pattern: re.Pattern[str], message: str, hint: str) -> re.Match[str]:
         """Return the match of the pattern at this position and move past it.
 
-        Raises FormulaError without a match.
+        Raises FormulaError with ``message`` and ``hint`` without a match.
         """
         match = self.match(pattern)
         if match is None:
@@ -95,9 +100,9 @@ class BlockReader(FormulaReader):
         return match
 
     def read_items(self, read_item: Callable[[], _Item], message: str, hint: str) -> list[_Item]:
-        """Return the items that ``read_item`` returns up to the closing parenthesis.
+        """Read items with ``read_item`` up to the closing parenthesis, and return them.
 
-        Raises FormulaError without one.
+        Raises FormulaError if the closing parenthesis is missing.
         """
         found: list[_Item] = []
         while True:
@@ -110,7 +115,7 @@ _LIST = re.compile(r"\s*(SET|REP)?\s*\(")
 
 
 class ValueList(NamedTuple):
-    """Values for consecutive elements of an array; None leaves an element unchanged.
+    """The values for consecutive elements of an array, with None for an element that does not change.
 
     REP has one formula for ``repeat_count`` elements, or for all remaining elements if ``repeat_count`` is
     None.
@@ -122,7 +127,7 @@ class ValueList(NamedTuple):
 
 
 def read_value_list(reader: BlockReader, *, allows_bare_list: bool) -> ValueList | None:
-    """Read a list of values; return None if no list starts here.
+    """Read a list of values, or return None if no list starts at this position.
 
     With ``allows_bare_list``, a parenthesis without SET also starts a list. Otherwise, such a parenthesis
     starts a formula. Raises FormulaError for an incomplete list.

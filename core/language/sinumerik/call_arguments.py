@@ -1,4 +1,4 @@
-"""Readers of call arguments, such as CYCLE95("CONTOUR", 2, , 0.4), and of parameter lists."""
+"""Parsers of call arguments, such as CYCLE95("CONTOUR", 2, , 0.4), and of parameter lists."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _DIMENSION = re.compile(r"\s*([0-9]*)\s*")
 
 
 class CallArgument(NamedTuple):
-    """One argument: a formula, or a text (in quotation marks or an axis letter), or neither if it is omitted.
+    """One argument of a call, which is a formula or a text, or is omitted.
 
-    ``column`` counts from 1.
+    A text is in quotation marks or is an axis letter. ``column`` counts from 1.
     """
 
     formula: Formula | None
@@ -29,15 +29,16 @@ class CallArgument(NamedTuple):
 
     @property
     def is_specified(self) -> bool:
-        """Whether the argument is specified."""
+        """Return whether the call specifies the argument."""
         return self.formula is not None or self.text is not None
 
 
 class ProcParameter(NamedTuple):
-    """A parameter of PROC. ``type_name`` is its type such as REAL, and ``is_by_reference`` is True with VAR.
+    """A parameter of PROC.
 
-    ``default`` is the default value, or None. ``dimensions`` are the dimensions of an array, with None for a
-    dimension that the caller's array determines; it is empty for a scalar.
+    ``type_name`` is its type, such as REAL. ``is_by_reference`` is True with VAR. ``default`` is the
+    default value, or None. ``dimensions`` contains the dimensions of an array, with None for a dimension
+    that the caller's array determines. It is empty for a scalar.
     """
 
     name: str
@@ -101,7 +102,10 @@ def _parameter(reader: BlockReader) -> ProcParameter:
 
 
 def _sizes(match: re.Match[str]) -> tuple[int | None, ...]:
-    """Return the dimensions of an array parameter, NAME[3] or NAME[,4]. Raises FormulaError."""
+    """Return the dimensions of an array parameter such as NAME[3] or NAME[,4].
+
+    Raises FormulaError for an invalid dimension.
+    """
     if match[4] is None:
         return ()
     found = [_DIMENSION.fullmatch(each) for each in match[4].split(",")]

@@ -1,8 +1,8 @@
-"""Functions that smaller SINUMERIK controls lack: 802D and 808D compared with 828D and 840D.
+"""Functions that the smaller SINUMERIK controls 802D and 808D lack in comparison with 828D and 840D.
 
-The machine file of a machine that replaces an 802D specifies the old control (``machine.control``). A program
-that the old control would not accept is then rejected here too. The lists follow the manufacturer's
-programming guides for turning; ``docs/sinumerik-controls.md`` shows them.
+The machine file of a machine that replaces an 802D specifies the old control (``machine.control``). A
+program that the old control would not accept is then also rejected by TurnDesk. The lists follow the
+manufacturer's programming guides for turning; ``docs/sinumerik-controls.md`` shows them.
 """
 
 from __future__ import annotations
@@ -38,10 +38,7 @@ MISSING_FUNCTIONS: Mapping[str, frozenset[str]] = {
 
 
 def find_missing_function(control: str, line: LexedBlock) -> tuple[str, int] | None:
-    """Return the first function of a line that a control lacks, with its column.
-
-    Returns None if the control has all functions of the line.
-    """
+    """Return the first function of a line that a control lacks, with its column, or None."""
     lacks = MISSING_FUNCTIONS[control]
     if not lacks:
         return None

@@ -1,4 +1,4 @@
-"""Reader of program control lines: jumps, IF, CASE, loops, REPEAT, PROC, DEF, MSG and STOPRE."""
+"""Parser of program control lines, which contain jumps, IF, CASE, loops, REPEAT, PROC, DEF, MSG or STOPRE."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ class ControlKeyword(StrEnum):
 
 
 class VariableDefinition(NamedTuple):
-    """A variable of DEF with the formula of its initial value; None means 0.
+    """A variable of DEF with the formula of its initial value, or None for 0.
 
-    ``dimensions`` are the dimensions of an array, and ``values`` is a list of values for its elements.
+    ``dimensions`` contains the dimensions of an array, and ``values`` contains the values of its elements.
     """
 
     name: str
@@ -62,7 +62,7 @@ class VariableDefinition(NamedTuple):
 
 
 class CaseBranch(NamedTuple):
-    """One branch of CASE; ``formula`` is None for the DEFAULT branch."""
+    """One branch of CASE, whose ``formula`` is None for the DEFAULT branch."""
 
     formula: Formula | None
     jump_keyword: ControlKeyword
@@ -70,13 +70,13 @@ class CaseBranch(NamedTuple):
 
 
 class ControlStatement(NamedTuple):
-    """One program control line. ``condition`` belongs to IF, CASE, WHILE and UNTIL.
+    """One program control line.
 
-    ``target`` of a jump is a label or a block number such as N123. ``name``, ``start_value`` and
-    ``end_value`` are the variable, start and end of FOR. PROC uses ``name``, ``parameters`` and
-    ``has_save``. ``message_parts`` are the texts and formulas of MSG. REPEAT executes the lines from
-    ``target`` to ``end_label`` another ``repeat_count`` times. ``else_jump`` is a further IF … GOTO in the
-    block. ``column`` counts from 1.
+    ``condition`` belongs to IF, CASE, WHILE and UNTIL. ``target`` of a jump is a label or a block number
+    such as N123. ``identifier``, ``start_value`` and ``end_value`` are the variable, the start and the end
+    of FOR. PROC uses ``identifier``, ``parameters`` and ``has_save``. ``message_parts`` contains the texts
+    and formulas of MSG. REPEAT executes the lines from ``target`` to ``end_label`` another ``repeat_count``
+    times. ``else_jump`` is a further IF … GOTO in the block. ``column`` counts from 1.
     """
 
     keyword: ControlKeyword
@@ -122,7 +122,7 @@ _TOLERATED_BRACKET = frozenset({ControlKeyword.GROUP_BEGIN, ControlKeyword.GROUP
 
 
 def find_control_keyword(text: str, index: int) -> ControlKeyword | None:
-    """Return the keyword at index ``index`` of ``text``, a line in capitals, or None."""
+    """Return the keyword at ``index`` in ``text``, which is a line in capitals, or None."""
     match = _WORDS.match(text, index)
     return None if match is None else ControlKeyword(match.group(1))
 
@@ -130,8 +130,10 @@ def find_control_keyword(text: str, index: int) -> ControlKeyword | None:
 def read_control_statement(
     text: str, original_text: str, index: int, keyword: ControlKeyword
 ) -> ControlStatement:
-    """Read the line whose keyword is at ``index``; ``original_text`` is the original text. Raises
-    FormulaError.
+    """Read the control statement whose keyword is at ``index``.
+
+    ``text`` is the line in capitals, and ``original_text`` is the line as written. Raises FormulaError for
+    invalid syntax.
     """
     reader = _Reader(text, original_text, index, keyword)
     jump = reader.read_statement()
@@ -190,7 +192,7 @@ class _Reader(BlockReader):
             raise FormulaError(self.index, text, "Put the extra text in a separate block.")
 
     def _if(self) -> ControlStatement:
-        """Read an IF: a conditional jump, or the start of IF … ENDIF if no jump follows the condition."""
+        """Read an IF, which is a conditional jump, or starts IF … ENDIF if no jump follows the condition."""
         condition = self.read_formula()
         match = self.match(_GOTO)
         if match is None:
@@ -233,7 +235,7 @@ class _Reader(BlockReader):
         )
 
     def _repeat(self) -> ControlStatement:
-        """Read a REPEAT: the start of REPEAT … UNTIL, or with labels the repetition of a program section."""
+        """Read a REPEAT, which starts REPEAT … UNTIL or, with labels, repeats a program section."""
         labels = list[str]()
         while len(labels) < 2 and (match := self.match(_REPEATED)):
             labels.append(match.group(1))
@@ -270,7 +272,7 @@ class _Reader(BlockReader):
         return made
 
     def _first_value(self, definition: VariableDefinition) -> VariableDefinition:
-        """Read the text after the = of DEF: a string, a list for an array, or a formula."""
+        """Read the initial value in DEF, which is a string, a list for an array, or a formula."""
         quoted = _JOINED.match(self.original_text, self.index)
         if definition.type_name == "STRING" and quoted and quoted[1] is not None:
             self.index = quoted.end()
@@ -283,7 +285,7 @@ class _Reader(BlockReader):
         )
 
     def _sign(self) -> str:
-        """Read a comma or an equals sign; return an empty string for any other character."""
+        """Read a comma or an equals sign, or return an empty string for any other character."""
         match = self.match(_SIGN)
         return "" if match is None else match[1]
 
@@ -301,7 +303,7 @@ class _Reader(BlockReader):
         return ControlStatement(self._steering, self._column, identifier=match[1], parameters=parameters)
 
     def _message(self) -> ControlStatement:
-        """Read a line such as MSG("TEXT"<<R1): texts and formulas that << concatenates."""
+        """Read a line such as MSG("TEXT"<<R1), in which << concatenates texts and formulas."""
         closing = self.uppercase_text.rstrip()
         if not closing.endswith(")"):
             raise FormulaError(self.index, *_NO_TEXT)

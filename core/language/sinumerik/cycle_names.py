@@ -1,4 +1,4 @@
-"""Standard cycles of SINUMERIK by name: their parameters in order, and the cycles that are rejected."""
+"""Standard cycles of SINUMERIK by name, with their parameters in order, and the cycles that are rejected."""
 
 from __future__ import annotations
 

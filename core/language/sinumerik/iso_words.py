@@ -11,7 +11,7 @@ from core.message import Message
 
 
 class IsoWord(NamedTuple):
-    """A word of another control: the index where it starts, its explanation and the remedy."""
+    """A word of another control, with the index of its start, its explanation and the remedy."""
 
     at: int
     explanation: str
@@ -27,7 +27,7 @@ def _g(codes: str) -> str:
 
 
 def _seconds(letter: str, number: str) -> str:
-    """Return the time of a dwell in seconds; P without a decimal point is in milliseconds."""
+    """Return the time of a dwell in seconds, as text; P without a decimal point is in milliseconds."""
     value = float(number)
     return f"{value / 1000.0 if letter == 'P' and '.' not in number else value:g}"
 

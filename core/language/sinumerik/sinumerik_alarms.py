@@ -1,4 +1,4 @@
-"""SINUMERIK alarms in the format of the control: number, channel, block, axis, message and remedy."""
+"""SINUMERIK alarms in the format of the control, with number, channel, block, axis, message and remedy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ CHANNEL_NUMBER = 1
 def make_alarm(
     line: int, column: int, code: int | str, block: str, text: str, hint: str, *, axis: str = ""
 ) -> Diagnostic:
-    """Return an error with the control's alarm number as its code, or with a TurnDesk code in words."""
+    """Return an error whose code is the control's alarm number or a TurnDesk code in words."""
     where = Message("channel {channel} block {block}", channel=CHANNEL_NUMBER, block=block)
     where = Message("{place} axis {axis}", place=where, axis=axis) if axis else where
     if isinstance(code, int):

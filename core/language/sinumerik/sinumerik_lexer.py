@@ -1,4 +1,4 @@
-"""Lexer of SINUMERIK blocks. Text outside the grammar is an error."""
+"""Lexer of SINUMERIK blocks, in which text outside the grammar is an error."""
 
 from __future__ import annotations
 
@@ -71,9 +71,8 @@ _TRANSFORMATIONS = frozenset({"TRANSMIT", "TRACYL", "TRAFOOF"})
 def lex_line(number: int, text: str, third_axis: str = INTERNAL_AXIS_NAME) -> LexedBlock:
     """Read the words of line ``number``.
 
-    This function never raises; the line contains its errors with columns.
-
-    ``third_axis`` is the name of the machine's third axis. Its words are returned as words of C.
+    The function does not raise exceptions. The returned block contains its errors with their columns.
+    ``third_axis`` is the name of the machine's third axis, whose words are returned as words of C.
     """
     end = find_comment_start(text)
     code, comment = text[:end], end + 1 if end < len(text) else 0
@@ -146,7 +145,7 @@ class _Scanner:
             self.report_error(problem.index + 1, f"{problem}", problem.hint)
 
     def scan_words(self, index: int) -> None:
-        """Read all words from index ``at`` on."""
+        """Read all words from ``index`` to the end of the block."""
         text = self._text
         while index < len(text):
             if match := _PLAIN.match(text, index):
@@ -173,7 +172,7 @@ class _Scanner:
                 index = self._skip(index, Message("{name} is not a valid word", name=text[index]), hint)
 
     def _plain(self, match: re.Match[str]) -> int:
-        """Add a letter with a plain number."""
+        """Read a letter with a plain number."""
         letter, number = match.groups()
         word = Word(letter, float(number), match.start(1) + 1, letter + number)
         if wrong := find_range_error(word):
@@ -191,7 +190,7 @@ class _Scanner:
         )
 
     def report_iso_word(self) -> None:
-        """Replace the first error with the advice for an ISO word if the block contains one."""
+        """Replace the first error by the advice for an ISO word if the block contains an ISO word."""
         if habit := find_iso_word(self._text):
             number, block = self._number, self._block
             self.errors[:] = [
@@ -225,7 +224,7 @@ class _Scanner:
         return rest.end() if rest else at + 1
 
     def _report_unsupported(self, index: int, end: int, name: str, reason: str) -> int:
-        """Report a word of the language that TurnDesk does not execute."""
+        """Report a word of the dialect that TurnDesk does not execute."""
         text, hint = (
             Message("{word}: {problem}.", word=name, problem=reason),
             ("Remove this text from the program."),
@@ -258,7 +257,10 @@ class _Scanner:
         return self._keep(Word(letter, float(match[0]), index + 1, text[index : match.end()]), match.end())
 
     def _named(self, match: re.Match[str]) -> int:
-        """Read a keyword or a subprogram name; a subprogram name must be alone in its block."""
+        """Read a keyword or a subprogram name.
+
+        A subprogram name must be alone in its block.
+        """
         name, at, end = match[0], match.start(), match.end()
         if name in known.NAMED_FUNCTIONS:
             return self._key(name, at, end)
@@ -315,7 +317,10 @@ class _Scanner:
             return None, len(self._text)
 
     def _read_spindle_word(self, name: str, index: int, end: int) -> int:
-        """Read SETMS, WAITS or SETMS(1); without a number, the word applies to spindle 1."""
+        """Read SETMS, WAITS or SETMS(1).
+
+        Without a number, the word applies to spindle 1.
+        """
         match = _NUMBERED.match(self._text, end)
         number = int(match[1] or 1) if match is not None else 1
         word = Word(name, float(number), index + 1, f"{name}({number})", spindle_number=number)
@@ -323,7 +328,7 @@ class _Scanner:
         return match.end() if match is not None else end
 
     def _read_called_name(self, word: str, index: int, end: int) -> int:
-        """Read the program name after MCALL or CALL; MCALL without a name is also valid."""
+        """Read the program name after MCALL or CALL, which MCALL can omit."""
         match = _PROGRAM.match(self._text, end)
         self.modal_call, self.call_column = word == "MCALL", index + 1
         if match is not None:
@@ -433,7 +438,7 @@ class _Scanner:
         return self._value(name, at, end)
 
     def _without_equals(self, name: str, index: int) -> int:
-        """Report a value that is assigned to a word without one."""
+        """Report a value that is assigned to a word that does not accept a value."""
         text = Message("{name} does not accept a value", name=name)
         return self._skip(index, text, Message("Write {name} without an equals sign.", name=name))
 

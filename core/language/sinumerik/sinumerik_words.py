@@ -1,7 +1,7 @@
-"""Words and lines of SINUMERIK programs. A value is a number, an R parameter or a target in parentheses.
+"""Words and lines of SINUMERIK programs, whose values are numbers, R parameters or targets in parentheses.
 
-The machine builder defines the name of the third axis, such as B, Y or Q1 in place of C. TurnDesk reads its
-words as words of C and shows them as they are written.
+The machine builder defines the name of the third axis, such as B, Y or Q1 instead of C. TurnDesk parses the
+words of this axis as words of C and displays them as written.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MAX_LINE_LENGTH = 512
 
 
 class PositionForm(StrEnum):
-    """Meaning of a position for one word in one block; with PLAIN, G90 or G91 determines the meaning."""
+    """Meaning of the position in one word; with PLAIN, G90 or G91 determines the meaning."""
 
     PLAIN = ""
     AC = "AC"
@@ -35,13 +35,12 @@ class PositionForm(StrEnum):
 
 
 class Word(NamedTuple):
-    """One word.
+    """One word of a block.
 
-    ``name`` is in upper case. ``value`` is its number, or None if ``formula`` determines the value.
-
-    ``column`` is the column of its first character, from 1, and ``text`` is the word as written, without
+    ``name`` is in upper case. ``value`` is the number of the word, or None if ``formula`` determines the
+    value. ``column`` is the column of the first character, from 1. ``text`` is the word as written, without
     blanks. ``quoted_name`` is a name in quotation marks, as in T="ROUGHER". ``spindle_number`` is the
-    spindle number, as in M1=3 or SPOS[1]=90; 0 if it is not specified.
+    spindle number, as in M1=3 or SPOS[1]=90, or 0 if it is not specified.
     """
 
     name: str
@@ -59,13 +58,14 @@ class Word(NamedTuple):
 
 
 class LexedBlock(NamedTuple):
-    """One block of a program; ``number`` is its line, from 1.
+    """One block of a program, split into words.
 
-    ``block_name`` is the name of the block in alarms: its N or : number, its label, or its line.
-    ``skip_level`` is the level of ``/`` (0 without a digit), or None. ``call`` is the name of a subprogram
-    or cycle, which is executed ``execution_count`` times with ``arguments`` (None without parentheses). With
-    ``is_modal_call`` (MCALL), the call is executed after each following move. ``text`` is the code as
-    written, without number, label and comment. A line with ``errors`` must not be executed.
+    ``number`` is the line of the block, from 1. ``block_name`` is the name of the block in alarms, which is
+    its N or : number, its label or its line. ``skip_level`` is the level of ``/`` (0 without a digit), or
+    None. ``called_name`` is the name of a subprogram or cycle, which is executed ``execution_count`` times
+    with ``arguments`` (None without parentheses). With ``is_modal_call`` (MCALL), the call is executed
+    after each following move. ``text`` is the code as written, without number, label and comment. A block
+    with ``errors`` must not be executed.
     """
 
     number: int
@@ -85,13 +85,13 @@ class LexedBlock(NamedTuple):
 
     @property
     def is_executable(self) -> bool:
-        """Whether the line has anything to execute or an error to report."""
+        """Return whether the block has something to execute or an error to report."""
         return bool(
             self.words or self.called_name or self.errors or self.control_statement or self.is_modal_call
         )
 
     def make_error(self, column: int, code: int | str, text: str, hint: str) -> ProgramError:
-        """Return the error to raise at this column.
+        """Return an error at this column.
 
         ``code`` is an alarm number of the control, or a TurnDesk code in words.
         """
@@ -194,7 +194,7 @@ INTERNAL_AXIS_NAME = "C"
 
 
 def rename_axis_words(text: str, axis_name: str) -> tuple[str, int]:
-    """Return the code with the words of axis ``name`` changed to words of C at the same columns.
+    """Return the code with the words of the axis ``axis_name`` changed to words of C at the same columns.
 
     ``text`` is in capitals. The second value is the index of an original C word, which is an error on this
     machine, or -1.
@@ -209,6 +209,9 @@ def rename_axis_words(text: str, axis_name: str) -> tuple[str, int]:
 
 @lru_cache(maxsize=16)
 def _pattern(name: str) -> re.Pattern[str]:
-    """Return a pattern for a word of the axis: with = after it, or with a number after a single letter."""
+    """Return a pattern for a word of the axis.
+
+    The name must be followed by an equals sign, or by a number if the name is a single letter.
+    """
     behind = r"\s*=(?!=)" if len(name) > 1 else r"(?:\s*=(?!=)|[-+]?\.?[0-9]+(?![0-9]*\s*=))"
     return re.compile(rf"(?<![A-Z_$]){name}(?={behind})")

@@ -1,4 +1,8 @@
-"""Subprograms: in the same file after %_N_NAME_SPF lines, or as NAME.spf in the main program's folder."""
+"""Subprograms of SINUMERIK programs.
+
+A subprogram is in the same file after a %_N_NAME_SPF line, or is a file NAME.spf in the main program's
+folder.
+"""
 
 from __future__ import annotations
 
@@ -21,14 +25,17 @@ _MAY_CALL = re.compile(
 
 
 class Section(NamedTuple):
-    """One program of a file: its name, which is empty for the file's main text, and its line indices."""
+    """One program of a file, with its name and its line indices.
+
+    The name of the file's main text is empty.
+    """
 
     name: str
     lines: range
 
 
 def split_sections(source: ProgramSource) -> list[Section]:
-    """Return the programs of a file; the first one is the main program."""
+    """Return the programs of a file, starting with the main program."""
     heads = [
         (i, match[1].upper())
         for i, line in enumerate(source.lines)
@@ -44,7 +51,7 @@ def split_sections(source: ProgramSource) -> list[Section]:
 
 
 def find_called_files(source: ProgramSource) -> Iterator[str]:
-    """Yield the file names, in capitals, of the subprograms that are called but not in the file itself."""
+    """Yield the names (in capitals) of the files of called subprograms that are not in the file itself."""
     inside = {section.name for section in split_sections(source)}
     for number, text in enumerate(source.lines, start=1):
         if not _MAY_CALL.match(text):
@@ -56,7 +63,7 @@ def find_called_files(source: ProgramSource) -> Iterator[str]:
 
 
 def _names(line: LexedBlock) -> Iterator[str]:
-    """Yield the programs that a line calls by name or passes to a cycle as a contour."""
+    """Yield the names of the programs that a line calls or passes to a cycle as a contour."""
     if line.called_name:
         yield line.called_name
         for argument in line.arguments or ():
@@ -65,5 +72,5 @@ def _names(line: LexedBlock) -> Iterator[str]:
 
 
 def derive_program_name(source: ProgramSource) -> str:
-    """Return the name with which a program calls this file."""
+    """Return the name by which a program calls this file."""
     return Path(source.name).stem.upper()

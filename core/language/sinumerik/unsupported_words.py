@@ -1,6 +1,6 @@
 """Words of the SINUMERIK language that TurnDesk does not execute, with their alternatives.
 
-These words are rejected by name, so that none of them is mistaken for a subprogram or a variable.
+These words are rejected by name, so that they are not treated as subprograms or variables.
 """
 
 from __future__ import annotations

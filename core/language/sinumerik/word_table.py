@@ -1,6 +1,7 @@
-"""Vocabulary of SINUMERIK turning: G functions by group, words with a value, and M functions.
+"""Vocabulary of SINUMERIK turning, with G functions by group, words with a value, and M functions.
 
-The code book (``code_books/sinumerik``) explains each word. Tests compare its chapters with this table.
+The code book (``code_books/sinumerik``) explains each word. Tests compare the chapters of the code book
+with this table.
 """
 
 from __future__ import annotations

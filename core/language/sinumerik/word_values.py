@@ -1,4 +1,4 @@
-"""Values of SINUMERIK words, which are numbers or formulas, and the checks of their ranges."""
+"""Parsing of the values of SINUMERIK words, which are numbers or formulas, and checks of their ranges."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _MAX_CODE_LENGTH = 4  # digits
 
 
 class ParsedValue(NamedTuple):
-    """A number or a formula, and the index after it."""
+    """A number or a formula, and the index after it in the text."""
 
     number: float | None
     formula: Formula | None
@@ -24,7 +24,7 @@ class ParsedValue(NamedTuple):
 
 
 def parse_value(text: str, index: int) -> ParsedValue:
-    """Return the value that starts at this index. Raises FormulaError without a value."""
+    """Return the value that starts at this index. Raises FormulaError if no value starts there."""
     made, end = parse_formula(text, index)
     match made:
         case Number(value):
@@ -51,12 +51,12 @@ def check_parameter_numbers(formula: Formula, index: int) -> None:
 
 
 def is_variable(name: str) -> bool:
-    """Return whether a word assigns an R parameter or a variable of the program."""
+    """Return whether the name is an R parameter or a variable of the program."""
     return R_PARAMETER_PATTERN.fullmatch(name) is not None or (len(name) > 1 and name not in known.VOCABULARY)
 
 
 def find_range_error(word: Word) -> tuple[str, str] | None:
-    """Return the message and hint for an invalid number of a word; None if the number is valid."""
+    """Return the message and hint for an invalid number of a word, or None if the number is valid."""
     if word.value is None:
         return None
     if word.name in {"G", "M"}:

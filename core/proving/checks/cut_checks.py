@@ -1,4 +1,7 @@
-"""Checks of the material that a move removes: too much for the tool, or nothing where a cut is expected."""
+"""Checks of the material that a move removes.
+
+A fault is reported if a move cuts too much for the tool, or nothing where a cut is expected.
+"""
 
 from __future__ import annotations
 
@@ -70,9 +73,9 @@ INSERT_TOOLS = frozenset({ToolKind.TURNING, ToolKind.BORING})
 
 @dataclass(slots=True)
 class AirCutChecks:
-    """Checks for missing cuts, called with the moves in their order.
+    """Checks for missing cuts, which are called with the moves in their order.
 
-    ``feed`` or ``check_rapid`` is called after each move has been cut, and ``record_pause`` between moves.
+    Call ``check_feed`` or ``check_rapid`` after each move has been cut, and ``record_pause`` between moves.
     """
 
     stock: Stock | None = None
@@ -91,11 +94,14 @@ class AirCutChecks:
     _went_in: TipMove | None = None  # a rapid next to the part after which nothing has been cut
 
     def record_pause(self) -> None:
-        """Record a wait or a switched output, which may be the purpose of the present tool position."""
+        """Record a wait or an output that is switched.
+
+        A pause may be the purpose of the present tool position.
+        """
         self._went_in = None
 
     def check_rapid(self, move: TipMove, cut: Cut, tool: int) -> Iterator[Found]:
-        """Yield faults of the feeds before a rapid and of earlier rapids, which have cut nothing."""
+        """Yield the faults of the feeds before a rapid and of earlier rapids that cut nothing."""
         if tool != self._tool:
             self._tool, self._went_in = tool, None
         yield from self._end_of_feeds()
@@ -120,9 +126,9 @@ class AirCutChecks:
         self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int, cutting_direction: int,
         *, is_drill: bool = False,
     ) -> Iterator[Found]:  # fmt: skip
-        """Yield faults of a feed that meets no material.
+        """Yield the faults of a feed that cuts no material.
 
-        ``cutting_direction`` is the sign of Z of the cutting direction. ``is_drill`` is True for a drill
+        ``cutting_direction`` is the sign of the Z motion while cutting. ``is_drill`` is True for a drill
         with a known diameter.
         """
         if tool != self._tool:
@@ -162,7 +168,10 @@ class AirCutChecks:
 
     @property
     def uncut_live_feeds(self) -> list[tuple[int, int, int]]:
-        """Line and block of the first feed of each live tool that has cut nothing, with its T."""
+        """Return the line, block number and tool number of each live tool that has cut nothing.
+
+        The line and the block are those of the first feed of the tool.
+        """
         return [(*at, tool) for tool, at in self._milled.items() if at is not None]
 
     def _end_of_feeds(self) -> Iterator[Found]:
@@ -204,9 +213,10 @@ class AirCutChecks:
         return self.stock is not None and move.points[-1][0] < self.stock.front_z_mm - NEAR_MATERIAL_MM
 
     def _is_exit_feed(self, move: TipMove, cutter: Cutter, *, is_after_rapid: bool) -> bool:
-        """Return whether a tool feeds forward out of the part on a turned surface, as after a missing minus.
+        """Return whether a tool feeds forward out of the part on a turned surface.
 
-        A boring tool is checked only if it starts at the face, because it feeds out of its bore.
+        This typically results from a missing minus sign. A boring tool is checked only if it starts at the
+        face, because it feeds out of its bore.
         """
         if self.stock is None or cutter.is_drill:
             return False
@@ -238,7 +248,7 @@ class AirCutChecks:
             )
 
     def _is_outside_stock(self, move: TipMove) -> bool:
-        """Return whether a move cuts along Z next to the stock but outside it."""
+        """Return whether a move cuts along Z near the stock but completely outside it."""
         stock, zs = self.stock, [z for z, _ in move.points]
         if (
             stock is None
@@ -252,7 +262,7 @@ class AirCutChecks:
 
 
 def is_near_material(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
-    """Return whether the edge is near material at one of these positions."""
+    """Return whether the edge is near material at any of the given positions."""
     around = (
         (0.0, -NEAR_MATERIAL_MM),
         (0.0, NEAR_MATERIAL_MM),
@@ -263,7 +273,7 @@ def is_near_material(cutter: Cutter, part: TurnedPart, *places: Point) -> bool:
 
 
 def _air_fraction(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
-    """Return the share of a move that is far from all material, sampled along the move."""
+    """Return the fraction of a move that is far from all material, sampled along the move."""
     places = [
         (a[0] + (b[0] - a[0]) * share, a[1] + (b[1] - a[1]) * share)
         for a, b in pairwise(move.points)
@@ -275,7 +285,7 @@ def _air_fraction(cutter: Cutter, part: TurnedPart, move: TipMove) -> float:
 def check_cut_size(
     move: TipMove, cut: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, is_stock_specified: bool
 ) -> Iterator[Found]:
-    """Yield faults of a feed whose cut ``cut`` is too large for the tool."""
+    """Yield the faults of a feed if ``cut`` is too large for the tool."""
     yield from _check_feed_rate(move, shape, tool, has_holder=cutter.has_holder)
     if move.kind is BlockKind.THREAD:
         return
@@ -301,7 +311,10 @@ def _check_feed_rate(move: TipMove, shape: ToolShape, tool: int, *, has_holder: 
 
 
 def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, float]:
-    """Return the usual maximum feed in mm (0: none), the factor that breaks the tool, and a safe feed."""
+    """Return the usual maximum feed, the factor at which the tool breaks, and a safe feed.
+
+    Feeds are in mm/rev; a maximum of 0 means no limit.
+    """
     if shape.kind in _DRILLS and has_holder:
         share = _REAMER_FEED_FRACTION if shape.kind is ToolKind.REAMER else _DRILL_FEED_FRACTION
         return share * shape.diameter, _BREAKING_FACTOR, 0.0
@@ -313,7 +326,7 @@ def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, fl
 
 
 def _feed_message(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
-    """Return the message for a feed above the limit of ``_feed_limit``."""
+    """Return the message for a feed that exceeds the limit of ``_feed_limit``."""
     name, text = format_edge_name(tool), move.modal.format_length
     shown = move.modal.format_feed(feed, per_rev=True)
     if shape.kind in _DRILLS:
@@ -339,15 +352,16 @@ def _feed_message(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Me
 
 
 def _is_z_move(move: TipMove) -> bool:
-    """Return whether a move is more along Z than across it."""
+    """Return whether a move is longer along Z than across Z."""
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     return abs(z1 - z0) > abs(r1 - r0)
 
 
 def _check_blade_turning(move: TipMove, cut: Cut, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a blade does not turn further along Z than its width and deeper than it can bend.
+    """Check that a blade does not turn too far along Z.
 
-    A chamfer at 45° and the finishing cut on the wall of a groove are permitted.
+    A cut along Z that is longer than the width of the blade must not be deeper than the blade can bend. A
+    chamfer at 45° and the finishing cut on the wall of a groove are permitted.
     """
     (z0, r0), (z1, r1) = move.points[0], move.points[-1]
     if abs(z1 - z0) <= 2.0 * abs(r1 - r0):
@@ -367,11 +381,12 @@ def _check_blade_turning(move: TipMove, cut: Cut, shape: ToolShape, tool: int) -
 def _check_depth(
     move: TipMove, cut: Cut, shape: ToolShape, cutter: Cutter, tool: int, *, is_stock_specified: bool
 ) -> Iterator[Found]:
-    """Check the depth of a cut against the edge length, and against the bar of a boring tool.
+    """Check the depth of a cut against the edge length and, for a boring tool, against the bar.
 
-    The check uses the mean depth, because a finishing pass that ends at a shoulder briefly cuts all of it.
-    For a cut across Z, the mean is taken along Z. A pass that is deeper anywhere than the edge length is an
-    error. A mean depth that no insert of this shape, or no such bar, can cut is also an error.
+    The check uses the mean depth, because a finishing pass that ends at a shoulder briefly cuts the whole
+    shoulder. For a cut across Z, the mean is calculated along Z. A pass that is deeper at any point than
+    the edge length is an error. A mean depth that no insert of this shape, or no such bar, can cut is also
+    an error.
     """
     along, text = _is_z_move(move), move.modal.format_length
     deep = _mean_depth(cut, is_z_move=along)
@@ -408,14 +423,20 @@ def _check_depth(
 
 
 def _mean_depth(cut: Cut, *, is_z_move: bool) -> float:
-    """Return the mean depth along r, or along Z for a cut across; pieces of an arc follow each other."""
+    """Return the mean depth along r in mm, or the mean depth along Z for a cut across Z.
+
+    The pieces of an arc are cut one after the other.
+    """
     if is_z_move:
         return cut.area / max(cut.width_mm, cut.front_z_mm - cut.back_z_mm)
     return min(cut.width_mm, cut.area / cut.depth_mm)
 
 
 def _breaking_depth(shape: ToolShape) -> float:
-    """Return the depth of cut in mm at which the tool breaks; unspecified dimensions set no limit."""
+    """Return the depth of cut in mm at which the tool breaks.
+
+    Dimensions that are not specified set no limit.
+    """
     bar = (
         _BAR_DEPTH_FRACTION * shape.diameter if shape.kind is ToolKind.BORING and shape.diameter else math.inf
     )
@@ -423,7 +444,10 @@ def _breaking_depth(shape: ToolShape) -> float:
 
 
 def find_max_depth(shape: ToolShape, depth_fractions: Mapping[str, float] = USUAL_DEPTH_FRACTIONS) -> float:
-    """Return the usual maximum depth of cut in mm, a share of the edge or of a round insert."""
+    """Return the usual maximum depth of cut in mm.
+
+    This is a fraction of the edge length, or of the diameter of a round insert.
+    """
     insert = _insert(shape)
     share = depth_fractions.get(insert.shape, _OTHER_SHAPE)
     edge = insert.edge_lengths[0] - insert.nose_radius if insert.edge_lengths else insert.inscribed_circle

@@ -1,4 +1,4 @@
-"""Checks of a cutting edge: cutting side, position along the part, and direction of the spindle."""
+"""Checks of a cutting edge: its cutting side, its position along the part, and the spindle direction."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _DRILLS = frozenset({ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, Too
 
 @dataclass(slots=True)
 class EdgeChecks:
-    """Checks of cutting edges, called with the moves in their order after each has been cut."""
+    """Checks of cutting edges, which are called in the order of the moves after each move has been cut."""
 
     stock: Stock | None = None
     is_stock_specified: bool = False  # the stock is specified instead of assumed
@@ -74,7 +74,10 @@ class EdgeChecks:
         part: TurnedPart,
         tool: int,
     ) -> Iterator[Found]:
-        """Yield the faults of a feed that has just cut; ``cuts`` are the cuts of its straight pieces."""
+        """Yield the faults of a feed that has just been cut.
+
+        ``cuts`` are the cuts of the straight pieces of the feed, and ``cut`` is their total.
+        """
         if shape is None or not cut:
             return
         if (
@@ -117,7 +120,10 @@ class EdgeChecks:
     def _check_spindle_direction(
         self, move: TipMove, shape: ToolShape, cutter: Cutter, tool: int
     ) -> Iterator[Found]:
-        """Check M03 and M04 against the hand of a drill. Each edge must cut in one direction only."""
+        """Check M03 and M04 against the hand of a drill.
+
+        Also check that each edge cuts in one spindle direction only.
+        """
         if not move.rpm:
             return
         if shape.kind in _DRILLS:
@@ -144,7 +150,7 @@ class EdgeChecks:
             yield Found("wrong-spindle-direction", words)
 
     def _check_axis_crossing(self, move: TipMove, cut: Cut, cutter: Cutter, tool: int) -> Iterator[Found]:
-        """Check that an outside tool does not feed through the axis or cut on the other side of it."""
+        """Check that an outside tool does not feed through the axis or cut beyond the axis."""
         face = (self.stock.front_z_mm if self.stock is not None else 0.0) - _FACE_DEPTH_MM
         beyond = max((-r * cutter.x_sign for z, r in move.points[1:] if z < face), default=0.0)
         turns = max(r * cutter.x_sign for _, r in move.points) < 0.0 and cut.width_mm > _ENTERS
@@ -178,7 +184,7 @@ class EdgeChecks:
             )
 
     def _check_contour_past_part_off(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check for an arc on the bar side of the deepest part-off, which no part contains."""
+        """Check for an arc on the bar side of the deepest part-off, where no part has a contour."""
         if self.part_off_z is None or move.kind is not BlockKind.ARC or shape.kind not in INSERT_TOOLS:
             return
         front = max(z for z, _ in move.points)
@@ -193,7 +199,10 @@ class EdgeChecks:
             yield Found("contour-past-part-off", words)
 
     def _check_past_stock(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        """Check that a feed does not pass the far end of the stock; the point of a drill may."""
+        """Check that a feed does not pass the far end of the stock.
+
+        Only the point of a drill may pass it.
+        """
         if self.stock is None or not self.is_stock_specified:
             return
         z, allowed = min(z for z, _ in move.points), _BREAKS_THROUGH
@@ -241,14 +250,14 @@ def _turns_wrongly(move: TipMove, shape: ToolShape, tool: int) -> str:
 def _is_against_rake(shape: ToolShape, rpm: float) -> bool:
     """Return whether the spindle turns against the rake of a front tool that is mounted face up.
 
-    A tool mounted upside down cuts along Z opposite to its hand and is not checked.
+    A tool that is mounted upside down cuts along Z opposite to its hand and is not checked.
     """
     upright = {Hand.RIGHT: -1, Hand.LEFT: 1}.get(shape.hand) == shape.direction[0]
     return shape.kind in INSERT_TOOLS and upright and not shape.behind and rpm < 0.0
 
 
 def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a stationary round tool is on the axis when it cuts."""
+    """Check that a round tool that does not rotate is on the axis when it cuts."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.rpm and off > _OFF_AXIS:
         words = Message(
@@ -260,7 +269,7 @@ def _check_axis_position(move: TipMove, shape: ToolShape, tool: int) -> Iterator
 
 
 def _check_speed_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-    """Check that a round tool does not cut on the axis under constant surface speed without an rpm limit."""
+    """Check that a round tool on the axis does not cut at constant surface speed without an rpm limit."""
     off = min(abs(r) for _, r in move.points)
     if shape.kind in _DRILLS and move.modal.css and move.modal.max_css_rpm is None and off < _OFF_AXIS:
         words = Message(
@@ -271,7 +280,7 @@ def _check_speed_limit(move: TipMove, shape: ToolShape, tool: int) -> Iterator[F
 
 
 def _arc_turn_angle(move: TipMove) -> float:
-    """Return the angle in degrees by which the path of an arc turns; 0 for any other move."""
+    """Return the angle in degrees through which the path of an arc turns, or 0 for any other move."""
     if move.kind is not BlockKind.ARC or len(move.points) < 3:
         return 0.0
     headings = np.unwrap(np.arctan2(*np.diff(np.array(move.points), axis=0).T[::-1]))
@@ -282,7 +291,7 @@ def _arc_turn_angle(move: TipMove) -> float:
 def _check_edge_hollow(
     move: TipMove, shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """Check for a small quarter circle that starts along Z at the face and is therefore concave."""
+    """Check for a small quarter circle at the face that starts along Z and is therefore concave."""
     if not (cutter.has_holder and shape.kind is ToolKind.TURNING and cutter.side is CutSide.OUTSIDE):
         return
     if not _QUARTER[0] < _arc_turn_angle(move) < _QUARTER[1] or shape.direction[0] >= 0:
@@ -310,9 +319,10 @@ def depth_from_face(move: TipMove, stock: Stock | None) -> float:
 def _check_cutting_side(
     move: TipMove, cuts: Sequence[Cut], shape: ToolShape, cutter: Cutter, part: TurnedPart, tool: int
 ) -> Iterator[Found]:
-    """Check for cuts with the back of an insert: deep backward feeds, or walls that are too steep for it.
+    """Check for cuts with the back of an insert.
 
-    ``cuts`` are the cuts of the straight pieces of the move.
+    These are deep backward feeds, and walls that are too steep for the insert. ``cuts`` are the cuts of the
+    straight pieces of the move.
     """
     forward, across = shape.direction
     if not forward or not across:
@@ -354,7 +364,10 @@ def _check_cutting_side(
 
 
 def _leaves_wall(part: TurnedPart, cut: Cut, forward: int, r: float, side: CutSide) -> bool:
-    """Return whether material above the tip remains right after the cut, as a wall that the back has hit."""
+    """Return whether material remains outside the tip immediately after the cut.
+
+    Such a wall has been hit by the back of the insert.
+    """
     step = part.columns.step_mm
     edge = cut.front_z_mm + step if forward < 0 else cut.back_z_mm - step
     at = part.columns.find_column(edge)
@@ -373,9 +386,9 @@ def _goes_back(start: Point, end: Point, forward: int) -> bool:
 def _iter_steep_runs(
     points: Sequence[Point], cuts: Sequence[Cut], shape: ToolShape, steepest: float
 ) -> Iterator[tuple[Point, Point, Cut, float]]:
-    """Yield the parts of a move that enter more steeply than ``steepest`` degrees.
+    """Yield the parts of a move that enter the material at an angle of more than ``steepest`` degrees.
 
-    Each item is the start, the end, the cut, and the greatest angle.
+    Each item is the start, the end, the cut and the greatest angle.
     """
     forward, across = shape.direction
     start, end, met, angle = points[0], points[0], NO_CUT, 0.0

@@ -1,4 +1,7 @@
-"""Checks against the machine: travel limits, and tool, collet, live tool and inputs while cutting."""
+"""Checks against the machine: the travel limits, and the states that a cut requires.
+
+A cut requires an active tool, a closed collet, and a running spindle or live tool. Inputs are checked too.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ MM_PER_INCH = 25.4
 
 
 def is_cutting_move(block: Block) -> bool:
-    """Return whether a move would cut material, so that it is not a rapid or a fast feed."""
+    """Return whether a move would cut material and is therefore not a rapid or a fast feed."""
     return block.kind in _PATH_KINDS and (
         block.per_rev or block.feed < _QUICK or block.kind is BlockKind.THREAD
     )
@@ -47,10 +50,11 @@ def is_cutting_move(block: Block) -> bool:
 
 @dataclass(slots=True)
 class CuttingChecks:
-    """Checks called with the blocks of a program in their order; ``findings`` returns the results.
+    """Checks that are called with the blocks of a program in their order.
 
-    A continuing fault gives one finding, at its first block. For languages other than OmniTurn, whose frames
-    and collets differ, only tool and spindle are checked.
+    ``findings`` returns the results. A fault that persists gives one finding, at its first block. For
+    languages other than OmniTurn, only the tool and the spindle are checked, because their frames and
+    collets differ.
     """
 
     machine: Machine
@@ -74,12 +78,12 @@ class CuttingChecks:
     )
 
     def copy_for_branch(self) -> CuttingChecks:
-        """Return a copy in the same state for another path through the program, without the findings."""
+        """Return a copy in the same state, without the findings, for another path through the program."""
         return replace(self, _found=[], _without_tool=[])
 
     @property
     def findings(self) -> list[Diagnostic]:
-        """The findings in the order of the blocks."""
+        """Return the findings in the order of the blocks."""
         weight = Severity.ERROR if self._names_tool else Severity.WARNING
         return [*self._found, *(replace(each, severity=weight) for each in self._without_tool)]
 
@@ -106,7 +110,7 @@ class CuttingChecks:
                     (self._cut if own else self._check_other_dialect_cut)(block)
 
     def _check_first_move(self, block: Block) -> None:
-        """Warn about an incremental first move, whose start was not known in the proof."""
+        """Warn about an incremental first move, because its start position was unknown in the proof."""
         self.is_position_known = True
         if block.modal.absolute is False:
             text = (
@@ -157,7 +161,7 @@ class CuttingChecks:
             self._spindle_off(block)
 
     def _check_surface_speed(self, block: Block) -> None:
-        """Check the speeds that G96 requires at both ends of a cut against the limits in force."""
+        """Check the spindle speeds that G96 requires at both ends of a cut against the active limits."""
         modal, most = block.modal, self.machine.spindle.max_rpm
         speed = block.css or 0.0
         radii = sorted((abs(block.x0), abs(block.x)))
@@ -214,7 +218,10 @@ class CuttingChecks:
         self._reported |= {"no-tool"}
 
     def _check_collet(self, block: Block) -> None:
-        """Check a cut with an open collet. Bar work may move a stop or gripper, but must not cut."""
+        """Check that a move does not cut while the collet is open.
+
+        Bar work may move a stop or a gripper, but must not cut.
+        """
         if block.per_rev or block.kind in _METAL or block.modal.c_locked:
             text = "This move cuts with the collet open, so the part is not clamped."
             self._report_once(
@@ -286,7 +293,10 @@ class CuttingChecks:
         )
 
     def _report_once(self, block: Block, severity: Severity, check: str, text: str, hint: str) -> None:
-        """Add a finding once until the fault is corrected. An error is added even after a warning."""
+        """Add a finding only once until the fault is corrected.
+
+        An error is added even after a warning.
+        """
         key = f"{check} {severity}"
         if key not in self._reported:
             self._reported |= {key}
@@ -301,7 +311,10 @@ class CuttingChecks:
 
 
 def _iter_distinct_moves(series: StraightMoveSeries) -> Iterator[Block]:
-    """Yield the first move of a series, and its first cut if the first move is too fast to cut."""
+    """Yield the first move of a series.
+
+    If the first move is too fast to cut, also yield the first move that cuts.
+    """
     yield series[0]
     if series.feed is not None and not is_cutting_move(series[0]):
         yield from (series[at] for at in (series.feed < _QUICK).nonzero()[0][:1].tolist())
@@ -314,7 +327,7 @@ def _finding(block: Block, severity: Severity, check: str, text: str, hint: str)
 def check_travel(
     blocks: Sequence[Block], machine: Machine, dialect: Dialect = Dialect.OMNITURN
 ) -> Iterator[Diagnostic]:
-    """Yield an error for each block whose machine positions leave the travel, along the whole move."""
+    """Yield an error for each block whose machine positions exceed the travel limits anywhere on the move."""
     limits = [(axis, *axis.travel_with_margin) for axis in machine.axes]
     for block in _iter_outside_blocks(blocks, limits):
         for (axis, least, most), (low, high) in zip(limits, block.compute_machine_bounds(), strict=True):
@@ -325,7 +338,10 @@ def check_travel(
 def _iter_outside_blocks(
     blocks: Sequence[Block], limits: Sequence[tuple[Axis, float, float]]
 ) -> Iterator[Block]:
-    """Yield blocks that may leave the travel. Straight moves of a lathe are checked at their ends."""
+    """Yield the blocks that may exceed the travel limits.
+
+    Straight moves of a lathe are checked only at their ends.
+    """
     (_, x_least, x_most), (_, z_least, z_most) = limits[:2]
     endless = all(least == -math.inf for _, least, _ in limits[2:])
     if endless and isinstance(blocks, StraightMoveSeries):
@@ -394,7 +410,10 @@ def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
 
 
 def check_c_motion(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagnostic]:
-    """Yield an error for each block that moves C while the spindle turns, if the spindle is C."""
+    """Yield an error for each block that moves C while the spindle turns.
+
+    Blocks are checked only if the spindle is the C axis.
+    """
     if not machine.spindle_is_c or isinstance(blocks, StraightMoveSeries):  # a series moves only X and Z
         return
     for block in blocks:

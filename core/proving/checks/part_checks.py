@@ -1,4 +1,4 @@
-"""The checks of the proof, with one entry each, used for the findings and for ``docs/checks.md``."""
+"""The checks of the proof, with one entry per check, used for the findings and for ``docs/checks.md``."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 
 @dataclass(frozen=True, slots=True)
 class PartCheck:
-    """One check: its purpose, its condition, and the remedy.
+    """One check with its purpose, its condition and the remedy.
 
-    ``required_data`` lists the data of stock and tools on which it depends. If they are not specified, the
-    finding is only assumed. ``KIND`` is the kind of tool, which a comment may state. ``HOLES`` are those of
-    drills without a diameter.
+    ``required_data`` lists the data of stock and tools on which the check depends. If these data are not
+    specified, the finding is based on assumptions. ``KIND`` means the kind of tool, which a comment may
+    name. ``HOLES`` means the holes of drills without a diameter.
     """
 
     severity: Severity
@@ -423,7 +423,7 @@ PROGRAM_CHECKS: Mapping[str, PartCheck] = {
 
 
 def is_serious(finding: Diagnostic) -> bool:
-    """Return whether a finding is an error, or would be one if the assumed data were specified."""
+    """Return whether a finding is an error, or would be an error if the assumed data were specified."""
     if finding.severity is Severity.ERROR:
         return True
     return (

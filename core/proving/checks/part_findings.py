@@ -1,4 +1,4 @@
-"""Findings about tool and material, move by move, according to the entries of ``part_checks``."""
+"""Findings about tools and material for each move, according to the entries of ``part_checks``."""
 
 from __future__ import annotations
 
@@ -47,7 +47,10 @@ _SAFE = 0.5  # fraction of the speed at which a bar begins to whirl
 
 @dataclass(slots=True)
 class PartFindings:
-    """Checks the moves in their order and lets each one remove its material."""
+    """The findings of a program, collected while each move is checked and removes its material.
+
+    The moves must be passed in their order.
+    """
 
     find_shape: Callable[[int], ToolShape | None]
     stock: Stock | None
@@ -80,17 +83,20 @@ class PartFindings:
 
     @property
     def clamping_bodies(self) -> dict[str, TurnedPart]:
-        """Chuck and tailstock as bodies, by the check that supervises them; unknown ones are left out."""
+        """Return the chuck and the tailstock as bodies, by the name of the check that monitors each body.
+
+        Bodies that are unknown are left out.
+        """
         known = {"into-chuck": self._chuck, "into-tailstock": self._tailstock}
         return {check: body for check, body in known.items() if body is not None}
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """The findings, each once per line."""
+        """Return the findings, at most one per check and line."""
         return tuple(self._found.values())
 
     def check_move(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """Cut the material of a move and check the result."""
+        """Remove the material that a move cuts, and check the result."""
         if self._leaves_thread(move, cutter):
             self._found_by(move, self.threads.check_move(move, NO_CUT, part, self.find_shape(tool), tool))
             self._found_by(move, self._airs.check_rapid(move, NO_CUT, tool))
@@ -143,10 +149,10 @@ class PartFindings:
         self._before = move
 
     def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
-        """Return whether a rapid leaves the groove of a thread pass straight away from the material.
+        """Return whether a rapid leaves the groove of a thread pass directly away from the material.
 
-        The end position of the pass is not exactly known, so the material that the edge meets is in the
-        groove.
+        The end position of the pass is not exactly known, so the material that the edge touches is inside
+        the groove.
         """
         if not move.is_fast or self._before is None or self._before.kind is not BlockKind.THREAD:
             return False
@@ -158,7 +164,7 @@ class PartFindings:
             self._add(check, at or move, text)
 
     def _check_clamping(self, move: TipMove, cutter: Cutter, tool: int) -> None:
-        """Check for collisions with chuck, collet and tailstock, and the speed of the chuck."""
+        """Check for collisions with the chuck, collet and tailstock, and check the speed of the chuck."""
         if self.clamping is None:
             return
         if met := _find_body_hit(self._chuck, move, cutter):
@@ -202,7 +208,10 @@ class PartFindings:
             self._add("stock-whips", move, text)
 
     def _check_rapid_cut(self, move: TipMove, cut: Cut, *, is_certain: bool) -> None:
-        """Check a rapid that removes material. ``certain`` means that the tip itself is in the material."""
+        """Check a rapid that removes material.
+
+        ``is_certain`` means that the tip itself is in the material.
+        """
         if cut.depth_mm <= RAPID_TOLERANCE_MM or cut.width_mm <= RAPID_TOLERANCE_MM:
             return
         deep, fed = _depth(cut, move), move.kind is not BlockKind.RAPID
@@ -220,7 +229,10 @@ class PartFindings:
         self._add("through-part" if behind_cut else "rapid-into-stock", move, text, certain=is_certain)
 
     def _check_rubbing(self, move: TipMove, cut: Cut, cutter: Cutter, part: TurnedPart, tool: int) -> None:
-        """Check for a specified insert that returns in rapid along the surface that it has just turned."""
+        """Check for an insert that returns in rapid along the surface that it has just turned.
+
+        The insert must be specified.
+        """
         (z0, r0), (z1, r1) = move.points[0], move.points[-1]
         before, shape = self._before, self.find_shape(tool)
         if shape is None or shape.kind is not ToolKind.TURNING or not cutter.has_holder:
@@ -241,7 +253,7 @@ class PartFindings:
             )
 
     def record_pause(self) -> None:
-        """Record that the program waits or switches an output."""
+        """Record that the program waits or switches an output at this point."""
         self._airs.record_pause()
 
     def finish_program(self) -> None:
@@ -267,7 +279,7 @@ class PartFindings:
             )
 
     def report_stationary_cut(self, line: int, block_number: int, tool: int) -> None:
-        """Report that a tool cuts material while neither tool nor spindle turns."""
+        """Report that a tool cuts material while neither the tool nor the spindle turns."""
         self._store_finding(
             "cut-standing",
             line,
@@ -276,7 +288,7 @@ class PartFindings:
         )
 
     def report_nothing_cut(self, line: int, block_number: int, text: str) -> None:
-        """Report that a tool, or the whole program, cuts nothing."""
+        """Report that a tool, or the whole program, cuts no material."""
         self._store_finding("unmade-cut", line, block_number, text)
 
     def check_milled_move(
@@ -289,8 +301,9 @@ class PartFindings:
         *,
         touches_material: TouchesMaterial,
     ) -> None:
-        """Check a move of a live tool. ``touches_material`` returns whether it followed material without a
-        cut.
+        """Check a move of a live tool.
+
+        ``touches_material`` returns whether the move followed material without cutting.
         """
         if not move.is_axial and not _is_cross_drilling(move) and self._crosses_axis(move):
             self._store_finding(
@@ -327,7 +340,7 @@ class PartFindings:
         return ends[0] * ends[1] < 0.0 and float(move.path[:, 1].min()) < front
 
     def _record_part_off(self, move: TipMove, cut: Cut, shape: ToolShape | None, tool: int) -> None:
-        """Record the stub that a parting tool leaves at the axis, until it cuts the stub."""
+        """Record the stub that a parting tool leaves at the axis, until the tool cuts the stub."""
         if self._left is not None and self._left[0] != tool:
             self._tell_left()
         r = abs(move.points[-1][1])
@@ -367,7 +380,10 @@ class PartFindings:
         self._store_finding(check, move.line, move.n, text, is_certain=certain)
 
     def _store_finding(self, check: str, line: int, n: int, text: str, *, is_certain: bool = False) -> None:
-        """Store a finding. ``certain`` means that it applies to every tool and depends only on the stock."""
+        """Store a finding.
+
+        ``is_certain`` means that the finding applies to every tool and depends only on the stock.
+        """
         if len(self._found) < _MAX_FINDINGS and (check, line) not in self._found:
             entry, why = PART_CHECKS[check], self.silenced_checks.get(check, "")
             rests_on = (
@@ -400,7 +416,7 @@ def _find_severity(entry: PartCheck, assumptions: tuple[str, ...], silenced: str
 
 
 def _find_body_hit(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cut:
-    """Return the material of a body that a tool would hit. The body is not cut."""
+    """Return the material of a body that a tool would hit, without cutting the body."""
     met = NO_CUT
     if body is not None:
         for start, end in pairwise(move.points):
@@ -409,12 +425,12 @@ def _find_body_hit(body: TurnedPart | None, move: TipMove, cutter: Cutter) -> Cu
 
 
 def _shift_toward_chuck(move: TipMove, distance: float) -> TipMove:
-    """Return the move shifted toward the chuck by a clearance in mm."""
+    """Return the move shifted toward the chuck by ``distance`` in mm, which is a clearance."""
     return move._replace(points=tuple((z - distance, r) for z, r in move.points))
 
 
 def _execute_move(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list[Cut], Cut]:
-    """Cut a move and return the cuts of its straight pieces, and the collision of the holder."""
+    """Cut a move, and return the cuts of its straight pieces and the collision of the holder."""
     cuts, struck = list[Cut](), NO_CUT
     turns = 0.0
     part.holds_parted_pieces = (
@@ -432,7 +448,10 @@ def _execute_move(move: TipMove, cutter: Cutter, part: TurnedPart) -> tuple[list
 
 
 def _combine_cuts(move: TipMove, cuts: Iterable[Cut]) -> Cut:
-    """Return the total cut of a move. In a thread, revolutions deepen the cut; along a path they do not."""
+    """Return the total cut of a move.
+
+    In a thread, further revolutions deepen the cut. On other paths, the pieces are cut one after the other.
+    """
     met = NO_CUT
     for cut in cuts:
         met = met.combine(cut) if move.kind is BlockKind.THREAD else met.combine_sequence(cut)

@@ -33,7 +33,10 @@ _SAME_END = 1.0  # mm of Z between passes of one thread
 
 
 class Found(NamedTuple):
-    """The result of a check for the move just checked, or for the move ``at``."""
+    """A fault that a check has found.
+
+    The fault is at ``move`` or, if this is None, at the move that was just checked.
+    """
 
     check_name: str
     message: str
@@ -41,7 +44,10 @@ class Found(NamedTuple):
 
 
 class DriveLimits(NamedTuple):
-    """Limits of axis and spindle: mm/s² along Z and rpm/s of the spindle deceleration; 0 if unknown."""
+    """Limits of the Z axis and the spindle, with 0 if unknown.
+
+    The acceleration along Z is in mm/s², and the deceleration of the spindle is in rpm/s.
+    """
 
     z_acceleration: float = 0.0
     spindle_deceleration: float = 0.0
@@ -52,10 +58,10 @@ UNKNOWN_LIMITS = DriveLimits()
 
 @dataclass(slots=True)
 class ThreadChecks:
-    """Checks of threads, called with the moves in their order: ``record_material`` and ``check_move`` for
-    each cut.
+    """Checks of threads, which are called with the moves in their order.
 
-    ``releases_tap`` returns by T whether a tap holder reverses or releases the tap automatically.
+    Call ``record_material`` before each cut and ``check_move`` after it. ``releases_tap`` returns, for a T
+    number, whether the tap holder reverses or releases the tap automatically.
     """
 
     drive_limits: DriveLimits = UNKNOWN_LIMITS
@@ -86,7 +92,7 @@ class ThreadChecks:
 
     @staticmethod
     def _is_in_bore(move: TipMove, part: TurnedPart, columns: slice) -> bool:
-        """Return whether the thread is in a bore, with its material outside its edge."""
+        """Return whether the thread is in a bore, with the material outside the edge."""
         inner = part.min_radii[columns]
         bored = inner[inner > 0.0]
         if not len(bored):
@@ -97,7 +103,7 @@ class ThreadChecks:
     def check_move(
         self, move: TipMove, cut: Cut, part: TurnedPart, shape: ToolShape | None, tool: int
     ) -> Iterator[Found]:
-        """Yield the faults of a move that has just been cut."""
+        """Yield the thread faults of a move that has just been cut."""
         goes_on = self._pass is not None and move.kind is BlockKind.THREAD  # the pull-out of the thread
         yield from self._check_pass_end(move)
         if shape is not None and shape.kind is ToolKind.TAP:
@@ -124,7 +130,10 @@ class ThreadChecks:
     # --- threads cut by an insert
 
     def _record_pass(self, move: TipMove, tool: int, *, cuts: bool) -> Iterator[Found]:
-        """Record a thread pass. Passes with another lead or Z range belong to another thread."""
+        """Record a thread pass, and yield the faults of the previous thread when a new thread starts.
+
+        Passes with a different lead or Z range belong to different threads.
+        """
         before = self._begun
         if before is None or not _is_same_thread(before, move):
             yield from self.finish_thread()
@@ -181,7 +190,7 @@ class ThreadChecks:
             yield Found("thread-run-up", words)
 
     def _edge_depth(self, move: TipMove, part: TurnedPart) -> float:
-        """Return the depth in mm of the edge below the material before the first pass, or 0."""
+        """Return the depth in mm of the edge below the surface before the first pass, or 0."""
         if self._crest is None:
             return 0.0
         _, first, radii, inwards = self._crest
@@ -199,12 +208,18 @@ class ThreadChecks:
         return z0 - met.front_z_mm if z1 < z0 else met.back_z_mm - z0
 
     def _braking_distance(self, move: TipMove) -> float:
-        """Return the distance in mm in which the axis reaches the speed of the lead, or stops from it."""
+        """Return the distance in mm in which the axis accelerates to the speed of the lead.
+
+        The axis stops from this speed in the same distance.
+        """
         accel = self.drive_limits.z_acceleration
         return (move.feed_per_rev_mm * abs(move.rpm) / 60.0) ** 2 / (2.0 * accel) if accel else 0.0
 
     def _check_pass_end(self, move: TipMove) -> Iterator[Found]:
-        """Check for an axis that brakes in the material, because the last turns then have a smaller lead."""
+        """Check that the axis does not brake in the material.
+
+        If it does, the last revolutions of the thread have a smaller lead.
+        """
         if self._pass is None:
             return
         (cut, met), self._pass = self._pass, None
@@ -324,7 +339,7 @@ class ThreadChecks:
 
 
 def _is_same_thread(previous: TipMove, move: TipMove) -> bool:
-    """Return whether two passes have the same lead and the same Z range."""
+    """Return whether two passes have the same lead and nearly the same Z range."""
     ends = (previous.points[0], previous.points[-1]), (move.points[0], move.points[-1])
     apart = max(abs(a[0] - b[0]) for a, b in zip(*ends, strict=True))
     return apart < _SAME_END + move.feed_per_rev_mm and math.isclose(
@@ -333,5 +348,5 @@ def _is_same_thread(previous: TipMove, move: TipMove) -> bool:
 
 
 def _feed_per_revolution(move: TipMove) -> float:
-    """Return the feed of a move per revolution of the spindle in mm, or 0 if the spindle is stopped."""
+    """Return the feed of a move in mm per revolution of the spindle, or 0 if the spindle is stopped."""
     return move.feed_per_rev_mm or (move.speed_mm_s * 60.0 / abs(move.rpm) if move.rpm else 0.0)

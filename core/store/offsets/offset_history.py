@@ -1,4 +1,4 @@
-"""History of the offsets: changes, past states, and undo that does not affect other rows."""
+"""The history of the offsets: changes, past states, and an undo function that does not affect other rows."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ from core.tool_edges import format_edge_name, get_tool_number
 
 
 def undo(connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind) -> tuple[OffsetChange, ...]:
-    """Undo the latest step of a table that is not undone yet and return the resulting changes.
+    """Undo the latest step of a table that is not undone yet, and return the resulting changes.
 
-    Another call undoes the step before it. Raises StoreError if no step is left.
+    Another call undoes the step before it. Raises StoreError if no step remains.
     """
     return _undo(connection, reason, OFFSET_TABLES[kind].log, kind)
 
 
 def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason) -> tuple[OffsetChange, ...]:
-    """Undo the latest step of all tables and return the resulting changes.
+    """Undo the latest step of all tables, and return the resulting changes.
 
     A step that changed several tables is undone in all of them. Another call undoes the step before it.
-    Raises StoreError if no step is left.
+    Raises StoreError if no step remains.
     """
     last = {log: _last_step(connection, log, None) or 0 for log in HISTORY_TABLES}
     order = {log: step if isinstance(step, int) else MAX_STEP_NUMBER for log, step in last.items()}
@@ -48,7 +48,7 @@ def undo_last_step_in_store(connection: sqlite3.Connection, reason: ChangeReason
 def _last_step(
     connection: sqlite3.Connection, log: HistoryTable, kind: OffsetKind | None, number: int | None = None
 ) -> int | None:
-    """Return the latest step that is not undone yet, or None.
+    """Return the number of the latest step that is not undone yet, or None.
 
     ``number`` limits the search to the steps that changed this row.
     """
@@ -85,14 +85,14 @@ def _step_to_undo(
 
 
 def invert_changes(rows: Sequence[OffsetChange]) -> ChangesByNumber:
-    """Return the opposite of these changes: from the new values to the old values."""
+    """Return the opposite of the given changes, from the new values to the old values."""
     return {row.number: (row.new, row.old) for row in rows}
 
 
 def find_undoable_changes(
     connection: sqlite3.Connection, kind: OffsetKind, number: int | None
 ) -> tuple[OffsetChange, ...]:
-    """Return the changes of the step that ``undo_given_step`` would undo; () if no step is left.
+    """Return the changes of the step that ``undo_given_step`` would undo, or () if no step remains.
 
     ``number`` selects the latest step that changed this row; None selects the latest step of the table.
     """
@@ -108,7 +108,10 @@ def history(connection: sqlite3.Connection, kind: OffsetKind, limit: int) -> tup
 
 
 def read_history_in_store(connection: sqlite3.Connection, limit: int) -> tuple[OffsetChange, ...]:
-    """Return the latest changes of all tables, newest first. A negative ``limit`` returns all changes."""
+    """Return the latest changes of all tables, newest first.
+
+    If ``limit`` is negative, all changes are returned.
+    """
     tail = "ORDER BY id DESC LIMIT ?"
     found = [each for log in HISTORY_TABLES for each in select_changes(connection, log, tail, (limit,))]
     return tuple(sorted(found, key=lambda each: each.step, reverse=True)[: limit if limit >= 0 else None])
@@ -127,7 +130,7 @@ def read_rows_at(connection: sqlite3.Connection, kind: OffsetKind, moment: str) 
 def undo_given_step(
     connection: sqlite3.Connection, reason: ChangeReason, kind: OffsetKind, number: int | None, step: int
 ) -> tuple[OffsetChange, ...]:
-    """Undo exactly this step and return the resulting changes.
+    """Undo the step ``step`` and no other step, and return the resulting changes.
 
     Raises StoreError if a later step has changed the row, or if another row of the step has changed since.
     """

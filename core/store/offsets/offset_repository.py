@@ -28,10 +28,10 @@ if TYPE_CHECKING:
 
 
 class OffsetTable(Generic[RowT]):
-    """One table of offsets, with rows by number, in mm and degrees, X as a radius.
+    """One table of offsets, with rows by number, in mm and degrees, with X as a radius.
 
-    ``why`` and ``who`` of a change are stored in the history. Methods raise StoreError as described in
-    ``StoreAccess``. The future of a change also raises StoreError if a number or value is out of range.
+    The reason and the author of a change are stored in the history. Methods raise StoreError as described
+    in ``StoreAccess``. The future of a change also raises StoreError if a number or value is out of range.
     """
 
     def __init__(self, store: StoreAccess, kind: OffsetKind, row: type[RowT]) -> None:
@@ -42,25 +42,37 @@ class OffsetTable(Generic[RowT]):
         return self._store.run_query(offset_tables.read_typed_rows, self._kind, self._row)
 
     def read_rows_at(self, moment: str) -> dict[int, RowT]:
-        """Return the rows as they were at ``moment``, a UTC time as in the history, by number."""
+        """Return the rows as they were at ``moment``, by number.
+
+        ``moment`` is a UTC time as in the history.
+        """
         rows = self._store.run_query(offset_history.read_rows_at, self._kind, moment)
         return {number: row for number, row in rows.items() if isinstance(row, self._row)}
 
     def change_row(
         self, number: int, why: str, values: Mapping[str, FieldValue], *, who: str = "operator"
     ) -> Future[OffsetRow]:
-        """Set the fields in ``values``, by name, and leave the other fields. The result is the new row."""
+        """Set the fields that ``values`` contains by name, and leave the other fields unchanged.
+
+        The result is the new row.
+        """
         reason, wanted = ChangeReason(why, who), dict(values)
         return self._store.write(lambda c: offset_tables.change_row(c, self._kind, number, reason, wanted))
 
     def remove_row(self, number: int, reason: str, *, author: str = "operator") -> Future[bool]:
-        """Remove a row. The result is whether the row was set."""
+        """Remove a row.
+
+        The result is True if the row was set.
+        """
         return self._store.write(
             lambda c: offset_tables.remove_row(c, self._kind, number, ChangeReason(reason, author))
         )
 
     def remove_all_rows(self, reason: str, *, author: str = "operator") -> Future[int]:
-        """Remove all rows as one step of the history. The result is the number of rows removed."""
+        """Remove all rows as one step of the history.
+
+        The result is the number of removed rows.
+        """
         return self._store.write(lambda c: offset_tables.clear(c, self._kind, ChangeReason(reason, author)))
 
     def read_history(self, limit: int = 100) -> tuple[OffsetChange, ...]:
@@ -68,26 +80,28 @@ class OffsetTable(Generic[RowT]):
         return self._store.run_query(offset_history.history, self._kind, limit)
 
     def find_undoable_changes(self, number: int | None = None) -> tuple[OffsetChange, ...]:
-        """Return the changes that ``undo_step`` would undo; () if no step is left.
+        """Return the changes that ``undo_step`` would undo, or () if no step remains.
 
-        The changes are those of the latest step that changed the row ``number``. None selects the latest step
-        of the table.
+        The changes are those of the latest step that changed the row ``number``. None selects the latest
+        step of the table.
         """
         return self._store.run_query(offset_history.find_undoable_changes, self._kind, number)
 
     def undo_last_step(self, why: str = "undo", *, who: str = "operator") -> Future[tuple[OffsetChange, ...]]:
-        """Undo the latest step of this table. Another call undoes the step before it.
+        """Undo the latest step of this table.
 
-        The result is the changes made. The future raises StoreError if no step is left.
+        Another call undoes the step before it. The result contains the changes that were made. The future
+        raises StoreError if no step remains.
         """
         return self._store.write(lambda c: offset_history.undo(c, ChangeReason(why, who), self._kind))
 
     def undo_step(
         self, number: int | None, step: int, why: str = "undo", *, author: str = "operator"
     ) -> Future[tuple[OffsetChange, ...]]:
-        """Undo exactly this step of ``find_undoable_changes``. The result is the changes made.
+        """Undo the step ``step``, as returned by ``find_undoable_changes``, and no other step.
 
-        The future raises StoreError if the rows of the step have changed since.
+        The result contains the changes that were made. The future raises StoreError if the rows of the step
+        have changed since.
         """
         reason = ChangeReason(why, author)
         return self._store.write(
@@ -96,7 +110,7 @@ class OffsetTable(Generic[RowT]):
 
 
 class ToolOffsetTable(OffsetTable[ToolRow]):
-    """The tool offsets of a lathe, one of which may be the master."""
+    """The tool offsets of a lathe; one of the tools may be the master tool."""
 
     def __init__(self, store: StoreAccess) -> None:
         super().__init__(store, OffsetKind.TOOL, ToolRow)
@@ -104,9 +118,10 @@ class ToolOffsetTable(OffsetTable[ToolRow]):
     def set_touched_offset(
         self, number: int, touch: TouchPosition, reason: str, *, author: str = "operator"
     ) -> Future[tuple[OffsetChange, ...]]:
-        """Set the offset of a tool to the position at which it touched part zero.
+        """Set the offset of a tool to the position at which the tool touched part zero.
 
-        If the tool is the master tool, all other tools move with it. The result is the changes made.
+        If the tool is the master tool, all other tools move with it. The result contains the changes that
+        were made.
         """
         return self._store.write(
             lambda c: touch_off.store_touch_off(c, number, touch, ChangeReason(reason, author))
@@ -115,9 +130,9 @@ class ToolOffsetTable(OffsetTable[ToolRow]):
     def set_master_tool(
         self, number: int, reason: str, *, author: str = "operator"
     ) -> Future[tuple[OffsetChange, ...]]:
-        """Make a tool the master tool, to which other tools are relative; 0 clears the master tool.
+        """Make a tool the master tool, to which the other tools are relative; 0 clears the master tool.
 
-        The positions of the tool tips do not change. The result is the changes made.
+        The positions of the tool tips do not change. The result contains the changes that were made.
         """
         return self._store.write(lambda c: touch_off.set_master_tool(c, number, ChangeReason(reason, author)))
 
@@ -145,9 +160,10 @@ class OffsetTables:
     def undo_last_step(
         self, reason: str = "undo", *, author: str = "operator"
     ) -> Future[tuple[OffsetChange, ...]]:
-        """Undo the latest step of all tables. Another call undoes the step before it.
+        """Undo the latest step of all tables.
 
-        The result is the changes made. The future raises StoreError if no step is left.
+        Another call undoes the step before it. The result contains the changes that were made. The future
+        raises StoreError if no step remains.
         """
         return self._store.write(
             lambda c: offset_history.undo_last_step_in_store(c, ChangeReason(reason, author))

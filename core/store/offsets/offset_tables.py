@@ -1,7 +1,7 @@
 """Tables of the tool, secondary and zero offsets, the tool shapes and the presets, with their history.
 
-All tables have the same structure: rows by number, and a history of steps. A step contains all changes of one
-entry. Undoing a step adds another step to the history.
+All tables have the same structure: rows by number, and a history of steps. A step contains all changes of
+one entry by the operator. Undoing a step adds another step to the history.
 """
 
 from __future__ import annotations
@@ -53,9 +53,9 @@ class ChangeReason(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class HistoryTable:
-    """A history table, with the column of the row's number and the columns of a row.
+    """A history table, with the column of the row number and the columns of a row.
 
-    The columns occur twice, with the values before and after a change.
+    Each column of a row occurs twice, with the values before and after a change.
     """
 
     name: str
@@ -71,7 +71,7 @@ class HistoryTable:
 
 @dataclass(frozen=True, slots=True)
 class _Table:
-    """A table of offsets: its name, letter, valid numbers, row type and history."""
+    """A table of offsets with its name, its letter, its valid numbers, its row type and its history."""
 
     name: str
     letter: str
@@ -152,7 +152,7 @@ def change_row(
     reason: ChangeReason,
     new_values: Mapping[str, FieldValue],
 ) -> OffsetRow:
-    """Set the fields in ``wanted``, leave the other fields, and return the new row.
+    """Set the fields in ``new_values``, leave the other fields unchanged, and return the new row.
 
     If a tool becomes the master tool, the previous master tool is cleared. Raises StoreError for an unknown
     number and for a value that the store does not accept.
@@ -186,10 +186,11 @@ def change_rows(
     wanted: Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]],
     reason: ChangeReason,
 ) -> int:
-    """Set the fields of several rows, by table and number, as one step; return the number of changed rows.
+    """Set the fields of several rows as one step, and return the number of changed rows.
 
-    Raises StoreError for an unknown number and for a value that the store does not accept. Nothing is then
-    changed. The master tool cannot be changed with this function.
+    ``wanted`` contains the new values by table and number. Raises StoreError, and changes nothing, for an
+    unknown number and for a value that the store does not accept. The master tool cannot be changed with
+    this function.
     """
     pairs: dict[OffsetKind, ChangesByNumber] = {}
     for kind, values in wanted.items():
@@ -208,7 +209,7 @@ def change_rows(
 def _check_edge(
     kind: OffsetKind, number: int, rows: Mapping[int, OffsetRow], new_values: Mapping[str, FieldValue]
 ) -> None:
-    """Raise StoreError if a cutting edge has no tool yet, or is to become the master tool."""
+    """Raise StoreError if a cutting edge has no tool yet, or if it would become the master tool."""
     if kind is not OffsetKind.TOOL or get_tool_number(number) == number:
         return
     if get_tool_number(number) not in rows:
@@ -236,7 +237,7 @@ def _other_masters(rows: Mapping[int, OffsetRow], number: int) -> list[tuple[int
 
 
 def make_no_offset_message(number: int) -> str:
-    """Return the message that a tool without an offset cannot be the master tool."""
+    """Return the message for a tool without an offset, which cannot be the master tool."""
     return Message(
         "the offset of {number} has never been set, so the offsets of other tools "
         "cannot be relative to this tool; touch off this tool first",
@@ -278,7 +279,10 @@ def check_row_number(kind: OffsetKind, number: int) -> None:
 def apply_field_changes(
     kind: OffsetKind, number: int, old_row: OffsetRow | None, new_values: Mapping[str, FieldValue]
 ) -> OffsetRow:
-    """Return the row with the fields in ``wanted`` replaced. Raises StoreError if a value is out of range."""
+    """Return the row with the fields in ``new_values`` replaced.
+
+    Raises StoreError if a value is out of range.
+    """
     fields, table = FIELDS_BY_KIND[kind], OFFSET_TABLES[kind]
     for name, value in new_values.items():
         field = fields.get(name)
@@ -306,7 +310,10 @@ def _told(field: RowField, value: FieldValue) -> str:
 
 
 def _row(kind: OffsetKind, values: Sequence[FieldValue | None]) -> OffsetRow:
-    """Return a row made from its columns. NULL columns, from older versions, get zero or empty values."""
+    """Return a row that is made from its columns.
+
+    NULL columns, which come from older versions, get zero or empty values.
+    """
     whole = [_plain(field, value) for field, value in zip(FIELDS_BY_KIND[kind].values(), values, strict=True)]
     return OFFSET_TABLES[kind].row._make(whole)
 
@@ -320,7 +327,7 @@ def _plain(field: RowField, value: FieldValue | None) -> FieldValue:
 
 
 def remove_row(connection: sqlite3.Connection, kind: OffsetKind, number: int, reason: ChangeReason) -> bool:
-    """Remove one offset or shape as one step; return whether it was set.
+    """Remove one offset or shape as one step, and return whether it was set.
 
     Raises StoreError if the tool still has other cutting edges.
     """
@@ -347,7 +354,7 @@ def remove_row(connection: sqlite3.Connection, kind: OffsetKind, number: int, re
 
 
 def clear(connection: sqlite3.Connection, kind: OffsetKind, reason: ChangeReason) -> int:
-    """Remove all rows of a table as one step; return the number of rows removed."""
+    """Remove all rows of a table as one step, and return the number of removed rows."""
     rows = read_current_rows(connection, kind)
     if rows:
         apply_changes(connection, kind, {number: (old, None) for number, old in rows.items()}, reason)
@@ -362,7 +369,7 @@ def apply_changes(
     undone_step: int | None = None,
     step: int | None = None,
 ) -> tuple[OffsetChange, ...]:
-    """Write changes and their history as one step; return the step's history entries.
+    """Write changes and their history as one step, and return the history entries of the step.
 
     ``step`` is the number of a step that also changes another table; None begins a new step.
     """
@@ -402,9 +409,9 @@ def _insert(
 
 
 def _next_step(connection: sqlite3.Connection) -> int:
-    """Return the next step number over all histories.
+    """Return the next step number, considering the histories of all tables.
 
-    A changed clock cannot reorder the steps, because their order follows these numbers.
+    The order of the steps follows these numbers, so a changed clock cannot reorder the steps.
     """
     return 1 + max(_newest_step(connection, log) for log in HISTORY_TABLES)
 
@@ -412,7 +419,7 @@ def _next_step(connection: sqlite3.Connection) -> int:
 def _newest_step(connection: sqlite3.Connection, log: HistoryTable) -> int:
     """Return the latest valid step number of a history, ignoring invalid values.
 
-    Invalid values can only come from another program or from damage.
+    Invalid values can only result from another program or from damage.
     """
     asked = f"SELECT coalesce(max(step), 0) FROM {log.name}"
     (last,) = connection.execute(asked).fetchone()
@@ -452,7 +459,10 @@ def make_damaged_entry_error(entry: object) -> StoreError:
 
 
 def _change(log: HistoryTable, row: Sequence[Any]) -> OffsetChange:
-    """Return a history row as a change. Raises StoreError if the row contains invalid values."""
+    """Return a history row as an offset change.
+
+    Raises StoreError if the row contains invalid values.
+    """
     half, (i, step, undoes, at, kind, number, why, who, *both) = len(log.value_columns), row
     try:
         old, new = _make_row_side(kind, both[:half]), _make_row_side(kind, both[half:])
@@ -462,7 +472,7 @@ def _change(log: HistoryTable, row: Sequence[Any]) -> OffsetChange:
 
 
 def _make_row_side(kind: str, values: list[FieldValue | None]) -> OffsetRow | None:
-    """Return the row before or after a change; None if the offset was not set."""
+    """Return the offset row before or after a change, or None if the offset was not set."""
     if values[0] is None:
         return None
     return _row(OffsetKind(kind), values[: len(FIELDS_BY_KIND[OffsetKind(kind)])])

@@ -1,9 +1,9 @@
 """Functions that affect several tools: touch-off, and the choice of the master tool.
 
-The store has, for every tool, the machine position at which its tip is at part zero. The difference of two of
-these positions is the offset of a tool relative to the master tool. Touching off the master tool moves part
-zero, so every tool moves by the same distance and no difference changes. Choosing another master tool changes
-no position.
+For every tool, the store contains the machine position at which its tip is at part zero. The difference of
+two of these positions is the offset of a tool relative to the master tool. Touching off the master tool
+moves part zero, so every tool moves by the same distance and no difference changes. Choosing another master
+tool does not change any position.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from core.tool_edges import format_edge_name
 
 
 class TouchPosition(NamedTuple):
-    """Machine position in mm, X as a radius, at which a tip is at part zero.
+    """The machine position in mm, with X as a radius, at which a tip is at part zero.
 
-    An axis is None if it was not touched off. ``moves_only_this_tool`` changes only this tool, even if it is
-    the master tool, because its tip has changed and part zero has not.
+    An axis is None if it was not touched off. ``moves_only_this_tool`` means that only this tool changes,
+    even if it is the master tool, because its tip has changed but part zero has not.
     """
 
     x: float | None = None
@@ -34,11 +34,11 @@ class TouchPosition(NamedTuple):
 def store_touch_off(
     connection: sqlite3.Connection, number: int, touch: TouchPosition, reason: ChangeReason
 ) -> tuple[OffsetChange, ...]:
-    """Store a touched-off position and set the wear of that axis to zero.
+    """Store a touched-off position and set the wear of the touched-off axes to zero.
 
-    The new geometry already contains the wear. Touching off the master tool moves all other tools by the same
-    distance, as one step of the history. Raises StoreError if a value is out of range, or if only one axis of
-    a new tool was touched off. The store is then unchanged.
+    The new geometry already includes the wear. Touching off the master tool moves all other tools by the
+    same distance, as one step of the history. Raises StoreError, and leaves the store unchanged, if a value
+    is out of range or if only one axis of a new tool was touched off.
     """
     offset_tables.check_row_number(OffsetKind.TOOL, number)
     rows = offset_tables.read_tool_offsets(connection)
@@ -82,9 +82,9 @@ def _make_follower_changes(
 def set_master_tool(
     connection: sqlite3.Connection, number: int, reason: ChangeReason
 ) -> tuple[OffsetChange, ...]:
-    """Make a tool the master tool, or clear the master tool with 0; no position changes.
+    """Make a tool the master tool, or clear the master tool if ``number`` is 0.
 
-    Raises StoreError if the tool has never been set.
+    No position changes. Raises StoreError if the tool has never been set.
     """
     rows = offset_tables.read_tool_offsets(connection)
     if number and number not in rows:

@@ -1,7 +1,7 @@
-"""The job queue: programs, with the number of parts to make and the number of parts made.
+"""The job queue: programs with the number of parts to make and the number of parts made.
 
-A job has no counter. Its parts are the parts counted for its program while the job is active. At most one job
-is active: the job that the operator loaded last.
+A job has no counter of its own. Its parts are the parts that are counted for its program while the job is
+active. At most one job is active, which is the job that the operator loaded last.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ MAX_NOTE_LENGTH = 80
 class JobRow(NamedTuple):
     """One job of the queue.
 
-    ``base_part_count`` is the part count of the program from which the job counts; None if the job is not
-    active. ``part_count`` is the present part count of the program.
+    ``base_part_count`` is the part count of the program from which the job counts, or None if the job is
+    not active. ``part_count`` is the present part count of the program.
     """
 
     id: int
@@ -43,12 +43,12 @@ class JobRow(NamedTuple):
 
     @property
     def is_active(self) -> bool:
-        """Whether the job is active, so that parts of its program count for it."""
+        """Return whether the job is active, so that parts of its program count for the job."""
         return self.base_part_count is not None
 
     @property
     def parts_made(self) -> int:
-        """Number of parts that the job has made."""
+        """Return the number of parts that the job has made."""
         return max(
             0,
             self.parts_made_before
@@ -57,17 +57,17 @@ class JobRow(NamedTuple):
 
     @property
     def parts_left(self) -> int:
-        """Number of parts that the job has still to make."""
+        """Return the number of parts that still have to be made."""
         return max(0, self.parts_to_make - self.parts_made)
 
     @property
     def is_done(self) -> bool:
-        """Whether all parts of the job are made."""
+        """Return whether all parts of the job have been made."""
         return self.parts_made >= self.parts_to_make
 
     @property
     def target_part_count(self) -> int:
-        """Part count of the program at which the job is done; 0 if the job is not active."""
+        """Return the part count of the program at which the job is done, or 0 if the job is not active."""
         return (
             max(1, self.base_part_count + self.parts_to_make - self.parts_made_before)
             if self.base_part_count is not None
@@ -82,9 +82,10 @@ PendingCounts = Mapping[str, tuple[bool, int]]
 def read_jobs(
     connection: sqlite3.Connection, pending_counts: PendingCounts | None = None
 ) -> tuple[JobRow, ...]:
-    """Return the jobs of the queue in order. Damaged rows are omitted.
+    """Return the jobs of the queue in order.
 
-    The second argument has the part counts that wait in memory for the disk.
+    Damaged rows are omitted. ``pending_counts`` contains the part counts that are in memory because they
+    have not been written to disk yet.
     """
     rows = (
         row_checksums.decode_values(row)
@@ -99,7 +100,8 @@ def read_jobs(
 def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> JobRow:
     """Return a job with its present part count.
 
-    If a reset of the count waits in memory, the parts made before the reset still count for the job.
+    If a reset of the count has not been written to disk yet, the parts made before the reset still count
+    for the job.
     """
     counted = program_records.read_part_count(connection, row.program)
     reset, more = held.get(program_records.find_loaded_key(connection, row.program), (False, 0))
@@ -110,7 +112,7 @@ def _job(connection: sqlite3.Connection, row: JobRow, held: PendingCounts) -> Jo
 
 
 def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, note: str = "") -> int:
-    """Add a job at the end of the queue; return its id.
+    """Add a job at the end of the queue, and return its ID.
 
     Raises StoreError if the name, the number of parts or the note is invalid, or if the queue is full.
     """
@@ -130,14 +132,20 @@ def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, no
 
 
 def change_job(connection: sqlite3.Connection, job: int, parts_to_make: int, note: str) -> None:
-    """Change the number of parts and the note of a job. Raises StoreError if one is invalid."""
+    """Change the number of parts and the note of a job.
+
+    Raises StoreError if the number or the note is invalid.
+    """
     _check(parts_to_make, note)
     _demand(connection, job)
     connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (parts_to_make, note, job))
 
 
 def move_job(connection: sqlite3.Connection, job: int, place: int) -> None:
-    """Move a job to place ``place`` of the queue, counted from 1. Raises StoreError if the job is unknown."""
+    """Move a job to the position ``place`` in the queue, counted from 1.
+
+    Raises StoreError if the job is unknown.
+    """
     _demand(connection, job)
     order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
     order.remove(job)
@@ -148,13 +156,16 @@ def move_job(connection: sqlite3.Connection, job: int, place: int) -> None:
 
 
 def remove_job(connection: sqlite3.Connection, job: int) -> None:
-    """Remove a job from the queue; part counts remain. Raises StoreError if the job is unknown."""
+    """Remove a job from the queue without changing part counts.
+
+    Raises StoreError if the job is unknown.
+    """
     _demand(connection, job)
     connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
 
 
 def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
-    """Remove the finished and damaged jobs, or all jobs; return the number of jobs removed."""
+    """Remove the finished and damaged jobs, or all jobs, and return the number of removed jobs."""
     whole = {row.id: row for row in read_jobs(connection)}
     numbers = [number for (number,) in connection.execute("SELECT id FROM jobs")]
     gone = [each for each in numbers if remove_all or each not in whole or whole[each].is_done]
@@ -163,7 +174,7 @@ def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
 
 
 def activate_job(connection: sqlite3.Connection, job: int) -> None:
-    """Activate a job: from now on parts of its program count for this job only.
+    """Activate a job, so that from now on parts of its program count only for this job.
 
     Raises StoreError if the job is unknown or damaged.
     """
@@ -180,14 +191,17 @@ def activate_job(connection: sqlite3.Connection, job: int) -> None:
 
 
 def deactivate_job(connection: sqlite3.Connection) -> None:
-    """Deactivate the active job. The parts that it made remain counted."""
+    """Deactivate the active job.
+
+    The parts that it has made remain counted.
+    """
     for row in read_jobs(connection):
         if row.is_active:
             connection.execute("UPDATE jobs SET made = ?, base = NULL WHERE id = ?", (row.parts_made, row.id))
 
 
 def save_count_before_reset(connection: sqlite3.Connection, program: str) -> None:
-    """Save the parts made by the active job before the part count of its program is reset."""
+    """Save the number of parts that the active job has made before the part count of its program is reset."""
     key = program_records.find_loaded_key(connection, program)
     for row in read_jobs(connection):
         if row.is_active and program_records.find_loaded_key(connection, row.program) == key:
@@ -195,7 +209,7 @@ def save_count_before_reset(connection: sqlite3.Connection, program: str) -> Non
 
 
 def record_loaded_text(connection: sqlite3.Connection, program: str, text: str) -> None:
-    """Record that ``text``, a record key, is loaded under the name ``program``.
+    """Record that the program text with the record key ``text`` is loaded under the name ``program``.
 
     The active job of the program retains the parts that it has made.
     """
@@ -245,27 +259,36 @@ class JobQueue:
         self._store = store
 
     def read_jobs(self) -> tuple[JobRow, ...]:
-        """Return the jobs in order, including part counts that wait in memory for the disk."""
+        """Return the jobs in order, including part counts that have not been written to disk yet."""
         with self._store.read() as connection:
             held = self._store.pending_entries
             return read_jobs(connection, held.part_counts_by_program if held is not None else None)
 
     def add_job(self, program: str, parts_to_make: int, note: str = "") -> Future[int]:
-        """Add a job for ``wanted`` parts at the end of the queue. The result is its id.
+        """Add a job for ``parts_to_make`` parts at the end of the queue.
 
-        The future raises StoreError if the program name, the number of parts or the note is invalid, or if
-        the queue is full.
+        The result is the ID of the job. The future raises StoreError if the program name, the number of
+        parts or the note is invalid, or if the queue is full.
         """
         return self._store.write(lambda c: add_job(c, program, parts_to_make, note))
 
     def move_job(self, job: int, place: int) -> Future[None]:
-        """Move a job to a place, counted from 1. The future raises StoreError for an unknown job."""
+        """Move a job to a position in the queue, counted from 1.
+
+        The future raises StoreError for an unknown job.
+        """
         return self._store.write(lambda c: move_job(c, job, place))
 
     def remove_job(self, job: int) -> Future[None]:
-        """Remove a job; part counts remain. The future raises StoreError for an unknown job."""
+        """Remove a job without changing part counts.
+
+        The future raises StoreError for an unknown job.
+        """
         return self._store.write(lambda c: remove_job(c, job))
 
     def clear_jobs(self, *, remove_all: bool) -> Future[int]:
-        """Remove the finished and damaged jobs, or all jobs. The result is the number of jobs removed."""
+        """Remove the finished and damaged jobs, or all jobs.
+
+        The result is the number of removed jobs.
+        """
         return self._store.write(lambda c: clear(c, remove_all=remove_all))

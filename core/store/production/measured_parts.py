@@ -16,9 +16,10 @@ from core.store.store_rows import get_utc_now_text
 
 
 class FeatureRow(NamedTuple):
-    """A measured feature as stored, in mm. ``id`` is 0 for a feature that is not stored yet.
+    """A measured feature as stored, in mm.
 
-    The table ``part_features`` in ``store.table_keys`` describes the columns.
+    ``id`` is 0 for a feature that has not been stored yet. The table ``part_features`` in
+    ``store.table_keys`` describes the columns.
     """
 
     id: int
@@ -38,7 +39,8 @@ class FeatureRow(NamedTuple):
 class ReadingRow(NamedTuple):
     """One reading of a feature, in mm.
 
-    ``offset_change`` is the newest offset change at the start of the part's cycle; -1 if it is unknown.
+    ``offset_change`` is the ID of the newest offset change at the start of the part's cycle, or -1 if it is
+    unknown.
     """
 
     id: int
@@ -56,9 +58,10 @@ _COLUMNS = ", ".join(FeatureRow._fields)
 
 
 def read_features(connection: sqlite3.Connection, program: str | None = None) -> tuple[FeatureRow, ...]:
-    """Return the features that are measured, in the order of entry; None as ``program`` selects all programs.
+    """Return the features that are measured, in the order of entry.
 
-    Damaged rows are omitted, because wear corrections are calculated from these values.
+    If ``program`` is None, the features of all programs are returned. Damaged rows are omitted, because
+    wear corrections are calculated from these values.
     """
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM part_features WHERE retired = 0 AND (?1 IS NULL OR program = ?1)"
@@ -70,7 +73,7 @@ def read_features(connection: sqlite3.Connection, program: str | None = None) ->
 
 
 def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
-    """Add a feature, or change a stored feature; return its id.
+    """Add a feature or change a stored feature, and return its ID.
 
     Raises StoreError if the program has another feature of this name, or if the feature no longer exists.
     """
@@ -110,12 +113,12 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
 
 
 def retire_feature(connection: sqlite3.Connection, feature: int) -> None:
-    """Stop measuring a feature. Its readings remain."""
+    """Stop measuring a feature without deleting its readings."""
     connection.execute("UPDATE part_features SET retired = 1 WHERE id = ?", (feature,))
 
 
 def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
-    """Add a reading, with the present time if it has none; return its id.
+    """Add a reading, with the present time if the reading has no time, and return its ID.
 
     Raises StoreError if the value is not finite, or if the feature does not exist or is retired.
     """
@@ -138,7 +141,7 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
 
 
 def void_reading(connection: sqlite3.Connection, reading: int) -> None:
-    """Mark a reading as deleted; its row remains.
+    """Mark a reading as deleted without removing its row.
 
     Raises StoreError if the reading does not exist or is already deleted.
     """
@@ -161,14 +164,17 @@ def read_readings(connection: sqlite3.Connection, program: str, limit: int) -> t
 
 
 def _select_intact_rows(connection: sqlite3.Connection, rows: list[Any]) -> list[Any]:
-    """Return the rows whose reading, identified by the first column, matches its checksum."""
+    """Return the rows with a reading, identified by the first column, that matches its checksum."""
     return [
         row for row in rows if row_checksums.read_intact_row(connection, "part_readings", row[0]) is not None
     ]
 
 
 def read_last_corrections(connection: sqlite3.Connection) -> dict[tuple[str, int, str], int]:
-    """Return the id of the newest change of each offset, by kind, number and axis; wear is included."""
+    """Return the ID of the newest change of each offset, by kind, number and axis.
+
+    Changes of wear are included.
+    """
     rows = connection.execute(
         "SELECT kind, number, 'x', max(id) FROM offset_changes"
         " WHERE old_x IS NOT new_x OR coalesce(old_wear_x, 0) IS NOT coalesce(new_wear_x, 0)"

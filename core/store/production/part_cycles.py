@@ -1,4 +1,4 @@
-"""Stored cycles and stops: one row for each part that was started and for each stop of production."""
+"""Stored cycles and stops, with one row for each started part and for each stop of production."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class CycleRow(NamedTuple):
 
 
 class CycleTime(NamedTuple):
-    """Start, end and cycle time of a ``CycleRow``, for lists of thousands of cycles."""
+    """The start, end and cycle time of a ``CycleRow``, for lists of thousands of cycles."""
 
     started: str
     ended: str | None
@@ -36,7 +36,7 @@ class CycleTime(NamedTuple):
 
 
 class StopRow(NamedTuple):
-    """One stop of production: its start (UTC), duration in seconds, reason and program line.
+    """One stop of production, with its start (UTC), duration in seconds, reason and program line.
 
     ``cycle`` is empty for a stop between two cycles.
     """
@@ -51,7 +51,7 @@ class StopRow(NamedTuple):
 
 
 class CorrectionRow(NamedTuple):
-    """A change of wear or of a secondary offset, in mm, X as a radius.
+    """A change of wear or of a secondary offset, in mm, with X as a radius.
 
     ``part`` is the number of parts that were started before the change.
     """
@@ -93,12 +93,15 @@ def save_stop(connection: sqlite3.Connection, row: StopRow) -> None:
 
 
 def programs(connection: sqlite3.Connection) -> set[str]:
-    """Return the names of the programs for which a part was started."""
+    """Return the names of the programs with at least one started part."""
     return {name for (name,) in connection.execute("SELECT DISTINCT program FROM part_cycles")}
 
 
 def read_cycles(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[CycleRow, ...]:
-    """Return the latest cycles, oldest first; None as ``program`` selects all programs."""
+    """Return the latest cycles, oldest first.
+
+    If ``program`` is None, the cycles of all programs are returned.
+    """
     rows = connection.execute(
         f"SELECT {_CYCLE} FROM part_cycles WHERE ?1 IS NULL OR program = ?1 ORDER BY id DESC LIMIT ?2",
         (program, limit),
@@ -120,7 +123,10 @@ def read_cycle_times_since(connection: sqlite3.Connection, since: str) -> tuple[
 
 
 def read_stops(connection: sqlite3.Connection, program: str | None, limit: int) -> tuple[StopRow, ...]:
-    """Return the latest stops, oldest first; None as ``program`` selects all programs."""
+    """Return the latest stops, oldest first.
+
+    If ``program`` is None, the stops of all programs are returned.
+    """
     rows = connection.execute(
         f"SELECT {', '.join(StopRow._fields)} FROM production_stops WHERE ?1 IS NULL OR program = ?1"
         " ORDER BY id DESC LIMIT ?2",
@@ -132,8 +138,8 @@ def read_stops(connection: sqlite3.Connection, program: str | None, limit: int) 
 def read_corrections(connection: sqlite3.Connection, program: str, limit: int) -> tuple[CorrectionRow, ...]:
     """Return the latest changes of wear and secondary offsets, oldest first.
 
-    ``part`` counts the parts of ``program`` started before the change. The values before and after the change
-    are the wear of a tool, or X and Z of a secondary offset.
+    The field ``part`` counts the parts of ``program`` that were started before the change. The values
+    before and after the change are the wear of a tool, or X and Z of a secondary offset.
     """
     rows = connection.execute(
         "SELECT id, at, kind, number,"
@@ -174,9 +180,10 @@ def read_stops_between(connection: sqlite3.Connection, since: str, until: str) -
 
 
 class CycleRecords:
-    """Records of cycles and stops in an open store. Methods raise StoreError as described in ``StoreAccess``.
+    """Records of cycles and stops in an open store.
 
-    A record is not lost if the disk is full. It waits in memory and is written later.
+    Methods raise StoreError as described in ``StoreAccess``. If the disk is full, a record is not lost but
+    remains in memory and is written later.
     """
 
     def __init__(self, store: StoreAccess) -> None:

@@ -1,4 +1,4 @@
-"""Run records of an open store: part counts, runs, cycle times and proofs, by program text."""
+"""Run records of an open store: the part counts, runs, cycle times and proofs of each program text."""
 
 from __future__ import annotations
 
@@ -17,47 +17,50 @@ ORIGIN = "last_event"  # key of the setting with the origin of the last stored e
 
 
 class LoadedTexts:
-    """The record keys of the texts loaded since the store was opened, by program name."""
+    """The record keys of the texts that were loaded since the store was opened, by program name."""
 
     def __init__(self) -> None:
         self._keys = dict[str, str]()
 
     def add(self, name: str, key: str) -> None:
-        """Record that the text with this record key is loaded under ``name``."""
+        """Record that the text with the record key ``key`` is loaded under ``name``."""
         self._keys[name] = key
 
     def rename(self, old: str, new: str) -> None:
-        """Transfer the text loaded under ``old``, if any, to ``new``."""
+        """Transfer the text that is loaded under the name ``old``, if any, to the name ``new``."""
         key = self._keys.pop(old, None)
         self._keys.pop(new, None)
         if key is not None:
             self._keys[new] = key
 
     def find_key(self, program: str) -> str:
-        """Return the record key of the text loaded under this name; the name itself if no text was loaded."""
+        """Return the record key of the text that is loaded under a name.
+
+        The result is the name itself if no text was loaded.
+        """
         return self._keys.get(program, program)
 
 
 class RunRecords:
-    """Records of the text that is loaded under a program name.
+    """The records of the text that is loaded under a program name.
 
-    Methods raise StoreError as described in ``StoreAccess``. A change is not lost if the disk is full. It
-    waits in memory and is written later.
+    Methods raise StoreError as described in ``StoreAccess``. If the disk is full, a change is not lost but
+    remains in memory and is written later.
     """
 
     def __init__(self, store: StoreAccess, loaded: LoadedTexts) -> None:
         self._store, self._loaded = store, loaded
 
     def read_records(self) -> tuple[RunRow, ...]:
-        """Return the record of each program, sorted by name."""
+        """Return the run record of each program, sorted by name."""
         return self._store.run_query(program_records.read_run_records)
 
     def read_records_by_text(self) -> dict[str, RunRow]:
-        """Return the record of each program text, by record key."""
+        """Return the run record of each program text, by record key."""
         return self._store.run_query(program_records.read_run_records_by_text)
 
     def read_part_count(self, program: str) -> int:
-        """Return the part count of a program, including the parts that wait in memory for the disk."""
+        """Return the part count of a program, including the parts that have not been written to disk yet."""
         with self._store.read() as connection:
             key = program_records.find_loaded_key(connection, self._loaded.find_key(program))
             stored, held = program_records.read_part_count(connection, key), self._store.pending_entries
@@ -69,16 +72,20 @@ class RunRecords:
         return max(0, (0 if reset else stored) + more)
 
     def add_parts(self, program: str, count: int = 1) -> Future[None]:
-        """Add parts to the part count of a program; a negative ``count`` subtracts, down to zero."""
+        """Add parts to the part count of a program.
+
+        A negative ``count`` subtracts parts, down to zero.
+        """
         key = self._loaded.find_key(program)
         return self._store.keep(lambda unwritten: unwritten.add_parts(key, count))
 
     def record_event(
         self, event: EventRow, part_of: str = "", origin: EventOrigin | None = None
     ) -> Future[None]:
-        """Log an event, count a part of the program ``part_of`` if it is not empty, and store the origin.
+        """Log an event with its origin, and count a part of the program ``part_of``.
 
-        All is written in one transaction. The future is done when it is on the disk.
+        No part is counted if ``part_of`` is empty. All this is written in one transaction. The future is
+        done when the data are on disk.
         """
         key = self._loaded.find_key(part_of) if part_of else ""
 
@@ -95,7 +102,7 @@ class RunRecords:
         return self._store.keep(keeping)
 
     def read_last_origin(self) -> EventOrigin | None:
-        """Return the origin of the last event of a control process that is stored."""
+        """Return the origin of the last stored event of a control process, or None."""
         match self._store.run_query(settings.read_setting, ORIGIN):
             case [str() as control, int() as number]:
                 return EventOrigin(control, number)
@@ -108,23 +115,23 @@ class RunRecords:
         return self._store.keep(lambda unwritten: unwritten.reset_parts(key))
 
     def record_start(self, program: str) -> Future[None]:
-        """Record that a run of this program starts now."""
+        """Record that a run of the program starts now."""
         at, key = get_utc_now_text(), self._loaded.find_key(program)
         return self._store.store_latest_durably(
             ("start", key), lambda c: program_records.record_start(c, key, at)
         )
 
     def record_end(self, program: str, outcome: str) -> Future[None]:
-        """Record the outcome of the run of this program."""
+        """Record the outcome of the run of a program."""
         key = self._loaded.find_key(program)
         return self._store.store_latest_durably(
             ("end", key), lambda c: program_records.record_outcome(c, key, outcome)
         )
 
     def end_interrupted_runs(self, outcome: str, template: str) -> Future[None]:
-        """Record ``outcome`` for all runs without an end.
+        """Record ``outcome`` for all runs that have no end.
 
-        For each program, the warning ``template`` is logged.
+        For each of these programs, a warning made from ``template`` is logged.
         """
 
         def operation(connection: sqlite3.Connection) -> None:
@@ -140,7 +147,7 @@ class RunRecords:
         return self._store.store_latest_durably(("start", ""), operation)
 
     def record_cycle(self, program: str, cycle_time_s: float) -> Future[None]:
-        """Record one complete cycle of a program and its time in seconds."""
+        """Record one complete cycle of a program with its time in seconds."""
         key = self._loaded.find_key(program)
         return self._store.keep(lambda unwritten: unwritten.add_cycle(key, cycle_time_s))
 
@@ -149,7 +156,7 @@ class RunRecords:
     ) -> Future[None]:
         """Record the result of proving ``text``, and the calculated cycle time in seconds.
 
-        None as ``text`` selects the text that is loaded under the name ``program``.
+        If ``text`` is None, the record is for the text that is loaded under the name ``program``.
         """
         key = self._loaded.find_key(program) if text is None else program_records.make_text_key(text)
         at = get_utc_now_text()

@@ -1,4 +1,4 @@
-"""Stored tool life: limits, use since the insert was changed, and every change of an insert."""
+"""Stored tool lives: the limits, the use since the last insert change, and every insert change."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ from core.store.store_rows import MILL_TOOL_NUMBERS, OFFSET_NUMBERS, OffsetKind,
 
 
 class ToolLifeRow(NamedTuple):
-    """Tool life of one tool, with times at feed in seconds. A limit of 0 means unlimited."""
+    """The tool life of one tool, with times at feed in seconds.
+
+    A limit of 0 means unlimited.
+    """
 
     number: int
     limit_parts: int = 0
@@ -24,7 +27,10 @@ class ToolLifeRow(NamedTuple):
 
 
 class InsertChange(NamedTuple):
-    """The change of an insert or of a mill tool, with the parts and seconds at feed that it had made."""
+    """The change of an insert or of a mill tool.
+
+    ``parts`` and ``seconds`` are the parts and the seconds at feed of the old insert or tool.
+    """
 
     id: int
     at: str
@@ -49,7 +55,7 @@ def read_tool_lives(
 ) -> dict[int, ToolLifeRow]:
     """Return the tool life of all tools with a limit or with recorded use, by number.
 
-    For a mill, the result has all tools of the tool table. Damaged rows are omitted.
+    For a mill, the result contains all tools of the tool table. Damaged rows are omitted.
     """
     of_lathe = f"SELECT {', '.join(ToolLifeRow._fields)} FROM tool_lives ORDER BY number"
     rows = connection.execute(_OF_MILL if kind is OffsetKind.MILL_TOOL else of_lathe).fetchall()
@@ -61,7 +67,7 @@ def read_tool_lives(
 
 
 def save_limits(connection: sqlite3.Connection, row: ToolLifeRow) -> None:
-    """Save the limits of a lathe tool; its recorded use remains.
+    """Save the limits of a lathe tool without changing its recorded use.
 
     Raises StoreError if the tool does not exist.
     """
@@ -80,7 +86,7 @@ def save_use(
     seconds: float,
     kind: OffsetKind = OffsetKind.TOOL,
 ) -> None:
-    """Save the use of an insert since its last change, in parts and seconds at feed."""
+    """Save the use of an insert since its last change, in parts and in seconds at feed."""
     connection.execute(
         f"INSERT INTO {_USE[kind]} (number, parts, seconds) VALUES (?1, ?2, ?3)"
         " ON CONFLICT (number) DO UPDATE SET parts = ?2, seconds = ?3",
@@ -95,7 +101,7 @@ def record_insert_change(
     kind: OffsetKind = OffsetKind.TOOL,
     author: str = "",
 ) -> None:
-    """Record the change of an insert: save the use of the old insert and reset the count to zero.
+    """Record an insert change: save the use of the old insert and reset the counts to zero.
 
     Raises StoreError if the tool does not exist.
     """
@@ -110,7 +116,7 @@ def record_insert_change(
 
 
 def read_insert_changes(connection: sqlite3.Connection, limit: int) -> tuple[InsertChange, ...]:
-    """Return the latest changes of inserts, newest first."""
+    """Return the latest insert changes, newest first."""
     rows = connection.execute("SELECT * FROM insert_changes ORDER BY id DESC LIMIT ?", (limit,))
     return tuple(InsertChange(*row) for row in rows)
 

@@ -1,8 +1,9 @@
 """Parts of HAL files that several boards use: C on the spindle drive, and Mesa's Ethernet cards.
 
-For C, a pid closes a loop with the spindle encoder. A drive with a speed input (±10 V, EtherCAT) receives the
-spindle command or, as C, the output of the pid. A drive that also has a step input is switched by a terminal,
-and the pid then controls its steps. Mesa's cards have hm2_eth, its watchdog, encoders and pid in common.
+For C, a pid component closes a position loop with the spindle encoder. A drive with a speed input (±10 V,
+EtherCAT) receives the spindle command or, as C, the output of the pid component. A drive that also has a
+step input is switched by a terminal, and the pid component then controls its steps. All supported Mesa
+cards use hm2_eth with its watchdog, its encoders and pid components.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ _SIMULATED = 100.0  # 1/s, for a simulated spindle.
 
 
 def get_c_turn_pins(file: HalFile) -> tuple[str, ...]:
-    """Return the additional pins for the signal of the spindle revolutions."""
+    """Return the additional pins on the signal of the spindle revolutions."""
     return (C_TURN_PIN,) if file.lathe.c_axis is not None else ()
 
 
 def load_c_components(file: HalFile, *, shares_input: bool) -> None:
-    """Load the components for C and call them after the encoder and before the spindle drive.
+    """Load the components for C, and call them after the encoder and before the spindle drive.
 
-    With ``shares_input``, the spindle speed and C use the same drive input.
+    If ``shares_input`` is True, the spindle speed and C use the same drive input.
     """
     file.add_instance("scale", "c-degrees")
     file.add_instance("pid", _PID)
@@ -42,7 +43,10 @@ def load_c_components(file: HalFile, *, shares_input: bool) -> None:
 
 
 def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
-    """Configure the pid with its feedback, and connect its output in degrees/s to ``drives``."""
+    """Configure the pid component of C with its feedback, and connect its output to ``drives``.
+
+    The output is in degrees/s.
+    """
     board = file.lathe.board_table.axes.get(axis.name)
     file.set_pin("c-degrees.gain", 360, "degrees per revolution of the spindle encoder")
     gains = {"Pgain": _SIMULATED} if board is None else {
@@ -62,9 +66,9 @@ def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
 
 
 def get_c_speed_pins(file: HalFile, speed: str, enable_pin: str) -> tuple[str, str]:
-    """Return the pins for spindle speed in rpm and enable.
+    """Return the pins for the spindle speed in rpm and for the enable signal.
 
-    They are the pins of the drive, or those of the selector if the drive is also C.
+    They are the pins of the drive, or those of the selector if the drive is also the C axis.
     """
     axis = file.lathe.c_axis
     if axis is None:
@@ -81,7 +85,10 @@ def get_c_speed_pins(file: HalFile, speed: str, enable_pin: str) -> tuple[str, s
 
 
 def get_simulated_c_speed_pin(file: HalFile) -> str:
-    """Return the pin of the simulated spindle's speed in rev/s, which is that of the spindle or of C."""
+    """Return the pin with the speed of the simulated spindle in rev/s.
+
+    With C on the spindle, this is the pin of the selector between the spindle speed and C.
+    """
     axis = file.lathe.c_axis
     if axis is None:
         return "spindle-rps.out"
@@ -132,9 +139,9 @@ CARD_NOTES = (
 
 
 def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
-    """Load hostmot2 on Ethernet, which the thread reads first and writes last.
+    """Load hostmot2 for an Ethernet card, which the thread reads first and writes last.
 
-    ``further`` pins report that inputs of the card are not current.
+    The pins ``further`` also report that inputs of the card are not current.
     """
     lathe = file.lathe
     file.add_load(f"loadrt threads name1={lathe.servo_thread} period1={lathe.period_s * 1e9:.0f}")
@@ -148,10 +155,11 @@ def load_card(file: HalFile, card: str, config: str, *further: str) -> None:
 
 
 def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> None:
-    """Report a lost card, because hm2_eth then retains every input and no longer reads the watchdog.
+    """Connect the pins that report a lost card to hal.link_fault.
 
-    hm2_eth sets the parameter ``io_error`` together with the pin ``packet-error-exceeded``, which stays on
-    until the driver is loaded again.
+    After a loss, hm2_eth retains every input and no longer reads the watchdog. hm2_eth sets the parameter
+    ``io_error`` together with the pin ``packet-error-exceeded``, which remains on until the driver is
+    loaded again.
     """
     gates = _list_drive_faults(file)
     silent = f"{card}.packet-error-exceeded", f"{card}.watchdog.has_bit"
@@ -160,7 +168,10 @@ def _connect_link(file: HalFile, card: str, other_faults: tuple[str, ...]) -> No
 
 
 def _list_drive_faults(file: HalFile) -> list[str]:
-    """Wire hal.axes.X.fault if it is a signal, to a drive fault or the lost card, and return its gates."""
+    """Connect each hal.axes.X.fault that is a signal to a gate, and return the gates.
+
+    The gate is on after a drive fault or after the loss of the card.
+    """
     gates = []
     for axis in file.lathe.axes:
         path = f"hal.axes.{axis.name}.fault"
@@ -180,7 +191,7 @@ def _list_drive_faults(file: HalFile) -> list[str]:
 
 
 def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
-    """Load one ``pid`` per axis, called after the setpoints."""
+    """Load one ``pid`` component per axis, which is called after the setpoints."""
     names = [f"pid.{axis.name.lower()}" for axis in axes]
     if names:
         file.add_load(f"loadrt pid names={','.join(names)}")
@@ -188,7 +199,7 @@ def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
 
 
 def configure_encoder(file: HalFile, pin: str, counts: float, description: str) -> None:
-    """Configure a quadrature encoder with its filter on."""
+    """Configure a quadrature encoder with its filter enabled."""
     file.set_pin(f"{pin}.scale", counts, description)
     for key in ("counter-mode", "index-invert", "index-mask"):
         file.set_pin(f"{pin}.{key}", 0)
@@ -196,7 +207,7 @@ def configure_encoder(file: HalFile, pin: str, counts: float, description: str) 
 
 
 def connect_spindle_encoder(file: HalFile, card: str, terminal: str) -> None:
-    """Connect revolutions, speed and index of the spindle encoder."""
+    """Connect the revolutions, the speed and the index of the spindle encoder."""
     board = file.lathe.board_table.spindle
     pin = f"{card}.encoder.{board.encoder:02d}"
     file.start_section(f"Spindle: encoder {board.encoder}")

@@ -1,7 +1,8 @@
-"""Table [board] of the machine file, from which ``turndesk machine hal`` writes LinuxCNC's HAL file.
+"""The table [board] of the machine file, from which ``turndesk machine hal`` writes LinuxCNC's HAL file.
 
-[hal] names the pins or signals that TurnDesk uses, and [board] the hardware connected to them. Scales follow
-from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file contains anyway.
+[hal] contains the pins or signals that TurnDesk uses, and [board] contains the hardware that is connected
+to them. Scales follow from ``axis.….count`` and ``spindle.encoder_ppr``, which the machine file contains
+anyway.
 """
 
 from __future__ import annotations
@@ -29,22 +30,22 @@ C_AXIS = "C"
 
 
 def _channel_key(*, meaning: str) -> Any:
-    """Declare a channel of the board; -1 where the file does not specify it."""
+    """Return the declaration of a channel of the board, with -1 if the file does not specify it."""
     return declare_key(KeyRange(0, 63), default=-1, meaning=meaning)
 
 
 def _pulse_key(default: int, *, meaning: str) -> Any:
-    """Declare a time of a step pulse in nanoseconds."""
+    """Return the declaration of a time of a step pulse in nanoseconds."""
     return declare_key(KeyRange(100, 1_000_000), default=default, meaning=meaning)
 
 
 def _gain_key(*, meaning: str) -> Any:
-    """Declare a gain of LinuxCNC's ``pid``."""
+    """Return the declaration of a gain of LinuxCNC's ``pid`` component."""
     return declare_key(KeyRange(0.0, 100_000.0), default=0.0, meaning=meaning)
 
 
 def _pin_key(*, meaning: str) -> Any:
-    """Declare a pin of a parallel port."""
+    """Return the declaration of a pin of a parallel port."""
     return declare_key(default="", meaning=f"Parallel port: pin of {meaning}.")
 
 
@@ -56,12 +57,12 @@ _PRODUCT: Any = declare_key(default="", meaning="EtherCAT: product code of the d
 
 @make_key_table
 class BoardAxis:
-    """Connection of one axis to a board.
+    """The connection of one axis to a board.
 
-    Speeds are in mm/s, pulse times in nanoseconds, and gains are those of LinuxCNC's ``pid``. ``channel`` is
-    the step generator, the encoder and analog output, or the position of the drive on EtherCAT; -1 means not
-    specified. ``full_speed`` is the speed at 10 V, and ``full_rpm`` that of a separate C drive. ``step`` and
-    ``direction`` are pins of a parallel port.
+    Speeds are in mm/s, pulse times are in nanoseconds, and gains are those of LinuxCNC's ``pid`` component.
+    ``channel`` is the step generator, the encoder and analog output, or the position of the drive on
+    EtherCAT; -1 means not specified. ``full_speed`` is the speed at 10 V, and ``full_rpm`` is the speed of
+    a separate C drive at 10 V. ``step`` and ``direction`` are pins of a parallel port.
     """
 
     channel: int = _channel_key(
@@ -109,10 +110,10 @@ class BoardAxis:
 
 @make_key_table
 class BoardSpindle:
-    """Connection of the spindle to a board; ``full_speed`` is its speed in rpm at 10 V.
+    """The connection of the spindle to a board.
 
-    ``velocity_per_rpm`` is the value of object 60FF of an EtherCAT drive for 1 rpm. ``pwm`` and the phases
-    are pins of a parallel port.
+    ``full_speed`` is the spindle speed in rpm at 10 V. ``velocity_per_rpm`` is the value of object 60FF of
+    an EtherCAT drive for 1 rpm. ``pwm`` and the phases are pins of a parallel port.
     """
 
     channel: int = _channel_key(
@@ -145,7 +146,10 @@ class BoardSpindle:
 
 @make_key_table
 class BoardTable:
-    """Settings of the board; ``address`` is that of an Ethernet card or a parallel port."""
+    """The settings of the board.
+
+    ``address`` is the address of an Ethernet card or of a parallel port.
+    """
 
     kind: str = declare_key(
         choices=BOARD_KINDS, meaning="Board for which `turndesk machine hal` writes the HAL file."
@@ -255,14 +259,14 @@ def _channel_rules(file: MachineFileReading, kind: str, path: str) -> Iterator[F
 
 
 def _spindle_is_c(file: MachineFileReading) -> bool:
-    """Return whether C is the spindle drive, driven by HAL."""
+    """Return whether the C axis is the spindle drive and HAL controls the spindle."""
     values = file.values
     own = values.has_values("axis.C.own_drive") and values.read_flag("axis.C.own_drive")
     return not own and values.has_text("spindle.driver", "hal")
 
 
 def _check_spindle_as_c(file: MachineFileReading, kind: str, path: str) -> Iterator[FileFinding]:
-    """Yield findings about C on the spindle drive: its gain, its own steps, and keys that must be removed."""
+    """Yield findings about C on the spindle drive: its gain, its steps, and keys that must be removed."""
     values = file.values
     yield from _check_required(file, kind, path, _SPINDLE_C_KEYS)
     if kind in (PARPORT, MESA_STEP):
@@ -313,7 +317,7 @@ _SPINDLE_C_KEYS: _KeyStatement = {
 def _check_required(
     file: MachineFileReading, kind: str, path: str, stated: _KeyStatement = _REQUIRED_KEYS
 ) -> Iterator[FileFinding]:
-    """Yield findings about missing keys that this kind of board requires."""
+    """Yield findings about missing keys that a board of this kind requires."""
     for key, what in stated.get(kind, ()):
         place = f"{path}.{key}"
         if not file.values.has_values(place):
@@ -400,7 +404,7 @@ def _check_unique_channels(file: MachineFileReading, kind: str) -> Iterator[File
 
 
 def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
-    """Yield findings about a spindle speed without a scale, or a scale without a speed."""
+    """Yield findings about a spindle speed without a scale, or a scale without a spindle speed."""
     values = file.values
     speeds = ("hal.spindle.speed", "hal.spindle.speed_abs")
     if not values.has_values(
@@ -435,7 +439,7 @@ def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]
 
 
 def _check_encoder(file: MachineFileReading, kind: str) -> Iterator[FileFinding]:
-    """Yield findings about the lines and the channel of the spindle encoder."""
+    """Yield findings about the line count and the channel of the spindle encoder."""
     values = file.values
     if not values.has_values("spindle.encoder_ppr", "hal.spindle.position", f"{_SPINDLE}.encoder"):
         return

@@ -1,4 +1,7 @@
-"""HAL file and bus description of a lathe with EtherCAT drives: lcec, cia402, cyclic synchronous position."""
+"""The HAL file and the bus description of a lathe with EtherCAT drives.
+
+The file uses lcec and cia402 in cyclic synchronous position mode.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ _INPUT_PDO = (("6041", 16, "cia-statusword", "u32"), ("6061", 8, "opmode-display
 
 
 def build_ethercat_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file for drives in CSP, a spindle in CSV, one EL1008 and one EL2008."""
+    """Build the HAL file for axis drives in CSP mode, a spindle in CSV mode, one EL1008 and one EL2008."""
     hint = "a bus terminal: lcec.0.DI.din-0 … din-7 (EL1008), lcec.0.DO.dout-0 … dout-7 (EL2008)"
     file = HalFile(lathe, "EtherCAT drives in cyclic synchronous position mode", _terminal, hint)
     file.check_notes += [
@@ -60,7 +63,7 @@ def _turned(lathe: LatheData) -> bool:
 
 
 def _list_healthy_pins(lathe: LatheData, drives: list[str]) -> tuple[str, ...]:
-    """Return the pins that are on while the bus and each of its slaves exchange data.
+    """Return the pins that are on while the bus and all its slaves exchange data.
 
     ``all-op`` counts only slaves that respond, so ``slave-oper`` of each slave is also monitored.
     """
@@ -99,7 +102,7 @@ def _terminal(name: str) -> BoardTerminal | None:
 
 
 def _connect_drive(file: HalFile, name: str) -> None:
-    """Connect the objects of one drive to its component."""
+    """Connect the objects of one drive to its cia402 component."""
     file.connect(f"{name}-statusword", f"lcec.0.{name}.cia-statusword", f"cia402.{name}.statusword")
     file.connect(f"{name}-opmode-display", f"lcec.0.{name}.opmode-display", f"cia402.{name}.opmode-display")
     file.connect(f"{name}-drv-pos", f"lcec.0.{name}.actual-position", f"cia402.{name}.drv-actual-position")
@@ -157,7 +160,10 @@ def _spindle(file: HalFile) -> None:
 
 
 def build_bus_xml(lathe: LatheData) -> str:
-    """Return the input of lcec_conf: the drives by their positions on the bus, then the terminals."""
+    """Return the input file of lcec_conf.
+
+    The drives are listed by their positions on the bus, followed by the terminals.
+    """
     lines = [
         "<masters>",
         f'  <master idx="0" appTimePeriod="{lathe.period_s * 1e9:.0f}" refClockSyncCycles="1">',
@@ -180,7 +186,7 @@ def build_bus_xml(lathe: LatheData) -> str:
 
 
 def _slave_lines(position: int, vendor: str, product: str, name: str) -> Iterator[str]:
-    """Yield the lines of one drive; halPin names the pins that the HAL file connects."""
+    """Yield the lines of one drive, in which halPin names the pins that the HAL file connects."""
     ids = f'vid="{int(vendor, 16):08X}" pid="{int(product, 16):08X}"'
     yield f'    <slave idx="{position}" type="generic" {ids} name="{name}" configPdos="true">'
     yield '      <dcConf assignActivate="300" sync0Cycle="*1" sync0Shift="0"/>'

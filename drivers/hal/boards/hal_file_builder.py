@@ -1,4 +1,4 @@
-"""Builder of a HAL file: loaded components, calls, parameters, nets and the wiring table."""
+"""A builder of HAL files: loaded components, calls, parameters, nets and the wiring table."""
 
 from __future__ import annotations
 
@@ -20,7 +20,10 @@ _WIDTH = 110
 
 @dataclass(frozen=True, slots=True)
 class LatheAxis:
-    """One axis that HAL moves, in mm or degrees, and seconds; ``count`` is the travel per count or step."""
+    """One axis that HAL moves.
+
+    Units are mm or degrees, and seconds. ``count`` is the travel per count or step.
+    """
 
     name: str
     count: float
@@ -29,16 +32,16 @@ class LatheAxis:
 
     @property
     def unit(self) -> str:
-        """The unit of the positions as text."""
+        """Return the unit of the positions as a text."""
         return "degree" if self.name == C_AXIS else "mm"
 
 
 @dataclass(frozen=True, slots=True)
 class LatheData:
-    """Data of a machine that its HAL file depends on.
+    """The data of a machine on which its HAL file depends.
 
-    ``names`` are the pins and signals of the machine file by their keys, in its order. ``period_s`` is that
-    of the servo thread in seconds.
+    ``terminal_names`` contains the pins and signals of the machine file by their keys, in the order of the
+    file. ``period_s`` is the period of the servo thread in seconds.
     """
 
     name: str
@@ -55,24 +58,30 @@ class LatheData:
 
     @property
     def c_axis(self) -> LatheAxis | None:
-        """The C axis if it is the spindle drive, otherwise None."""
+        """Return the C axis if it is the spindle drive, otherwise None."""
         return next((axis for axis in self.axes if axis.name == C_AXIS and self.spindle_is_c), None)
 
     @property
     def driven_axes(self) -> tuple[LatheAxis, ...]:
-        """The axes that have their own drive."""
+        """Return the axes that have their own drive."""
         return tuple(axis for axis in self.axes if axis is not self.c_axis)
 
 
 class BoardTerminal(NamedTuple):
-    """Terminal of a board: ``is_output`` is True for an output, ``place`` is the printed label."""
+    """A terminal of a board.
+
+    ``is_output`` is True for an output, and ``label`` is the printed label.
+    """
 
     is_output: bool
     label: str
 
 
 class WiringRow(NamedTuple):
-    """Row of the wiring table; ``names`` are keys of the machine file."""
+    """A row of the wiring table.
+
+    ``names`` are keys of the machine file.
+    """
 
     place: str
     pin: str
@@ -81,7 +90,7 @@ class WiringRow(NamedTuple):
 
 
 class FileSection(NamedTuple):
-    """Group of lines with a title."""
+    """A group of lines with a title."""
 
     title: str
     lines: list[str]
@@ -95,7 +104,10 @@ _READ_FUNCTIONS = re.compile(
 
 @dataclass(slots=True)
 class HalFile:
-    """HAL file that is being built; ``find_terminal`` returns the terminal of a board pin, or None."""
+    """A HAL file that is being built.
+
+    ``find_terminal`` returns the terminal of a board pin, or None.
+    """
 
     lathe: LatheData
     title: str
@@ -114,11 +126,14 @@ class HalFile:
     _claimed: dict[str, str] = field(default_factory=dict)
 
     def add_load(self, line: str, comment: str = "") -> None:
-        """Add a line that loads a component."""
+        """Add a line that loads a component, with an optional comment."""
         self.load_lines += [f"# {comment}", line] if comment else [line]
 
     def add_instance(self, component: str, name: str) -> None:
-        """Add an instance of a component, which is loaded once with all its instances."""
+        """Add an instance of a component.
+
+        The component is loaded once with all its instances.
+        """
         for index, line in enumerate(self.load_lines):
             if line.startswith(f"loadrt {component} names="):
                 self.load_lines[index] = f"{line},{name}"
@@ -126,7 +141,7 @@ class HalFile:
         self.add_load(f"loadrt {component} names={name}")
 
     def start_section(self, title: str) -> None:
-        """Start a section with this title."""
+        """Start a section with the given title."""
         self.sections.append(FileSection(title, []))
 
     def add_comment(self, comment: str) -> None:
@@ -139,13 +154,13 @@ class HalFile:
         self.sections[-1].lines.append(f"{line:<58} # {comment}" if comment else line)
 
     def connect(self, signal: str, *pins: str) -> None:
-        """Connect pins to a signal, with the source first."""
+        """Connect pins to a signal, with the source pin first."""
         self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
 
     def connect_key(self, path: str, signal: str, *pins: str, label: str = "", required: bool = False) -> str:
-        """Connect the pins of the key ``path`` and return their signal.
+        """Connect the pins of the key ``path``, and return their signal.
 
-        The machine file may name the signal, one of the pins, or a terminal of the board. A terminal is
+        The machine file may specify the signal, one of the pins, or a terminal of the board. A terminal is
         connected to the pins.
         """
         self._done.add(path)
@@ -174,7 +189,7 @@ class HalFile:
     def connect_positions(
         self, axis: str, command: Iterable[str], feedback: Iterable[str], label: str = ""
     ) -> None:
-        """Connect the pins of commanded and measured position of an axis."""
+        """Connect the pins of the commanded and the measured position of an axis."""
         path, name = f"hal.axes.{axis}", axis.lower()
         self.connect_key(f"{path}.command", f"{name}-pos-cmd", *command, label=label, required=True)
         self.connect_key(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, required=True)
@@ -182,7 +197,7 @@ class HalFile:
     def connect_terminal(
         self, path: str, signal: str, name: str, pin: str, *, is_output: bool = True
     ) -> None:
-        """Connect a terminal that [board] names to one pin."""
+        """Connect a terminal that the table [board] specifies to one pin."""
         found = self.find_terminal(name)
         if found is None or found.is_output is not is_output:
             self.findings.append(FileFinding(path, format_toml_value(name), self._expected((), found)))
@@ -193,7 +208,7 @@ class HalFile:
         self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
 
     def add_signal(self, path: str, name: str) -> None:
-        """Create a signal without a pin, which is set by hand."""
+        """Create a signal without a pin, which is set manually."""
         self._done.add(path)
         self.sections[-1].lines.append(f"newsig {name} bit")
         self.wiring_rows.append(WiringRow("", "-", name, (path,)))
@@ -201,7 +216,7 @@ class HalFile:
     def connect_enable(self, *pins: str) -> None:
         """Connect the pins of the board and of the machine file that enable the drives.
 
-        All of them use one signal, because they are driven alike.
+        All of these pins use one signal, because all drives are enabled together.
         """
         paths = {f"hal.axes.{axis.name}.enable": axis.name for axis in self.lathe.axes}
         named = [path for path in paths if path in self.lathe.terminal_names]
@@ -226,9 +241,10 @@ class HalFile:
             self.connect_key("hal.machine_on", "machine-on", *pins, required=True)
 
     def connect_link_fault(self, gate: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
-        """Put hal.link_fault on a gate: "or" of pins that report a fault, "nand" of pins that report health.
+        """Connect hal.link_fault to the output of a gate.
 
-        ``extra_pins`` pins of the file are on the same signal.
+        The gate is "or" for pins that report a fault, and "nand" for pins that report health. The pins
+        ``extra_pins`` of the file are on the same signal.
         """
         personality = {"or": 0x200, "nand": 0x800}[gate] + len(pins)
         self.add_load(
@@ -243,14 +259,14 @@ class HalFile:
         self.connect_key("hal.link_fault", "link-fault", f"board-link.{gate}", *extra_pins, required=True)
 
     def claim_terminal(self, pin: str, path: str) -> None:
-        """Reserve a driven terminal; a second use adds a finding."""
+        """Reserve a driven terminal, and add a finding if it is already used."""
         first = self._claimed.setdefault(pin, path)
         if first != path:
             why = Message("expected an unused pin; {first} already uses this pin", first=first)
             self.findings.append(FileFinding(path, format_toml_value(pin), why))
 
     def connect_remaining(self) -> None:
-        """Connect every name of the machine file that is not yet connected to its terminal."""
+        """Connect every name of the machine file that has not been connected to its terminal yet."""
         self.start_section("Inputs and outputs")
         for path in self.lathe.terminal_names:
             if path not in self._done:
@@ -267,7 +283,10 @@ class HalFile:
         return name
 
     def _add_wiring_row(self, path: str, signal: str, pins: tuple[str, ...], label: str, pin: str) -> None:
-        """Add one net; for a signal that exists already, such as a combined switch, only extend the table."""
+        """Add one net to the file and to the wiring table.
+
+        If the signal already exists, as for a combined switch, only the wiring table is extended.
+        """
         for index, wire in enumerate(self.wiring_rows):
             if wire.pin == pin:
                 self.wiring_rows[index] = wire._replace(names=(*wire.names, path))
@@ -292,7 +311,10 @@ class HalFile:
 
 
 def get_signal_name(path: str) -> str:
-    """Return the signal name for a key: io.in.guard is in-guard, hal.axes.X.limit_low is x-limit-low."""
+    """Return the signal name for a key.
+
+    For example, the key io.in.guard has the signal in-guard, and hal.axes.X.limit_low has x-limit-low.
+    """
     word = path.removeprefix("io.").removeprefix("hal.axes.").removeprefix("hal.").removesuffix(".at")
     return re.sub(r"[^a-z0-9]+", "-", word.lower())
 
@@ -301,7 +323,10 @@ def get_signal_name(path: str) -> str:
 
 
 def render_file(file: HalFile) -> str:
-    """Return the complete file; the same machine file always gives the same text."""
+    """Return the text of the complete file.
+
+    The same machine file always gives the same text.
+    """
     return "\n".join((*_head(file), *_body(file), ""))
 
 
@@ -348,7 +373,10 @@ def _body(file: HalFile) -> Iterator[str]:
 
 
 def format_wiring_table(wires: Iterable[WiringRow]) -> Iterator[str]:
-    """Yield the lines of the wiring table: terminal, pin, signal, and keys of the machine file."""
+    """Yield the lines of the wiring table.
+
+    The columns are the terminal, the pin, the signal, and the keys of the machine file.
+    """
     rows = [("terminal", "HAL pin", "signal", "machine file")]
     rows += [(wire.place or "-", wire.pin, wire.signal, ", ".join(wire.names)) for wire in wires]
     widths = [max(len(row[column]) for row in rows) for column in range(3)]

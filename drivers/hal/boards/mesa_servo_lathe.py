@@ -1,4 +1,7 @@
-"""HAL file of a ±10 V servo lathe on a Mesa 7I97: encoders, pid, analog outputs, isolated I/O."""
+"""The HAL file of a ±10 V servo lathe on a Mesa 7I97.
+
+The file uses encoders, pid components, analog outputs and isolated I/O.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +30,7 @@ _PWM_HZ = 48_000  # Frequency of the analog outputs, as in Mesa's samples.
 
 
 def build_mesa_servo_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file for velocity drives at ±10 V, with position loops by encoder and pid."""
+    """Build the HAL file for ±10 V velocity drives, with position loops of encoders and pid components."""
     hint = f"an input or relay of the card: {_CARD}.inmux.00.input-00 … -15, {_CARD}.ssr.00.out-00 … -05"
     file = HalFile(lathe, "±10 V servo drives on a Mesa 7I97", _terminal, hint)
     file.check_notes += [

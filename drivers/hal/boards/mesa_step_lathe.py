@@ -1,4 +1,7 @@
-"""HAL file of a step lathe on a Mesa 7I76E: step generators, spindle encoder, analog spindle, field I/O."""
+"""The HAL file of a step lathe on a Mesa 7I76E.
+
+The file uses step generators, a spindle encoder, an analog spindle output and field I/O.
+"""
 
 from __future__ import annotations
 
@@ -24,9 +27,9 @@ _FF1, _MOST_ERROR = 1.0, 0.0127  # Maximum error per period in mm (.0005 in).
 
 
 def build_mesa_step_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file for step generators of the card.
+    """Build the HAL file for the step generators of the card.
 
-    ``mode = "velocity"`` closes the position loop by a pid, as Mesa's samples do.
+    With ``mode = "velocity"``, a pid component closes the position loop, as in Mesa's sample files.
     """
     hint = f"an input or output of the card: {_FIELD}.input-00 … -31, {_FIELD}.output-00 … -15"
     file = HalFile(lathe, "step drives on a Mesa 7I76E", _terminal, hint)
@@ -71,7 +74,10 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
 
 
 def _configure_field_io(file: HalFile) -> None:
-    """Monitor the serial link to the field I/O, whose inputs also freeze if transfers fail."""
+    """Monitor the serial link to the field I/O.
+
+    The inputs of the field I/O also freeze if transfers fail.
+    """
     file.add_load("loadrt conv_u32_float names=field-errors")
     file.add_load("loadrt wcomp names=field-lost")
     file.first_calls[1:1] = ["field-errors", "field-lost"]
@@ -87,7 +93,7 @@ def _configure_field_io(file: HalFile) -> None:
 
 
 def _configure_timing(file: HalFile) -> None:
-    """Latch the step counts at a fixed time before the read, independent of the Ethernet delay."""
+    """Latch the step counts at a fixed time before they are read, independent of the Ethernet delay."""
     file.start_section(
         "Step counts: latched by the card's timer, so that Ethernet jitter does not appear as axis movement"
     )
@@ -129,7 +135,7 @@ def _enables(lathe: LatheData) -> list[str]:
 
 
 def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
-    """Configure the step generator of an axis and return its pin."""
+    """Configure the step generator of an axis, and return its pin."""
     board = file.lathe.board_table.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
@@ -152,7 +158,7 @@ def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
 
 
 def _connect_spindle_c(file: HalFile, axis: LatheAxis) -> None:
-    """Configure C on the spindle drive: step commands, with the spindle encoder as feedback."""
+    """Configure C on the spindle drive, with step commands and the spindle encoder as feedback."""
     load_c_components(file, shares_input=False)
     file.start_section(
         f"C: step generator {file.lathe.board_table.axes[axis.name].channel} for the spindle drive, "
@@ -196,7 +202,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
 
 
 def _connect_spindle(file: HalFile) -> None:
-    """Connect the isolated analog output with its enable and direction."""
+    """Connect the isolated analog output of the spindle, with its enable and direction signals."""
     full = file.lathe.board_table.spindle.full_speed
     if not full:
         return

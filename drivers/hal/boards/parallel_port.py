@@ -1,4 +1,7 @@
-"""HAL file of a lathe with step and direction on a parallel port: software step generators and encoder."""
+"""The HAL file of a lathe with step and direction signals on a parallel port.
+
+The file uses software step generators and a software encoder.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ _INPUT_PINS = frozenset(("10", "11", "12", "13", "15"))
 
 
 def build_parallel_port_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file with software step generators and encoder, and a PWM signal for the speed."""
+    """Build the HAL file with software step generators, software encoder and PWM speed signal."""
     hint = (
         "a parallel port pin: parport.0.pin-02-out … -09-out, -01-out, -14-out, -16-out or "
         "-17-out; parport.0.pin-10-in … -13-in or -15-in"

@@ -1,4 +1,7 @@
-"""HAL file of a lathe without hardware, with axes and spindle simulated by standard LinuxCNC components."""
+"""The HAL file of a lathe without hardware.
+
+Standard LinuxCNC components simulate the axes and the spindle.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,10 @@ _SWITCHES = 0.3  # Seconds for the collet to close and to open.
 
 
 def build_simulated_file(lathe: LatheData) -> HalFile:
-    """Build the HAL file with axes that lag their setpoints, a ramped spindle, and inputs set by hand."""
+    """Build the HAL file with axes that lag their setpoints and a ramped spindle.
+
+    Inputs are set manually.
+    """
     file = HalFile(
         lathe,
         "lathe simulated with standard LinuxCNC components, without hardware",
@@ -71,7 +77,10 @@ def _spindle(file: HalFile) -> None:
 
 
 def _add_manual_signals(file: HalFile) -> None:
-    """Create inputs and outputs as signals; ``halcmd sets in-guard 1`` operates a switch."""
+    """Create inputs and outputs as signals.
+
+    For example, ``halcmd sets in-guard 1`` operates a switch.
+    """
     file.start_section("Inputs and outputs are signals; to set a signal by hand: halcmd sets NAME 1")
     for path, name in file.lathe.terminal_names.items():
         if path.startswith(("io.", "hal.link_fault")) and "." not in name:

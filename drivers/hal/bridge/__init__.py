@@ -1,1 +1,1 @@
-"""Code that runs under the system's Python with LinuxCNC's ``hal`` module and has no other requirements."""
+"""Code that runs under the system's Python and requires only LinuxCNC's ``hal`` module."""

@@ -1,4 +1,4 @@
-"""Process of the bridge, started by halrun as ``/usr/bin/python3 bridge_process.py FILE``.
+"""The process of the bridge, which halrun starts as ``/usr/bin/python3 bridge_process.py FILE``.
 
 FILE is the configuration. The process checks that HAL has every pin of the machine file, connects its own
 pins, and plays setpoints until the driver ends.
@@ -34,9 +34,10 @@ _PIN_DIRECTIONS = {"in": "HAL_IN", "out": "HAL_OUT", "io": "HAL_IO"}
 
 
 def main(arguments: list[str]) -> int:
-    """Run the bridge until the driver ends or a pin does not match the machine file; return the exit code.
+    """Run the bridge until the driver ends or a pin does not match the machine file.
 
-    SIGINT is ignored, because the control brakes the axes and then ends this process.
+    Returns the exit code. SIGINT is ignored, because the control brakes the axes and then ends this
+    process.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     said = json.loads(Path(arguments[0]).read_text(encoding="utf-8"))
@@ -75,7 +76,7 @@ def main(arguments: list[str]) -> int:
 def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
     """Create the HAL component and connect its pins.
 
-    Return None if pins do not match or only a check was requested.
+    Returns None if pins do not match or if only a check was requested.
     """
     sock = socket.socket(fileno=os.dup(settings["fd"]))
     wanted = [hal_pins.ExpectedPin(*each) for each in settings["wanted"]]
@@ -112,7 +113,7 @@ def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> HalBridge:
 
 
 def _request_real_time() -> list[str]:
-    """Request SCHED_FIFO and return a message for the operator if it was refused."""
+    """Request SCHED_FIFO, and return a message for the operator if the request is refused."""
     try:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(_PRIORITY))
     except OSError as error:
@@ -143,7 +144,10 @@ def _serve(sock: socket.socket, bridge: HalBridge, now: Callable[[], float]) -> 
 
 
 def _tell(sock: socket.socket, bridge: HalBridge) -> None:
-    """Send a report; if the driver does not read, skip it until the next report."""
+    """Send a report.
+
+    If the driver is not reading, this report is skipped.
+    """
     try:
         sock.send(bridge.encode_report())
     except BlockingIOError:

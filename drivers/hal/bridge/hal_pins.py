@@ -1,4 +1,4 @@
-"""Pins and signals of HAL, and their comparison with the machine file."""
+"""The pins and signals of HAL, and their comparison with the machine file."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ _IN, _OUT, _BOTH = "IN", "OUT", "I/O"
 
 @dataclass(frozen=True, slots=True)
 class ExpectedPin:
-    """Pin or signal that the machine file names, with its key ``path`` and TurnDesk's signal
-    ``turndesk_signal``.
+    """A pin or signal that the machine file names.
+
+    ``path`` is its key in the machine file, and ``turndesk_signal`` is TurnDesk's signal for it.
     """
 
     path: str
@@ -25,7 +26,10 @@ class ExpectedPin:
 
 @dataclass(frozen=True, slots=True)
 class HalPin:
-    """Pin of HAL with the value that halcmd shows; ``signal`` is empty if it is not connected."""
+    """A pin of HAL with the value that halcmd shows.
+
+    ``signal`` is empty if the pin is not connected.
+    """
 
     hal_type: str
     direction: str
@@ -35,7 +39,7 @@ class HalPin:
 
 @dataclass(frozen=True, slots=True)
 class HalSignal:
-    """Signal of HAL with the value that halcmd shows, and whether a pin drives it."""
+    """A signal of HAL with the value that halcmd shows, and whether a pin drives it."""
 
     hal_type: str
     is_driven: bool
@@ -43,7 +47,10 @@ class HalSignal:
 
 
 def run_halcmd(*words: str) -> str:
-    """Run halcmd and return its output. Raises RuntimeError with its error text."""
+    """Run halcmd and return its output.
+
+    Raises RuntimeError with the error text of halcmd.
+    """
     done = subprocess.run(["halcmd", *words], capture_output=True, text=True, timeout=20, check=False)
     if done.returncode:
         raise RuntimeError((done.stderr or done.stdout).strip() or "halcmd has failed")
@@ -51,7 +58,10 @@ def run_halcmd(*words: str) -> str:
 
 
 def parse_pins(output: str) -> dict[str, HalPin]:
-    """Parse ``halcmd -s show pin``: owner, type, direction, value, name, and the arrow to a signal."""
+    """Return the pins in the output of ``halcmd -s show pin``.
+
+    A line contains owner, type, direction, value, name, and an arrow to a signal.
+    """
     found = {}
     for line in output.splitlines():
         words = line.split()
@@ -61,7 +71,10 @@ def parse_pins(output: str) -> dict[str, HalPin]:
 
 
 def parse_signals(pins: Mapping[str, HalPin], output: str) -> dict[str, HalSignal]:
-    """Parse ``halcmd -s show sig``: type, value, name, and the connected pins."""
+    """Return the signals in the output of ``halcmd -s show sig``.
+
+    A line contains type, value, name, and the connected pins.
+    """
     driven = {pin.signal for pin in pins.values() if pin.direction == _OUT}
     found = {}
     for line in output.splitlines():
@@ -74,7 +87,7 @@ def parse_signals(pins: Mapping[str, HalPin], output: str) -> dict[str, HalSigna
 def describe_pin_error(
     expected_pin: ExpectedPin, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]
 ) -> str:
-    """Return the error of a named pin or signal, or an empty text if it is correct."""
+    """Return the error of a pin or signal that the machine file names, or an empty text if it is correct."""
     pin, signal = pins.get(expected_pin.pin), signals.get(expected_pin.pin)
     if pin is None and signal is None:
         return (
@@ -112,7 +125,10 @@ def is_on(pin_name: str, pins: Mapping[str, HalPin], signals: Mapping[str, HalSi
 
 
 def _has_wrong_direction(expected: ExpectedPin, pin: HalPin, signals: Mapping[str, HalSignal]) -> bool:
-    """Return whether the direction of a pin is wrong; a driven input may also be read."""
+    """Return whether the direction of a pin is wrong.
+
+    An input that another pin drives may also be read.
+    """
     if expected.is_driven:
         return pin.direction == _OUT
     return pin.direction == _IN and not signals.get(pin.signal, HalSignal("", False)).is_driven
@@ -124,9 +140,9 @@ def build_net_lines(
     pins: Mapping[str, HalPin],
     signals: Mapping[str, HalSignal],
 ) -> list[str]:
-    """Return the halcmd lines that connect the machine and the bridge's own pins to TurnDesk's signals.
+    """Return the halcmd lines that connect the machine's pins and the bridge's pins to TurnDesk's signals.
 
-    A pin that is already on a signal of the machine stays there, and TurnDesk's pins are moved to that
+    A pin that is already on a signal of the machine remains on it, and TurnDesk's pins are moved to that
     signal. Raises RuntimeError if TurnDesk's signal would have to be on two signals of the machine.
     """
     theirs, loose, kept = dict[str, str](), [], list[str]()

@@ -1,6 +1,6 @@
 """Packets between the driver and its bridge, and the configuration of the bridge.
 
-A packet consists of the length of a JSON head, the head, and doubles.
+A packet consists of the length of a JSON head, the head, and a sequence of doubles.
 """
 
 from __future__ import annotations
@@ -20,13 +20,16 @@ PacketHead = dict[str, object]
 
 
 def pack_packet(head: Mapping[str, object], numbers: Iterable[float] = ()) -> bytes:
-    """Return the bytes of one packet."""
+    """Return a packet encoded as bytes."""
     text = json.dumps(head, separators=(",", ":")).encode()
     return _LENGTH.pack(len(text)) + text + array("d", numbers).tobytes()
 
 
 def unpack_packet(data: bytes) -> tuple[PacketHead, Sequence[float]]:
-    """Return head and numbers of a packet. Raises ValueError or struct.error for invalid data."""
+    """Return the head and the numbers of a packet.
+
+    Raises ValueError or struct.error for invalid data.
+    """
     (length,) = _LENGTH.unpack_from(data)
     head: PacketHead = json.loads(data[_LENGTH.size : _LENGTH.size + length])
     numbers = array("d")
@@ -47,7 +50,7 @@ def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
 
 
 def parse_pieces(numbers: Sequence[float], axes: int) -> list[MotionPiece]:
-    """Return the pieces from a sequence of numbers."""
+    """Return the pieces that a sequence of numbers contains."""
     width = 2 + 3 * axes
     made = []
     for at in range(0, len(numbers), width):
@@ -58,7 +61,10 @@ def parse_pieces(numbers: Sequence[float], axes: int) -> list[MotionPiece]:
 
 
 def build_packets(head: Mapping[str, object], pieces: Sequence[MotionPiece], axes: int) -> Iterable[bytes]:
-    """Yield packets for any number of pieces; all but the last have ``more`` in their head."""
+    """Yield packets for any number of pieces.
+
+    The head of every packet except the last contains ``more``.
+    """
     most = MAX_PACKET_NUMBERS // (2 + 3 * axes)
     for first in range(0, len(pieces), most):
         part = pieces[first : first + most]
@@ -67,20 +73,20 @@ def build_packets(head: Mapping[str, object], pieces: Sequence[MotionPiece], axe
 
 
 def number(head: Mapping[str, object], key: str, default: float = 0.0) -> float:
-    """Return a number of a head, or ``default`` if it is missing."""
+    """Return a number from the head of a packet, or ``default`` if it is missing."""
     value = head.get(key)
     return float(value) if isinstance(value, int | float) else default
 
 
 def text(head: Mapping[str, object], key: str) -> str:
-    """Return a text of a head, or an empty text if it is missing."""
+    """Return a text from the head of a packet, or an empty text if it is missing."""
     value = head.get(key)
     return value if isinstance(value, str) else ""
 
 
 @dataclass(frozen=True, slots=True)
 class BridgeAxis:
-    """Axis of the bridge: its deceleration, and the window and time for its following error."""
+    """An axis of the bridge, with its deceleration and the window and time for its following error."""
 
     name: str
     amax: float
@@ -91,10 +97,10 @@ class BridgeAxis:
 
 @dataclass(frozen=True, slots=True)
 class BridgeConfig:
-    """Configuration of the bridge; ``outputs`` are the safe states, where None leaves an output unchanged.
+    """The configuration of the bridge.
 
-    ``turns`` and ``speed`` state whether the samples contain them after the axes. ``bits`` are pins that are
-    reported unchanged.
+    ``outputs`` contains the safe states, where None leaves an output unchanged. ``turns`` and ``speed`` are
+    True if the samples contain these values after the axes. ``bits`` are pins that are reported unchanged.
     """
 
     axes: tuple[BridgeAxis, ...]

@@ -1,8 +1,8 @@
-"""Rows of setpoints in HAL: one stream plays, and the other receives replacement rows.
+"""Rows of setpoints in HAL, in two streams: one is played, and the other receives replacement rows.
 
 The change between the streams is requested some rows ahead of the servo thread. Without real-time priority,
-the thread may have passed this row before it reads the request. The change is then requested at a later row.
-This is possible while both streams contain the same rows, as they do at the start of a continued path.
+the thread may have passed this row before it reads the request. The change is then requested at a later
+row. This is possible while both streams contain the same rows, as they do at the start of a continued path.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _MARGIN = 4  # Minimum rows between the request of a change and its row.
 
 
 class RowStream(Protocol):
-    """Methods of ``hal.stream`` that the bridge uses."""
+    """The methods of ``hal.stream`` that the bridge uses."""
 
     @property
     def depth(self) -> int: ...
@@ -32,7 +32,7 @@ class RowStream(Protocol):
 
 
 class HalPins(Protocol):
-    """Pins of a HAL component by name; bits are 0 and 1."""
+    """The pins of a HAL component by name; bits are 0 and 1."""
 
     def __getitem__(self, name: str, /) -> float: ...
     def __setitem__(self, name: str, value: float, /) -> None: ...
@@ -43,7 +43,7 @@ RowFunction = Callable[[float], SetpointRow]
 
 
 class _PendingRow(NamedTuple):
-    """Written row with its due time and its values."""
+    """A written row with its number, its due time and its values."""
 
     row: int
     t: float
@@ -51,7 +51,7 @@ class _PendingRow(NamedTuple):
 
 
 class RowStreams:
-    """Pair of streams that numbers the rows and recalls those that are not yet played."""
+    """A pair of streams that numbers the rows and recalls rows that have not been played yet."""
 
     def __init__(self, streams: tuple[RowStream, RowStream], pins: HalPins) -> None:
         self._streams = streams
@@ -72,11 +72,11 @@ class RowStreams:
 
     @property
     def pending_row_count(self) -> int:
-        """The number of rows that are written but not yet played."""
+        """Return the number of rows that have been written but not played yet."""
         return self.last_row_number - self.played_row_number
 
     def write_row(self, t: float, values: tuple[float, ...]) -> bool:
-        """Write one row that is due at ``t``; return False if the stream is full."""
+        """Write one row that is due at ``t``, and return False if the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
         if not stream.writable:
             return False
@@ -102,7 +102,10 @@ class RowStreams:
         return self.last_row_number + 1
 
     def matches_locked_rows(self, t: float, make_row: RowFunction) -> bool:
-        """Return whether the rows that can no longer be recalled equal those of ``make`` from ``t`` on."""
+        """Return whether the rows that can no longer be recalled equal those of ``make_row``.
+
+        Only the rows from ``t`` on are compared.
+        """
         until = self.played_row_number + _MARGIN
         rows = [each for each in (*self._past, *self._due) if each.row <= until]
         return (
@@ -120,13 +123,13 @@ class RowStreams:
 
     @property
     def is_changing(self) -> bool:
-        """Whether a pending change is too close to be modified."""
+        """Return whether a pending change between the streams is too close to be modified."""
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
     def recall_rows(self, t: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
-        """Replace all rows from ``t`` on; return False without a change if it is too late.
+        """Replace all rows from ``t`` on, and return False without a change if it is too late.
 
-        Until ``same_until`` seconds, the replacement is the same path.
+        Until ``unchanged_until`` seconds, the replacement is the same path.
         """
         first = self.first_recallable_row(t)
         if first is None or self.is_changing:
@@ -160,7 +163,7 @@ class RowStreams:
         self._request_change(first)
 
     def _request_change(self, first: int) -> None:
-        """Request that the other stream takes over at this row."""
+        """Request that the other stream is played from row ``first`` on."""
         idle = self._streams[1 - self._active]
         for each in self._due:
             if each.row >= first:
@@ -170,7 +173,10 @@ class RowStreams:
         self._pins["switch-at"] = float(first - 1)
 
     def finish_change(self, second_plays: bool) -> bool:
-        """Complete a change by the stream that plays; return False if this is not the requested stream."""
+        """Complete a change according to the stream that is played.
+
+        Returns False if this is not the requested stream.
+        """
         plays = int(second_plays)
         if self._change is None or self.played_row_number < self._change:
             unasked = self._change is None and plays != self._active
@@ -199,7 +205,7 @@ def _same(one: SetpointRow, other: SetpointRow) -> bool:
 
 
 class SampleStream(Protocol):
-    """Stream of samples from HAL, as ``hal.stream`` provides it."""
+    """A stream of samples from HAL, as ``hal.stream`` provides it."""
 
     @property
     def readable(self) -> bool: ...

@@ -1,4 +1,4 @@
-"""Setpoint player with a queue that ends at rest, and a cam over the revolutions of the spindle."""
+"""A setpoint player with a queue that ends at rest, and a cam over the revolutions of the spindle."""
 
 from __future__ import annotations
 
@@ -14,26 +14,26 @@ MotionState = tuple[tuple[float, ...], tuple[float, ...]]
 
 
 def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRow]:
-    """Return a function that returns the row of setpoints at a time, without the spindle."""
+    """Return a function that returns the row of setpoints at a given time, without the spindle."""
     queue = PieceQueue(pieces[0].positions)
     queue.replace_from(pieces[0].start_time_s, pieces)
     return lambda t: _rest_row(queue, t)
 
 
 def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
-    """Return the row with the position of each axis and zero travel per revolution."""
+    """Return the row with the position of each axis and with zero travel per revolution."""
     return tuple([each for p in queue.commanded_state_at(t)[0] for each in (p, 0.0)])
 
 
 class SpindlePredictor:
-    """Prediction of the spindle position from its recent readings."""
+    """A predictor of the spindle position from its recent readings."""
 
     def __init__(self) -> None:
         self._seen: deque[tuple[float, float]] = deque()
         self.speed_rev_per_s = 0.0  # turns/s
 
     def add_reading(self, t: float, turns: float) -> None:
-        """Add a reading."""
+        """Add a reading of the spindle position, in revolutions."""
         seen = self._seen
         if seen and t <= seen[-1][0]:
             return
@@ -52,8 +52,9 @@ class SpindlePredictor:
 
 
 class PlayerCam(NamedTuple):
-    """Motion over revolutions from ``start_revolutions`` on, as ``core.ports.PlayerCam``;
-    ``following_pieces`` continues by time.
+    """A motion over spindle revolutions from ``start_revolutions`` on, as in ``core.ports.Cam``.
+
+    ``following_pieces`` continue the motion by time.
     """
 
     start_revolutions: float
@@ -63,9 +64,9 @@ class PlayerCam(NamedTuple):
 
 
 class SetpointPlayer:
-    """Player that returns a row of setpoints for any time.
+    """A player that returns a row of setpoints for any time.
 
-    A row has the position without the spindle and the travel per revolution of each axis.
+    A row contains, for each axis, the position without the spindle and the travel per revolution.
     """
 
     def __init__(self, axes: int) -> None:
@@ -75,12 +76,12 @@ class SetpointPlayer:
         self.cam_end_time_s: float | None = None  # End time of the cam in s.
 
     def reset_to(self, position: Sequence[float]) -> None:
-        """Discard all setpoints and rest at this position."""
+        """Discard all setpoints, and rest at the given position."""
         self.cam = self.cam_end_time_s = None
         self.queue.reset_to(position)
 
     def splice(self, pieces: list[MotionPiece]) -> None:
-        """Play these pieces by time from their start on, and end the cam."""
+        """Play the given pieces by time from their start on, and end the cam."""
         if self.cam is not None:
             self.queue.reset_to(pieces[0].positions)
         self.cam = self.cam_end_time_s = None
@@ -93,7 +94,10 @@ class SetpointPlayer:
         pieces: list[MotionPiece],
         following_pieces: Sequence[MotionPiece],
     ) -> None:
-        """Follow the spindle with these pieces; earlier pieces of the same cam remain."""
+        """Follow the spindle with the given pieces.
+
+        Earlier pieces of the same cam remain.
+        """
         way = PieceQueue(pieces[0].positions)
         if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
             start_revolutions,
@@ -104,7 +108,10 @@ class SetpointPlayer:
         self.cam, self.cam_end_time_s = PlayerCam(start_revolutions, sign, way, following_pieces), None
 
     def brake_to_rest(self, t: float, deceleration: Sequence[float]) -> list[MotionPiece]:
-        """Brake straight to rest from ``t`` on and return the pieces, which are empty at rest."""
+        """Brake straight to rest from ``t`` on, and return the pieces of the deceleration.
+
+        No pieces are returned at rest.
+        """
         state = self.get_motion_at(t)
         if self.cam is not None:
             self.reset_to(state[0])
@@ -118,7 +125,7 @@ class SetpointPlayer:
 
     @property
     def is_cam_inactive(self) -> bool:
-        """Whether no axis follows the spindle."""
+        """Return whether no axis follows the spindle."""
         return self.cam is None or self.cam_end_time_s is not None
 
     def get_end_time(self, t: float) -> float:
@@ -126,7 +133,7 @@ class SetpointPlayer:
         return self.queue.queue_end(t) if self.is_cam_inactive else INFINITY
 
     def get_motion_at(self, t: float) -> MotionState:
-        """Return position and velocity at ``t``, predicted for a cam."""
+        """Return the position and the velocity at ``t``, which are predicted for a cam."""
         if self.cam is None or (self.cam_end_time_s is not None and t >= self.cam_end_time_s):
             return self.queue.commanded_state_at(t)
         p, per_turn = self.cam.path_queue.commanded_state_at(self._cam_turns(self.cam, t))
@@ -134,7 +141,10 @@ class SetpointPlayer:
         return p, tuple([v * speed for v in per_turn])
 
     def get_row_at(self, t: float) -> SetpointRow:
-        """Return the row for HAL at ``t``: position and travel per revolution of each axis in sequence."""
+        """Return the row for HAL at ``t``.
+
+        The row contains the position and the travel per revolution of each axis in sequence.
+        """
         cam = self.cam
         if cam is not None and (self.cam_end_time_s is None or t < self.cam_end_time_s):
             u = self._cam_turns(cam, t)
@@ -154,7 +164,10 @@ class SetpointPlayer:
         return cam.direction_sign * (self.spindle_predictor.predict(t) - cam.start_revolutions)
 
     def _geared_row(self, cam: PlayerCam, u: float) -> SetpointRow:
-        """Return the tangent of the cam at the predicted revolutions, as HAL needs it for the position."""
+        """Return the row with the tangent of the cam at the predicted revolutions.
+
+        HAL calculates the position from this tangent.
+        """
         place, per_turn = cam.path_queue.commanded_state_at(u)
         start = cam.start_revolutions + cam.direction_sign * u
         return tuple(
@@ -166,7 +179,7 @@ class SetpointPlayer:
         )
 
     def _leave_cam(self, cam: PlayerCam, t: float) -> None:
-        """End the cam: rest, or continue by time if the cam has a tail."""
+        """End the cam: rest, or continue by time if pieces follow the cam."""
         rest, _ = cam.path_queue.commanded_state_at(INFINITY)
         self.cam_end_time_s = t
         self.queue.reset_to(rest)

@@ -1,1 +1,1 @@
-"""The artifacts of a release: an environment with all Python packages, as a tarball and a Debian package."""
+"""Release artifacts: an environment with all Python packages, as a tarball and as a Debian package."""

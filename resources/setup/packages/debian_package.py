@@ -1,4 +1,7 @@
-"""The Debian package: TurnDesk in ``/opt/turndesk``, its menu entry, manual page, completion and units."""
+"""Debian package with TurnDesk in ``/opt/turndesk``.
+
+The package also contains a menu entry, a manual page, shell completions and systemd units.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,10 @@ _CONFIGURATION = "etc/security/limits.d/turndesk.conf"
 
 
 class Target(NamedTuple):
-    """A release for which the package is made: its name, the version of its Python, and 2.n of its glibc."""
+    """System release for which the package is built.
+
+    ``python`` is the version of its Python, and ``glibc`` is n of its glibc version 2.n.
+    """
 
     name: str
     python: str
@@ -48,9 +54,10 @@ TARGETS = {
 
 
 def debian_version(version: str, target: Target) -> str:
-    """Return the version of the package, such as ``0.1.0~202612010830.1a2b3c4+debian12``.
+    """Return the version of the Debian package, such as ``0.1.0~202612010830.1a2b3c4+debian12``.
 
-    A version with a commit precedes the release of the same number. Raises BundleError for changed files.
+    A version with a commit sorts before the release with the same number. Raises BundleError if the
+    checkout has changes that are not committed.
     """
     number, _, commit = version.partition("-")
     if "changed" in commit:
@@ -61,7 +68,10 @@ def debian_version(version: str, target: Target) -> str:
 
 
 def write_debian_package(environment: Path, version: str, target: Target, machine: str, folder: Path) -> Path:
-    """Write the package of an environment folder, which is moved into it. Raises BundleError."""
+    """Write the Debian package of an environment folder, which is moved into the package.
+
+    Raises BundleError if a command fails.
+    """
     stated = debian_version(version, target)
     root = folder / f"root-{target.name}"
     inside = root / "opt" / "turndesk" / version
@@ -80,7 +90,7 @@ def write_debian_package(environment: Path, version: str, target: Target, machin
 
 
 def _shared_files(root: Path, version: str) -> None:
-    """Write everything outside of ``/opt``."""
+    """Write all files of the package that are outside of ``/opt``."""
     command = _file(root / "usr/bin/turndesk")
     command.symlink_to(f"/opt/turndesk/{version}/bin/turndesk")
     _write(root, "usr/share/applications/turndesk.desktop", entry_text("/usr/bin/turndesk %f"))
@@ -117,7 +127,7 @@ def _control_files(folder: Path, words: Mapping[str, str]) -> None:
 
 
 def _copyright() -> str:
-    """Return the licenses of TurnDesk and of every package in it, in Debian's machine-readable form."""
+    """Return the licenses of TurnDesk and of all packages in it, in Debian's machine-readable format."""
     license_text = (HOUSE / "LICENSE").read_text(encoding="utf-8")
     mit = "\n".join(f" {line}" if line.strip() else " ." for line in license_text.splitlines())
     parts = [

@@ -1,6 +1,6 @@
-"""The folder with TurnDesk and all its Python packages, for one version of Python; it can be moved.
+"""Folder with TurnDesk and all its Python packages for one Python version, which can be moved.
 
-The folder has the form of a virtual environment: ``bin/python`` leads to the Python of the system.
+The folder has the structure of a virtual environment; ``bin/python`` is a link to the Python of the system.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ _NEEDLESS = ("bin", "share/man", "share/doc")
 
 
 def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str, wheels: Path) -> None:
-    """Fill a folder for a Python version such as ``3.11``. ``wheels`` are all wheels of the desk.
+    """Fill a folder for a Python version, such as ``3.11``.
 
-    Raises BundleError if a package cannot be installed.
+    ``wheels`` is the folder with all wheels that TurnDesk needs. Raises BundleError if a package cannot be
+    installed.
     """
     packages = folder / "lib" / f"python{python}" / "site-packages"
     packages.mkdir(parents=True)
@@ -45,7 +46,9 @@ def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str
 
 
 def _without_traces(packages: Path) -> None:
-    """Delete what pip writes about this computer and this minute, and compiled files."""
+    """Delete compiled files, and the files in which pip records data about this computer and the present
+    time.
+    """
     for compiled in [*packages.rglob("__pycache__")]:
         shutil.rmtree(compiled)
     for info in packages.glob("*.dist-info"):

@@ -1,4 +1,4 @@
-"""The manual page ``turndesk(1)``, written from the parser of the command line."""
+"""Manual page ``turndesk(1)``, which is generated from the command-line parser."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from resources.setup.packages.same_bytes import epoch
 
 
 def manual_page() -> str:
-    """Return the page in the format of ``man``."""
+    """Return the manual page in the format of ``man``."""
     parser = build_parser()
     day = time.strftime("%Y-%m-%d", time.gmtime(epoch()))
     return "\n".join(
@@ -47,7 +47,7 @@ def manual_page() -> str:
 
 
 def _commands(parser: argparse.ArgumentParser, name: str) -> Iterator[str]:
-    """Yield the commands of a parser, and those below them."""
+    """Yield the commands of a parser and their subcommands."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             helps = {each.dest: each.help or "" for each in action._choices_actions}
@@ -77,6 +77,6 @@ def _value_of(action: argparse.Action) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return a text in which ``man`` finds no command and no special character."""
+    """Return a text in which all commands and special characters of ``man`` are escaped."""
     text = text.replace("\\", r"\e").replace("-", r"\-")
     return re.sub(r"^(?=[.'])", r"\\&", text)

@@ -1,4 +1,4 @@
-"""Archives with the same bytes for the same files: sorted, of one owner and of one time."""
+"""Archives that always have the same bytes for the same files: sorted, with one owner and one time."""
 
 from __future__ import annotations
 
@@ -10,12 +10,15 @@ from pathlib import Path
 
 
 def epoch() -> int:
-    """Return the time that all files of a release have, in seconds since 1970 (``SOURCE_DATE_EPOCH``)."""
+    """Return the time for all files of a release, in seconds since 1970 (``SOURCE_DATE_EPOCH``)."""
     return int(os.environ.get("SOURCE_DATE_EPOCH", "0"))
 
 
 def owned_by_root(member: tarfile.TarInfo) -> tarfile.TarInfo:
-    """Return a member of an archive without its owner and its time."""
+    """Set the owner and the time of an archive member, and return the member.
+
+    The owner becomes root, and the time becomes the time of the release.
+    """
     member.uid = member.gid = 0
     member.uname = member.gname = "root"
     member.mtime = epoch()
@@ -23,7 +26,7 @@ def owned_by_root(member: tarfile.TarInfo) -> tarfile.TarInfo:
 
 
 def write_tar_gz(folder: Path, target: Path, name: str) -> None:
-    """Write the files of a folder to a compressed archive, below the folder ``name``."""
+    """Write the files of a folder to a compressed archive, in which they are in the folder ``name``."""
     with (
         target.open("wb") as file,
         gzip.GzipFile("", "wb", 6, file, mtime=epoch()) as packed,
@@ -33,7 +36,7 @@ def write_tar_gz(folder: Path, target: Path, name: str) -> None:
 
 
 def repack_tar_gz(path: Path) -> None:
-    """Write a compressed archive again, with its members sorted, of one owner and of one time."""
+    """Rewrite a compressed archive, so that its members are sorted and have one owner and one time."""
     made = io.BytesIO()
     with (
         tarfile.open(path) as old,
@@ -49,15 +52,16 @@ def repack_tar_gz(path: Path) -> None:
 
 
 def _is_command(path: Path) -> bool:
-    """Return whether a file is a command: a script outside of the packages, or a program of Qt."""
+    """Return whether a file is a command, which is a script outside of the packages or a program of Qt."""
     is_package = "site-packages" in path.parts
     return bool(path.stat().st_mode & 0o100) and (not is_package or path.parent.name == "libexec")
 
 
 def set_times(folder: Path) -> None:
-    """Give everything in a folder the time of the release, and rights that do not depend on the umask.
+    """Set the time and the mode of everything in a folder.
 
-    Of the files that can be executed, only commands remain so: libraries and modules are only read.
+    The time is the time of the release, and the modes do not depend on the umask. Only commands remain
+    executable; libraries and modules are made readable only.
     """
     for path in (folder, *folder.rglob("*")):
         if not path.is_symlink():

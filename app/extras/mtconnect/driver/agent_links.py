@@ -1,7 +1,8 @@
-"""MTConnect agents: SHDR lines, the data waiting for each agent, and the listening socket.
+"""Connections to MTConnect agents: SHDR lines, unsent data of each agent, and the listening socket.
 
-The lines follow the reference agent: ``time|key|value|key|value``, with a condition on a separate line. The
-rules are from the C++ agent's tokenizer, token mapper and adapter. SHDR has no escape characters.
+The lines have the format of the reference agent: ``time|key|value|key|value``. Each condition is on a
+separate line. The rules are from the tokenizer, token mapper and adapter of the C++ agent. SHDR has no
+escape characters.
 """
 
 from __future__ import annotations
@@ -28,7 +29,10 @@ ItemValue = str | float | None  # None: not known
 
 
 class ActiveCondition(NamedTuple):
-    """Active condition. ``level`` is WARNING or FAULT, and ``code`` identifies the condition."""
+    """Condition that is active.
+
+    ``level`` is WARNING or FAULT, and ``code`` identifies the condition.
+    """
 
     level: str
     code: str
@@ -36,7 +40,7 @@ class ActiveCondition(NamedTuple):
 
 
 class MachineReport(NamedTuple):
-    """State of the machine at one instant: values of samples and events, and active conditions.
+    """State of the machine at one instant, with the values of samples and events and the active conditions.
 
     A missing key means that the value is not known.
     """
@@ -46,20 +50,21 @@ class MachineReport(NamedTuple):
 
 
 def format_utc_time(time: datetime) -> str:
-    """Return a UTC time in the format of the agent, in milliseconds."""
+    """Return a UTC time in the format of the agent, with a resolution of milliseconds."""
     return time.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
 def make_pong(heartbeat: float) -> bytes:
     """Return the reply to a PING.
 
-    ``heartbeat`` is in seconds, sent as 1 ms to just under half an hour.
+    ``heartbeat`` is in seconds. The reply states it in milliseconds, limited to 1 ms to just under half an
+    hour.
     """
     return b"* PONG %d\n" % min(max(round(1000 * heartbeat), 1), _LONGEST_BEAT)
 
 
 def format_value(item: DataItem, value: ItemValue) -> str:
-    """Return a value as text."""
+    """Return the value of an item as text for an SHDR line."""
     if value is None:
         return UNAVAILABLE
     if isinstance(value, str):
@@ -68,9 +73,10 @@ def format_value(item: DataItem, value: ItemValue) -> str:
 
 
 def replace_separators(text: str) -> str:
-    """Return text that the agent reads as one value, with separators and quotation marks replaced.
+    """Return a text that the agent reads as one value.
 
-    A leading quotation mark or ``--multiline--`` would include the following data.
+    Separators and quotation marks are replaced. Otherwise a leading quotation mark or ``--multiline--``
+    would make the agent read the data that follow as part of the value.
     """
     text = _CONTROL.sub(" ", text).replace("|", "/").replace("--multiline--", "- multiline -")
     text = text.encode("utf-8", "replace").decode("utf-8")[:MAX_VALUE_LENGTH].strip()
@@ -78,7 +84,7 @@ def replace_separators(text: str) -> str:
 
 
 def make_values_line(time: str, pairs: Mapping[str, str]) -> str:
-    """Return the line with samples and events of one instant."""
+    """Return the line with the samples and events of one instant."""
     return "|".join((time, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
@@ -93,7 +99,10 @@ def make_active_line(time: str, key: str, active: ActiveCondition) -> str:
 
 
 def make_cleared_line(time: str, key: str, code: str = "") -> str:
-    """Return the line for the end of a condition code, or of the whole condition without a code."""
+    """Return the line for the end of one code of a condition.
+
+    If ``code`` is empty, the whole condition ends.
+    """
     return f"{time}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
 
@@ -109,7 +118,7 @@ ConditionsByItem = dict[str, tuple[ActiveCondition, ...] | None]  # None: not kn
 
 
 class SentState:
-    """State of the machine that all connected agents have received."""
+    """Machine state that all connected agents have received."""
 
     def __init__(self, items: tuple[DataItem, ...]) -> None:
         self._values = {item.key: item for item in items if item.category is not Category.CONDITION}
@@ -120,14 +129,14 @@ class SentState:
         self._shown = dict.fromkeys(self._values, UNAVAILABLE)
 
     def make_complete_state(self, time: str) -> str:
-        """Return the complete state for a new agent."""
+        """Return the lines of the complete state for a new agent."""
         lines = [make_values_line(time, self._shown)]
         for key, active in self._conditions.items():
             lines += _whole_condition(time, key, active)
         return "".join(lines)
 
     def report_changes(self, report: MachineReport, time: str) -> str:
-        """Return the changes in a report, which then count as sent."""
+        """Return the lines of the changes in a report, and store the changes as sent."""
         new = dict(self._new_values(report))
         lines = [make_values_line(time, new)] if new else []
         for key, before in self._conditions.items():
@@ -150,7 +159,10 @@ class SentState:
 
 
 def _differs(item: DataItem, before: ItemValue, now: ItemValue) -> bool:
-    """Return whether a value has changed. A sample must leave its band, except from or to 0."""
+    """Return whether a value has changed.
+
+    The change of a sample must exceed a minimum, except for a change from or to 0.
+    """
     if isinstance(before, str) or isinstance(now, str) or before is None or now is None:
         return before != now
     if now == 0.0 or before == 0.0:
@@ -167,7 +179,7 @@ def _whole_condition(at: str, key: str, active: tuple[ActiveCondition, ...] | No
 def _changed_condition(
     time: str, key: str, before: tuple[ActiveCondition, ...] | None, now: tuple[ActiveCondition, ...] | None
 ) -> list[str]:
-    """Return the lines of new and changed conditions, followed by those of ended conditions."""
+    """Return the lines of new and changed conditions, followed by the lines of ended conditions."""
     if not now or before is None:
         return _whole_condition(time, key, now)
     codes = {each.code for each in now}
@@ -186,7 +198,10 @@ PING_TIMEOUT_S = 5.0  # seconds within which an additional agent must send PING
 
 
 class AgentLostError(Exception):
-    """Error for an agent that is gone or disconnected. The message states the reason."""
+    """Error for an agent that has disconnected or does not respond.
+
+    The message states the reason.
+    """
 
 
 class AgentDisconnectedError(AgentLostError):
@@ -196,8 +211,9 @@ class AgentDisconnectedError(AgentLostError):
 class AgentLink:
     """Connection of an agent on a non-blocking socket.
 
-    ``heartbeat`` is the requested PING interval in seconds. ``waits_since`` is the time in seconds at which
-    the agent arrived while all places were taken. None means that the agent receives data.
+    The constructor takes the requested PING interval in seconds as ``heartbeat``. ``waiting_since`` is the
+    time in seconds at which the agent connected while all connections were in use, or None if the agent
+    receives data.
     """
 
     def __init__(self, wire: socket.socket, heartbeat: float, waits_since: float | None = None) -> None:
@@ -211,11 +227,14 @@ class AgentLink:
 
     @property
     def has_pinged(self) -> bool:
-        """Whether the peer has sent a PING."""
+        """Return whether the agent has sent a PING."""
         return self._heard is not None
 
     def queue_data(self, data: bytes) -> None:
-        """Queue data. Raises LostError if too much earlier data is waiting."""
+        """Queue data for the agent.
+
+        Raises AgentLostError if too much earlier data is waiting.
+        """
         if len(self._out) + len(data) > MAX_UNSENT_BYTES:
             raise AgentLostError(
                 Message(
@@ -226,7 +245,10 @@ class AgentLink:
         self._out += data
 
     def flush(self) -> None:
-        """Send as much queued data as the socket accepts. Raises LostError."""
+        """Send as much queued data as the socket accepts.
+
+        Raises AgentLostError.
+        """
         try:
             sent = self.agent_socket.send(self._out)
         except BlockingIOError:
@@ -238,7 +260,10 @@ class AgentLink:
         del self._out[:sent]
 
     def read(self, now: float) -> None:
-        """Read received data. A PING is answered, and other lines are counted. Raises LostError."""
+        """Read received data, reply to each PING, and count other lines.
+
+        Raises AgentLostError.
+        """
         try:
             come = self.agent_socket.recv(READ_BYTES)
         except BlockingIOError:
@@ -263,7 +288,11 @@ class AgentLink:
             self.ignored_line_count += 1
 
     def check_timeout(self, now: float) -> None:
-        """Raise LostError if an agent has stopped sending PING, or waits for a place without sending PING."""
+        """Raise AgentLostError if the PING of an agent is overdue.
+
+        This applies to an agent that has stopped sending PING, and to an agent that waits for a free
+        connection without sending PING.
+        """
         if self.waiting_since is not None and now - self.waiting_since > PING_TIMEOUT_S:
             raise AgentDisconnectedError("all connections are in use, and this agent does not send PING")
         if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
@@ -281,7 +310,10 @@ _UNANSWERED = 30_000  # ms without a response after which the other computer cou
 
 
 def open_listening_socket(bind: str, port: int) -> socket.socket:
-    """Return a bound, listening socket. Raises DriverError with the cause."""
+    """Return a bound, listening socket.
+
+    Raises DriverError with the cause.
+    """
     try:
         family, kind, proto, _, address = socket.getaddrinfo(
             bind, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
@@ -312,7 +344,10 @@ def open_listening_socket(bind: str, port: int) -> socket.socket:
 
 
 def accepted(listener: socket.socket) -> socket.socket:
-    """Accept a connection without waiting. Raises OSError if the peer has gone."""
+    """Accept a connection without waiting, and return its socket.
+
+    Raises OSError if the peer has disconnected.
+    """
     wire, _ = listener.accept()
     try:
         _tune(wire)
@@ -323,7 +358,7 @@ def accepted(listener: socket.socket) -> socket.socket:
 
 
 def _tune(wire: socket.socket) -> None:
-    """Detect a vanished peer, and send lines without delay."""
+    """Configure a socket to detect a lost peer and to send lines without delay."""
     wire.setblocking(False)
     wire.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     wire.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

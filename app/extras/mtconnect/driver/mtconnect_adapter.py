@@ -1,7 +1,7 @@
 """MTConnect adapter, and the device model (``Devices.xml``) of the reported items.
 
-Each agent receives the complete state, then the changes. Values are sent in millimeters without
-``nativeUnits``, so that the agent does not convert them.
+Each agent receives the complete state and then the changes. Values are sent in millimeters. The device
+model has no ``nativeUnits``, so the agent does not convert the values.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _log = logging.getLogger(__name__)
 
 @dataclass(slots=True)
 class ConnectionCounts:
-    """Counts of connections since the adapter was opened."""
+    """Numbers of connections and ignored lines since the adapter was opened."""
 
     accepted: int = 0
     rejected_count: int = 0  # connections beyond the limit
@@ -57,7 +57,8 @@ def get_utc_now() -> datetime:
 class MtconnectAdapter:
     """Adapter that reports the machine to agents.
 
-    The owner calls ``run_once`` repeatedly. ``report`` returns the present state of the machine.
+    The owner calls ``run_once`` repeatedly. The constructor parameter ``report`` is a function that returns
+    the present state of the machine.
     """
 
     def __init__(
@@ -78,21 +79,24 @@ class MtconnectAdapter:
 
     @property
     def address(self) -> tuple[str, int]:
-        """Address and port of the open listening socket."""
+        """Return the address and port of the listening socket."""
         assert self._door is not None
         host, port = self._door.getsockname()[:2]
         return host, port
 
     @property
     def agent_count(self) -> int:
-        """Number of agents that receive data."""
+        """Return the number of agents that receive data."""
         return len(self._served())
 
     def _served(self) -> list[AgentLink]:
         return [link for link in self._links if link.waiting_since is None]
 
     def open(self) -> None:
-        """Start listening. Raises DriverError on failure."""
+        """Start listening for agents.
+
+        Raises DriverError on failure.
+        """
         try:
             self._door = open_listening_socket(self._settings.bind, self._settings.port)
         except DriverError:
@@ -102,7 +106,10 @@ class MtconnectAdapter:
         self.send_changes()
 
     def run_once(self, timeout_s: float = 0.0) -> None:
-        """Process pending work, waiting at most ``timeout_s`` seconds or until the next report."""
+        """Process pending work.
+
+        The method waits for data until the next report, but at most ``timeout_s`` seconds.
+        """
         left = max(self._next_look - self._clock.now(), 0.0)
         for key, _ in self._selector.select(min(timeout_s, left)):
             if key.data is None:
@@ -113,7 +120,7 @@ class MtconnectAdapter:
             self.send_changes()
 
     def close(self) -> None:
-        """Disconnect all agents, which then know that no values are available."""
+        """Disconnect all agents, which then report all values as unavailable."""
         for link in self._links.copy():
             self._forget(link)
         if self._door is not None:
@@ -161,7 +168,10 @@ class MtconnectAdapter:
         self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
-        """Serve a waiting agent. The first connection that never sent PING is closed if necessary."""
+        """Serve a waiting agent.
+
+        If necessary, the first connection that has never sent PING is closed.
+        """
         served = self._served()
         silent = next((other for other in served if not other.has_pinged), None)
         if len(served) >= MAX_AGENTS and silent is None:
@@ -212,7 +222,7 @@ _BREATH = 0.005  # seconds between two turns, which limits the load by a floodin
 class AdapterThread:
     """Thread that runs the adapter until it is closed.
 
-    After a failure, all agents are disconnected.
+    If the adapter fails, all agents are disconnected.
     """
 
     def __init__(self, adapter: MtconnectAdapter) -> None:
@@ -222,11 +232,14 @@ class AdapterThread:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the thread is running."""
+        """Return whether the thread is running."""
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Open the port, then start the thread. Raises DriverError without leaving a thread."""
+        """Open the port and start the thread.
+
+        Raises DriverError if the port cannot be opened. No thread is then started.
+        """
         self._adapter.open()
         self._thread.start()
 
@@ -258,9 +271,10 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 
 
 def make_devices_xml(device: Component, description_text: str, time: datetime) -> str:
-    """Return the XML document. Raises DriverError if the device name is not valid for agents.
+    """Return the XML document of the device model.
 
-    ``description_text`` is a text for people. The uuid depends only on the name of the device.
+    ``description_text`` is for people. The uuid depends only on the name of the device. Raises DriverError
+    if the device name is not valid for agents.
     """
     if not _NAME.fullmatch(device.name):
         raise DriverError(
@@ -281,7 +295,10 @@ def make_devices_xml(device: Component, description_text: str, time: datetime) -
 
 
 def _header(time: datetime) -> Element:
-    """Return the header element that the schema requires. An agent replaces its values."""
+    """Return the header element that the schema requires.
+
+    An agent replaces the values of the header.
+    """
     return Element(
         "Header",
         {
@@ -298,9 +315,9 @@ def _header(time: datetime) -> Element:
 
 
 def _element(component: Component, device: str, parent: Element) -> Element:
-    """Return the element of a component with its items and parts, in the order of the schema.
+    """Return the element of a component with its items and sub-components, in the order of the schema.
 
-    Identifiers begin with the name of the device, so that they are unique in an agent with several devices.
+    Identifiers begin with the device name, so they are unique in an agent with several devices.
     """
     named = {"id": f"{device}_{component.component_type}_{component.name}", "name": component.name}
     element = SubElement(parent, component.component_type, named)

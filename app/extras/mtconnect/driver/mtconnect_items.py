@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Category(StrEnum):
-    """Category of a data item."""
+    """Category of a data item in MTConnect."""
 
     SAMPLE = "SAMPLE"
     EVENT = "EVENT"
@@ -17,10 +17,11 @@ class Category(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class DataItem:
-    """Data item. ``key`` is its name in SHDR lines, and ``units`` are the units of the sent values.
+    """Data item that the adapter reports.
 
-    Samples have ``decimal_places`` decimals. A change within ``minimum_change`` + ``relative_change`` of the
-    value is not sent.
+    ``key`` is the name of the item in SHDR lines, and ``units`` are the units of the sent values. Samples
+    have ``decimal_places`` decimals. A change is sent only if it exceeds ``minimum_change`` plus
+    ``relative_change`` times the value.
     """
 
     key: str
@@ -44,7 +45,7 @@ class Component:
     sub_components: tuple[Component, ...] = ()
 
     def all_items(self) -> Iterator[DataItem]:
-        """Yield the items of the component and of all its parts."""
+        """Yield the items of the component and of all its sub-components."""
         yield from self.items
         for part in self.sub_components:
             yield from part.all_items()
@@ -54,8 +55,8 @@ class Component:
 class MachineLayout:
     """Layout of the machine, which determines its data items.
 
-    ``spindle_name`` is the name of the spindle component. With ``is_spindle_positionable``, the spindle is
-    also a rotary axis with an angle.
+    ``spindle_name`` is the name of the spindle component. ``is_spindle_positionable`` means that the
+    spindle is also a rotary axis with an angle.
     """
 
     linear_axes: tuple[str, ...]
@@ -66,7 +67,10 @@ class MachineLayout:
 
 
 def make_machine_items(layout: MachineLayout, name: str) -> Component:
-    """Return the device with all items. Units are mm, degrees, mm/s, rpm and percent."""
+    """Return the device with all its items.
+
+    Units are millimeters, degrees, mm/s, rpm and percent.
+    """
     return Component(
         "Device",
         name,
@@ -117,7 +121,10 @@ def _own_drive(axis: str) -> tuple[DataItem, ...]:
 
 
 def _linear(layout: MachineLayout) -> Iterator[Component]:
-    """Yield the linear axes. A band of 3 µm suppresses encoder noise at standstill."""
+    """Yield the components of the linear axes.
+
+    A minimum change of 3 µm suppresses encoder noise at standstill.
+    """
     for axis in layout.linear_axes:
         at = DataItem(
             f"{axis}abs",

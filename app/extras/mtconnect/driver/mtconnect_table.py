@@ -1,4 +1,4 @@
-"""Table [mtconnect] of the machine file: address of the adapter."""
+"""Table [mtconnect] of the machine file with the settings of the adapter."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from core.table_schema import DriverDeclaration, DriverTable
 
 @make_key_table
 class MtconnectTable:
-    """Address of the adapter, the PING interval ``heartbeat`` in seconds, and the name of the device."""
+    """Settings of the adapter with its address, the PING interval ``heartbeat`` in s, and the device name."""
 
     enabled: bool = declare_key(default=False, meaning="true: TurnDesk serves an MTConnect adapter.")
     bind: str = declare_key(

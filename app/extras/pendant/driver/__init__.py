@@ -1,4 +1,4 @@
-"""Pendant, dial or gamepad on USB, read through the kernel's input layer (evdev).
+"""Driver for a USB pendant, dial or gamepad, which is read through the input layer of the kernel (evdev).
 
-It cannot start motion.
+The device cannot start motion.
 """

@@ -1,6 +1,7 @@
-"""Linux input devices (evdev): found by name or USB number, opened exclusively, and read.
+"""Linux input devices (evdev), which are found by name or USB number, opened exclusively, and read.
 
-Events have the format of the kernel: ``struct input_event`` in packets, with a mark for lost events.
+Events have the format of the kernel. Each packet contains ``struct input_event`` entries, and an entry that
+marks lost events if necessary.
 """
 
 from __future__ import annotations
@@ -34,7 +35,10 @@ EVENT_STRUCT = struct.Struct("@llHHi")
 
 
 class InputEvent(NamedTuple):
-    """Input event. ``time_s`` is the kernel's time stamp in seconds of the selected clock."""
+    """Event of an input device.
+
+    ``time_s`` is the time stamp of the kernel in seconds on the selected clock.
+    """
 
     time_s: float
     kind: int
@@ -43,7 +47,7 @@ class InputEvent(NamedTuple):
 
 
 class EventPacket(NamedTuple):
-    """Simultaneous changes.
+    """Packet of events that occurred at the same time.
 
     ``has_lost_events`` means that earlier events were lost, so counts are not reliable.
     """
@@ -53,9 +57,9 @@ class EventPacket(NamedTuple):
 
 
 class PacketParser:
-    """Parser of bytes into complete packets.
+    """Parser that converts bytes into complete packets.
 
-    Data from SYN_DROPPED to the next SYN_REPORT is discarded.
+    Data from SYN_DROPPED to the next SYN_REPORT are discarded.
     """
 
     def __init__(self) -> None:
@@ -64,7 +68,7 @@ class PacketParser:
         self._lost = False
 
     def parse(self, data: bytes) -> Iterator[EventPacket]:
-        """Yield every packet that is now complete."""
+        """Add received bytes and yield every packet that is now complete."""
         self._bytes += data
         whole = len(self._bytes) // EVENT_STRUCT.size * EVENT_STRUCT.size
         read, self._bytes = self._bytes[:whole], self._bytes[whole:]
@@ -81,7 +85,7 @@ class PacketParser:
 
 
 class AxisRange(NamedTuple):
-    """Range of an axis from ``minimum`` to ``maximum``, and its present ``value``."""
+    """Range of an axis from ``minimum`` to ``maximum``, with the present ``value``."""
 
     minimum: int
     maximum: int
@@ -98,20 +102,29 @@ UDEV_RULES_PATH = "/etc/udev/rules.d/70-turndesk-pendant.rules"
 
 
 class EventSource(Protocol):
-    """Open device that provides bytes of ``struct input_event`` and the present state."""
+    """Open device that provides its events as bytes of ``struct input_event``, and its present state."""
 
     def read(self) -> bytes:
-        """Return the bytes since the last call, possibly none. Raises OSError once the device is gone."""
+        """Return the bytes received since the last call, or empty bytes.
+
+        Raises OSError after the device is disconnected.
+        """
         ...
 
     def fileno(self) -> int: ...
 
     def read_pressed_keys(self) -> frozenset[int]:
-        """Return the codes of all pressed keys. Raises OSError."""
+        """Return the codes of all pressed keys.
+
+        Raises OSError.
+        """
         ...
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
-        """Return the ranges and positions of its axes. Raises OSError."""
+        """Return the ranges and positions of all axes by code.
+
+        Raises OSError.
+        """
         ...
 
     def close(self) -> None: ...
@@ -119,7 +132,10 @@ class EventSource(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class DeviceEntry:
-    """Device as listed in /sys. All nodes of one device have the same ``stem``."""
+    """Device that is listed in /sys.
+
+    All nodes of the same device have the same ``stem``.
+    """
 
     node: str
     name: str
@@ -166,9 +182,9 @@ def _entry(path: Path) -> DeviceEntry:
 
 
 def _bits(words: str) -> Iterable[int]:
-    """Yield the numbers of the set bits.
+    """Yield the numbers of the set bits in a bit field of the kernel.
 
-    The kernel writes hexadecimal longs, the highest first.
+    The kernel writes the bit field as hexadecimal longs, with the highest long first.
     """
     size = 8 * struct.calcsize("@l")
     for place, word in enumerate(reversed(words.split())):
@@ -179,9 +195,10 @@ def _bits(words: str) -> Iterable[int]:
 def select_device_nodes(
     device: str, serial: str, required_controls: Mapping[str, PendantControl], entries: Sequence[DeviceEntry]
 ) -> tuple[DeviceEntry, ...]:
-    """Return the nodes of the single device that matches and has all wanted controls.
+    """Return the nodes of the only device that matches.
 
-    Raises DriverError.
+    Raises DriverError if no device or more than one device matches, if a required control is missing, or if
+    the device uses Bluetooth.
     """
     meant = [each for each in entries if device.lower() in {each.name.lower(), each.numbers}]
     meant = [each for each in meant if not serial or each.serial == serial]
@@ -237,7 +254,7 @@ def _apart(meant: Sequence[DeviceEntry]) -> str:
 
 
 def _request(direction: int, number: int, size: int) -> int:
-    """Return the number of an ioctl of input devices, as the kernel macro _IOC does."""
+    """Return the number of an ioctl of input devices, as calculated by the kernel macro _IOC."""
     return direction << 30 | size << 16 | ord("E") << 8 | number
 
 
@@ -248,17 +265,20 @@ _CHUNK = 64 * 24
 
 
 def _ioctl(device: int, request: int, value: int | bytes | bytearray | array.array[int]) -> None:
-    """Send one request to a device. ``fcntl`` exists on Linux only."""
+    """Send one request to a device.
+
+    The module ``fcntl`` exists only on Linux.
+    """
     import fcntl
 
     fcntl.ioctl(device, request, value)
 
 
 class KernelDevice:
-    """Implementation of ``EventSource`` on a device node.
+    """Implementation of ``EventSource`` for a device node.
 
-    The node is opened exclusively, so that its keys do not reach the screen. Time stamps are those of the
-    monotonic clock. Raises DriverError if the device cannot be opened.
+    The node is opened exclusively, so its keys do not reach the screen. Time stamps are on the monotonic
+    clock. The constructor raises DriverError if the device cannot be opened.
     """
 
     def __init__(self, entry: DeviceEntry, folder: Path = NODES) -> None:
@@ -288,24 +308,24 @@ class KernelDevice:
             ) from error
 
     def fileno(self) -> int:
-        """Return the file descriptor for select."""
+        """Return the file descriptor of the device, for ``select``."""
         return self._fd
 
     def read(self) -> bytes:
-        """Return the bytes since the last call."""
+        """Return the bytes received since the last call, or empty bytes."""
         try:
             return os.read(self._fd, _CHUNK)
         except BlockingIOError:
             return b""
 
     def read_pressed_keys(self) -> frozenset[int]:
-        """Return the pressed keys (EVIOCGKEY)."""
+        """Return the codes of the pressed keys (EVIOCGKEY)."""
         bits = bytearray(KEYS // 8)
         _ioctl(self._fd, _request(2, 0x18, len(bits)), bits)
         return frozenset(i for i in range(KEYS) if bits[i // 8] >> (i % 8) & 1)
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
-        """Return the range of every axis (EVIOCGABS)."""
+        """Return the range of every axis by code (EVIOCGABS)."""
         told = {}
         for code in range(AXES):
             if (ABS, code) in self._able:
@@ -316,7 +336,7 @@ class KernelDevice:
         return told
 
     def close(self) -> None:
-        """Close the device, which ends its exclusive use."""
+        """Close the device and end its exclusive use."""
         with contextlib.suppress(OSError):
             os.close(self._fd)
 

@@ -1,8 +1,8 @@
-"""Pendant in addition to the operator station: its thread, the meaning of its events, and ``core.ports``.
+"""Pendant of the operator station, with its thread, its buttons and its ``core.ports`` implementations.
 
-The thread finds the device, reads it, and finds it again after it was unplugged. The pendant adds stops, feed
-hold and handwheel counts. A late press has no effect until the button is released and pressed again. A
-release always counts.
+The thread finds the device, reads it, and searches for it again after it was unplugged. The pendant adds
+stops, feed hold and handwheel counts. A press that arrives late has no effect until the button is released
+and pressed again. A release always has an effect.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ CLOSE_TIMEOUT_S = 1.0  # seconds that closing waits for the thread
 class PendantState:
     """State of the pendant.
 
-    ``inputs`` have the names of the machine file, ``missing_reason`` is why it is not read.
+    ``inputs`` are named as in the machine file. ``missing_reason`` is the reason why TurnDesk does not read
+    the pendant, or empty.
     """
 
     inputs: Mapping[str, bool]
@@ -44,10 +45,11 @@ class PendantState:
 
 
 class PendantReader:
-    """Pendant. ``find`` opens the nodes of the device, and ``now`` is the clock of their events.
+    """Reader of a pendant.
 
-    ``find`` raises DriverError if the device cannot be opened. ``run`` needs a separate thread, and
-    ``process_events`` serves a test without a thread.
+    The ``find`` parameter opens the nodes of the device, and raises DriverError if they cannot be opened.
+    The ``now`` parameter reads the clock of the events. ``start`` reads the device in a separate thread. A
+    test can call ``process_events`` without a thread.
     """
 
     def __init__(
@@ -61,7 +63,10 @@ class PendantReader:
         place: bool = False,
         ring: Callable[[], None] = lambda: None,
     ) -> None:
-        """Create the pendant. ``ring`` is called after each change."""
+        """Create the reader.
+
+        ``ring`` is called after each change.
+        """
         self._ring = ring
         self._buttons = PendantButtons(bound, stops, wheel, place)
         self._find, self.clock = find, now
@@ -74,7 +79,10 @@ class PendantReader:
         self._thread: threading.Thread | None = None
 
     def get_state(self) -> PendantState:
-        """Return the present state; callable from any thread."""
+        """Return the present state.
+
+        This method can be called from any thread.
+        """
         with self._lock:
             buttons = self._buttons
             away = self._away
@@ -86,7 +94,7 @@ class PendantReader:
     # --- thread ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Search for the device once, so that its state is known, then continue in a thread."""
+        """Search for the device once, so that its state is known, and start the thread."""
         self.process_events(0.0)
         self._thread = threading.Thread(target=self._run, name="pendant", daemon=True)
         self._thread.start()
@@ -105,7 +113,7 @@ class PendantReader:
                 self._ending.wait(_AGAIN)
 
     def process_events(self, seconds: float) -> None:
-        """Process events for ``seconds``, or search for a missing device."""
+        """Wait up to ``seconds`` for events and process them, or search for a missing device."""
         self._looked = self.clock()
         if not self._nodes:
             self._open()
@@ -161,7 +169,10 @@ class PendantReader:
 
 
 def _pressed(nodes: Sequence[EventSource]) -> tuple[set[int], dict[int, AxisRange]]:
-    """Return the pressed keys and axis ranges of all nodes. Raises OSError."""
+    """Return the pressed keys and the axis ranges of all nodes.
+
+    Raises OSError.
+    """
     keys: set[int] = set()
     ranges: dict[int, AxisRange] = {}
     for node in nodes:
@@ -178,10 +189,10 @@ LOST_EVENTS_MESSAGE = "pendant events were lost; the handwheel may have turned f
 
 
 class PendantStation:
-    """Implementation of ``core.ports.Station`` with the pendant added.
+    """Implementation of ``core.ports.Station`` for an operator station with a pendant.
 
-    A pendant with a stop must be present, otherwise no cycle runs. Without a stop, unplugging it causes one
-    feed hold. The pendant cannot start any motion.
+    If the pendant has a stop button, it must be present, or else no cycle can run. If it has no stop
+    button, unplugging it causes one feed hold. The pendant cannot start any motion.
     """
 
     def __init__(self, station: Station, pendant: PendantReader, *, stops: bool, wheel: bool) -> None:
@@ -190,7 +201,7 @@ class PendantStation:
 
     @property
     def missing_reason(self) -> str:
-        """Reason why TurnDesk does not read the pendant, or an empty string."""
+        """Return the reason why TurnDesk does not read the pendant, or an empty string."""
         return self._pendant.get_state().missing_reason
 
     def read_state(self) -> StationState:
@@ -212,7 +223,7 @@ class PendantStation:
 
 
 class PendantIO:
-    """Implementation of ``core.ports.DigitalIO`` with the pendant's buttons as inputs."""
+    """Implementation of ``core.ports.DigitalIO`` that adds the buttons of the pendant as inputs."""
 
     def __init__(self, io: DigitalIO, pendant: PendantReader) -> None:
         self._io, self._pendant = io, pendant
@@ -222,11 +233,17 @@ class PendantIO:
         return {**self._io.inputs(), **self._pendant.get_state().inputs}
 
     def outputs(self) -> Mapping[str, bool]:
-        """Return the outputs of the machine, because a pendant has no outputs."""
+        """Return the outputs of the machine.
+
+        A pendant has no outputs.
+        """
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
-        """Write an output of the machine. Raises DriverError."""
+        """Write an output of the machine.
+
+        Raises DriverError.
+        """
         self._io.write(name, on)
 
     def switch_to_safe_state(self) -> None:
@@ -247,11 +264,12 @@ _REPEAT = 2  # value of an automatic key repeat
 
 @dataclass(slots=True)
 class PendantButtons:
-    """Buttons and handwheel of the pendant. ``bound`` maps names of the machine file to controls.
+    """Buttons and handwheel of the pendant.
 
-    ``stops`` are the names that count even if late. ``pressed_names`` are the names of pressed buttons, and
-    ``wheel_counts`` is the handwheel count. ``place`` means that the wheel reports positions instead of
-    steps.
+    ``control_by_name`` maps names of the machine file to controls. ``stop_inputs`` are the names of the
+    inputs that have an effect even if they are late. ``pressed_names`` are the names of the pressed
+    buttons. ``wheel_counts`` is the handwheel count. ``has_absolute_wheel`` means that the wheel reports
+    positions instead of steps.
     """
 
     control_by_name: Mapping[str, PendantControl]
@@ -267,9 +285,9 @@ class PendantButtons:
     _at: int | None = None  # position of a wheel that reports positions
 
     def start(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
-        """Start with the present state of the device.
+        """Set the present state of the device.
 
-        Pressed buttons other than stops have no effect.
+        Buttons that are already pressed have no effect, except stop buttons.
         """
         self.ranges = dict(ranges)
         pressed, self._at = set(keys), None
@@ -280,13 +298,16 @@ class PendantButtons:
             self._at = self.ranges[self.wheel.code].value
 
     def release_all(self) -> None:
-        """Release all buttons and forget the position of the wheel, because the device is gone."""
+        """Release all buttons and discard the position of the wheel because the device is disconnected."""
         self.pressed_names.clear()
         self.ineffective_names.clear()
         self._at = None
 
     def apply_packet(self, packet: EventPacket, now: float) -> None:
-        """Apply the events of a packet. ``now`` is on the clock of the events."""
+        """Apply the events of a packet.
+
+        ``now`` is the present time in seconds on the clock of the events.
+        """
         for event in packet.events:
             late = now - event.time_s > MAX_EVENT_AGE_S
             if self.wheel is not None and (event.kind, event.code) == self.wheel[:2]:
@@ -338,7 +359,10 @@ class PendantButtons:
         return self._share(control) > _FREE
 
     def _share(self, control: PendantControl) -> float:
-        """Return the deflection of an axis in the direction of a control, 0 to 1."""
+        """Return the deflection of an axis in the direction of a control as a ratio of half its range.
+
+        The result is negative in the opposite direction.
+        """
         reach = self.ranges.get(control.code)
         if reach is None or reach.maximum <= reach.minimum:
             return 0.0

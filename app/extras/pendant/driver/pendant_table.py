@@ -1,7 +1,8 @@
-"""Table [pendant] of the machine file: the USB device. Its buttons are inputs at ``pendant.…``.
+"""Table [pendant] of the machine file, which describes the USB device.
 
-Names and numbers of keys, buttons, wheels and axes are those of the kernel (linux/input-event-codes.h). A key
-without a name in this module is written by its number: ``KEY_0x1d3``.
+The buttons of the device are inputs with addresses that begin with ``pendant.``. Names and numbers of keys,
+buttons, wheels and axes are those of the kernel (linux/input-event-codes.h). A key that has no name in this
+module is written with its number, such as ``KEY_0x1d3``.
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ KEYS, RELS, AXES = 0x300, 0x10, 0x40  # number of codes of each kind
 
 
 class PendantControl(NamedTuple):
-    """Key, wheel or one end of an axis.
+    """Control of the pendant: a key, a wheel or one end of an axis.
 
     ``axis_end`` is -1 or +1 for an axis that is used as two buttons.
     """
@@ -82,7 +83,10 @@ _BY_NUMBER = re.compile(r"KEY_0x([0-9a-fA-F]{1,3})")
 
 
 def parse_button_name(name: str) -> PendantControl | None:
-    """Return the control for a button name such as ``BTN_A``, ``KEY_F13`` or ``ABS_HAT0X-``, or None."""
+    """Return the control for a button name, or None if the name is not known.
+
+    Button names are, for example, ``BTN_A``, ``KEY_F13`` and ``ABS_HAT0X-``.
+    """
     if name in _KEYS:
         return PendantControl(KEY, _KEYS[name])
     if (found := _BY_NUMBER.fullmatch(name)) and int(found[1], 16) < KEYS:
@@ -93,7 +97,7 @@ def parse_button_name(name: str) -> PendantControl | None:
 
 
 def parse_wheel_name(name: str) -> PendantControl | None:
-    """Return the control for a wheel name such as ``REL_DIAL``, or None.
+    """Return the control for a wheel name such as ``REL_DIAL``, or None if the name is not known.
 
     ``ABS_WHEEL`` reports positions instead of steps.
     """
@@ -117,8 +121,9 @@ CANNOT_START_MESSAGE = (
 class PendantModel:
     """Settings of the pendant.
 
-    ``device`` is its name or hexadecimal ``vendor:product``, and ``serial`` distinguishes identical devices.
-    ``counts`` states whether the wheel reports steps (REL) or its position from 0 to 255, as a Shuttle does.
+    ``device`` is the name of the device or its hexadecimal ``vendor:product``. ``serial`` distinguishes
+    identical devices. ``counts`` states whether the wheel reports steps (REL), or its position from 0 to
+    255 as a Shuttle does.
     """
 
     device: str = declare_key(
@@ -159,7 +164,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _pendant_inputs(file: MachineFileReading) -> Mapping[str, str]:
-    """Return the inputs and outputs of the pendant, by path."""
+    """Return the addresses of the pendant inputs by their path in the machine file."""
     return {path: at for path, at in file.separate_device_inputs.items() if at.startswith(PENDANT_PREFIX)}
 
 
@@ -196,7 +201,9 @@ def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
 
 
 def _wheel(file: MachineFileReading) -> str:
-    """Return the address of the handwheel on the pendant, or an empty string."""
+    """Return the address of the handwheel on the pendant, or an empty string if the handwheel is
+    not there.
+    """
     path = f"{_WHEEL}.at"
     at = file.values.text(path) if file.values.has_values(path) else ""
     return at if at.startswith(PENDANT_PREFIX) else ""

@@ -1,8 +1,8 @@
-"""SL cycles: pockets and islands of closed contours (20 to 24), and milling along open contours (25).
+"""SL cycles for pockets and islands with closed contours (20 to 24) and for open contours (25).
 
-As in the manual, every point of the pocket that the tool can reach is cleared, and no point outside the
-pocket or in an island is touched. The tool path is TurnDesk's own: rings from the inside out, and a ramp of 3
-degrees.
+As in the manual, the cycles clear every point of the pocket that the tool can reach. They do not touch any
+point outside the pocket or inside an island. TurnDesk calculates its own tool path, which consists of rings
+from the inside out and a ramp of 3 degrees.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ ContourSequence = Sequence[SlContour]
 
 
 class ClearingData:
-    """Data of cycle 20 (Q1 to Q9), feeds of the active cycle, and the area to be cleared."""
+    """The data of cycle 20 (Q1 to Q9), the feeds of the active cycle, and the area to be cleared."""
 
     def __init__(
         self, tool: CycleTool, area: Sequence[ElementLoop] = (), clearance_mm: float | None = None
@@ -67,14 +67,15 @@ class ClearingData:
 
     @property
     def is_up_cut(self) -> bool:
-        """Whether pockets are milled clockwise: up-cut milling (negative Q9) with M3."""
+        """Return whether pockets are milled clockwise, which is up-cut milling (negative Q9) with M3."""
         return (self.tool.read_value(9, 1.0) < 0.0) != (self.tool.running_rpm < 0.0)
 
     @property
     def stepover_mm(self) -> float:
-        """Distance between rings in mm: Q2 times the tool radius.
+        """Return the distance between rings in mm, which is Q2 times the tool radius.
 
-        It is at most the tool radius, so that no material remains. Raises ProgramError for an invalid Q2.
+        The distance is at most the tool radius, so that no material remains. Raises ProgramError for an
+        invalid Q2.
         """
         overlap = self.tool.read_value(2, 1.0)
         text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
@@ -85,7 +86,7 @@ class ClearingData:
         return min(overlap, 1.0) * self.tool.radius_mm
 
     def compute_levels(self, bottom_z_mm: float) -> list[float]:
-        """Return the heights of the infeeds; the last one is the bottom."""
+        """Return the Z heights of the infeeds in mm, ending with the bottom."""
         return compute_levels(
             self.tool, self.surface_z_mm, bottom_z_mm, lambda: abs(self.tool.read_length_mm(10))
         )
@@ -107,17 +108,17 @@ class ClearingData:
             raise self.make_fit_error(problem) from None
 
     def make_fit_error(self, problem: AreaError | GougeError) -> ProgramError:
-        """Return the error for a contour that does not fit the tool radius."""
+        """Return the error for a contour that cannot be milled with this tool radius."""
         text = "The contour cannot be milled with tool radius {radius} mm plus the allowance: {problem}."
         hint, radius = "Use a smaller tool, or correct the contour.", f"{self.tool.radius_mm:.10g}"
         return self.tool.make_error(text, hint, radius=radius, problem=problem)
 
     def move_to_safe_z(self) -> Iterator[Block]:
-        """Yield a rapid to the clearance height."""
+        """Yield a rapid up to the clearance height."""
         yield self.tool.move_to_z(max(self.safe_z_mm, self.tool.z_position))
 
     def retract(self) -> Iterator[Block]:
-        """Yield the retract at Q208 to the clearance height."""
+        """Yield the retract to the clearance height at the feed Q208."""
         tool = self.tool
         asked = tool.read_value(208, MAX_FEED_VALUE)
         back = (
@@ -129,7 +130,10 @@ class ClearingData:
 
 
 def check_contour_data(tool: CycleTool) -> None:
-    """Check the data of cycle 20, which remain in Q1 to Q9. Raises ProgramError if they are invalid."""
+    """Check the data of cycle 20, which are stored in Q1 to Q9.
+
+    Raises ProgramError if the data are invalid.
+    """
     tool.check(
         tool.read_length_mm(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign."
     )
@@ -143,7 +147,10 @@ def check_contour_data(tool: CycleTool) -> None:
 
 
 def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
-    """Yield the blocks of cycle 21: a hole at each position at which cycle 22 plunges with tool Q13."""
+    """Yield the blocks of cycle 21.
+
+    The cycle drills a hole at each position where cycle 22 plunges with tool Q13.
+    """
     told = ClearingData(tool, area)
     radius = tool.find_radius_mm(int(tool.read_value(13)))
     if radius is None or radius <= MIN_LENGTH_MM:
@@ -163,9 +170,9 @@ def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 
 
 def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
-    """Yield the blocks of cycle 22: clearing by levels, with the allowances of cycle 20.
+    """Yield the blocks of cycle 22, which clears the area level by level.
 
-    Q401 reduces the feed in full cuts.
+    The allowances of cycle 20 remain on the part. Q401 reduces the feed in full-width cuts.
     """
     told = ClearingData(tool, area)
     if tool.read_value(18, 0.0):
@@ -189,7 +196,7 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
 def _move_to_depth(
     clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
 ) -> Iterator[Block]:
-    """Yield the moves to the start of a ring at its depth, or along a ramp."""
+    """Yield the moves to the start of a ring at the depth ``z``, if necessary along a ramp."""
     tool = clearing.tool
     if not cut.moves_at_depth:
         yield from tool.move_above(cut.ramp_loop[0].start, clearing.clearance_z_mm)
@@ -201,7 +208,10 @@ def _move_to_depth(
 def _ramp(
     clearing: ClearingData, cut: ClearingRing, top: float, z: float, reduced_feed: float
 ) -> Iterator[Block]:
-    """Yield the plunge: straight down at Q11 if Q19 is 0, otherwise along the ring at Q19."""
+    """Yield the plunge to the depth ``z``.
+
+    The tool plunges straight down at Q11 if Q19 is 0; otherwise, it plunges along the ring at Q19.
+    """
     tool = clearing.tool
     yield tool.move_to_z(top, clearing.tool.read_cutting_feed(11))
     if not tool.read_value(19, 0.0):
@@ -240,7 +250,7 @@ def _element(tool: CycleTool, element: Element, z: float, feed: float) -> Block:
 
 
 def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
-    """Yield the blocks of cycle 23: the floor at its depth, up to the walls with their allowance."""
+    """Yield the blocks of cycle 23, which finishes the floor up to the allowance on the walls."""
     told = ClearingData(tool, area)
     feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
     plan = told.plan_level(tool.radius_mm)
@@ -260,7 +270,10 @@ def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterato
 
 
 def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
-    """Yield the blocks of cycle 24: the walls to Q14, with quarter circles as approach and departure."""
+    """Yield the blocks of cycle 24, which finishes the walls to the allowance Q14.
+
+    The tool approaches and departs on quarter circles.
+    """
     told = ClearingData(tool, area)
     feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
     apart = tool.radius_mm + tool.read_length_mm(14, 0.0)
@@ -286,9 +299,9 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 def _add_approach_arcs(
     ring: ElementLoop, room: AreaCheck, offset_mm: float, radius: float, *, is_up_cut: bool
 ) -> tuple[ElementLoop, Arc | None, Arc | None]:
-    """Return the ring with a new start, and its approach and departure arcs.
+    """Return the ring with a new start point, and its approach and departure arcs.
 
-    The start is at a point with room for both arcs. Without such a point, both arcs are None.
+    The ring starts where both arcs fit. If no such point exists, both arcs are None.
     """
     order = sorted(range(len(ring)), key=lambda at: (isinstance(ring[at], Arc), -ring[at].length))
     for size in (radius / 2.0**tries for tries in range(_MAX_TRIES)):
@@ -305,7 +318,7 @@ def _add_approach_arcs(
 def _make_quarter_arcs(
     wall_point: Point, direction: Point, radius_mm: float, *, is_left: bool
 ) -> tuple[Arc, Arc]:
-    """Return the quarter circles on the pocket side, to a point of the wall and away from it."""
+    """Return quarter circles on the pocket side that lead to a point of the wall and away from the wall."""
     x, y = left_normal(direction)
     side = (x, y) if is_left else (-x, -y)
     centre = wall_point[0] + side[0] * radius_mm, wall_point[1] + side[1] * radius_mm
@@ -318,7 +331,10 @@ def _make_quarter_arcs(
 
 
 def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Block]:
-    """Yield the blocks of cycle 25: levels along a contour; Q15 is 0 for both directions, -1 for up-cut."""
+    """Yield the blocks of cycle 25, which mills a contour level by level.
+
+    Q15 is 0 for milling in both directions and -1 for up-cut milling.
+    """
     told = ClearingData(tool, clearance_mm=_CLEARANCE_MM)
     if len(contours) > 1:
         tool.log_note("Cycle 25 mills only the first contour listed in cycle 14.")
@@ -343,7 +359,7 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
 
 
 def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
-    """Return the path of the tool center, at the tool radius plus Q3 from the contour.
+    """Return the path of the tool center, offset from the contour by the tool radius plus Q3.
 
     Without RL or RR, the path is the contour itself.
     """
@@ -366,7 +382,10 @@ def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
 def run_contour_cycle(
     state: State, tool: CycleTool, number: int, contours: ContourSequence, column: int
 ) -> Iterator[Block]:
-    """Yield the blocks of a cycle of ``CONTOUR_CYCLES`` for its contours. Raises ProgramError."""
+    """Yield the blocks of a cycle of ``CONTOUR_CYCLES`` for the given contours.
+
+    Raises ProgramError for invalid cycle data.
+    """
     if number == CONTOUR_TRAIN_CYCLE:
         yield from run_contour_train(tool, contours)
     else:

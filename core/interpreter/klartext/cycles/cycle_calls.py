@@ -1,6 +1,7 @@
 """Definition of cycles with CYCL DEF, their calls (CYCL CALL, M99, M89), and patterns (220, 221).
 
-A cycle from 200 on reads its Q parameters when it is called, so that later assignments apply.
+Cycles numbered 200 or higher read their Q parameters when they are called, so that later assignments have
+an effect.
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ _DefinitionNode = CycleDefinition | CycleLine | PatternDefinition | ContourDefin
 
 
 class ActiveCycle:
-    """The last cycle of CYCL DEF, which M89 calls after every positioning block."""
+    """The cycle that CYCL DEF defined last, which M89 calls after every positioning block."""
 
     def __init__(self, state: State) -> None:
         self._state = state
@@ -89,7 +90,10 @@ class ActiveCycle:
         self._contours: tuple[ContourPart, ...] = ()  # contours of cycle 14 or CONTOUR DEF
 
     def execute_definition(self, node: _DefinitionNode) -> Iterator[Block]:
-        """Yield the blocks of a CYCL DEF, PATTERN DEF or contour definition. Raises ProgramError."""
+        """Yield the blocks of a CYCL DEF, PATTERN DEF or contour definition.
+
+        Raises ProgramError for an invalid definition.
+        """
         if isinstance(node, PatternDefinition):
             self._points = compute_points(self._state, node)
         elif isinstance(node, ContourDefinition):
@@ -100,13 +104,13 @@ class ActiveCycle:
             yield from self.add_cycle_line(node)
 
     def select_points(self, rows: Mapping[int, TableRow]) -> None:
-        """Set the points from a point table: X, Y, and Z above Q203."""
+        """Set the pattern points from the rows of a point table, which contain X, Y, and Z above Q203."""
         self._points = [(row.get("X", 0.0), row.get("Y", 0.0), row.get("Z", 0.0)) for row in rows.values()]
 
     def define_cycle(self, node: CycleDefinition) -> Iterator[Block]:
-        """Yield the blocks of a CYCL DEF from 200 on; only patterns are executed immediately.
+        """Yield the blocks of a CYCL DEF for a cycle numbered 200 or higher.
 
-        Raises ProgramError.
+        Only pattern cycles are executed immediately. Raises ProgramError for an unsupported cycle.
         """
         state = self._state
         known = node.cycle_number in _MACHINING.keys() | CONTOUR_CYCLES | _IMMEDIATE_CYCLES
@@ -137,7 +141,7 @@ class ActiveCycle:
             self._begin(node.cycle_number)
 
     def _not_supported(self, node: CycleDefinition | CycleLine) -> ProgramError:
-        """Return the error for a cycle that is rejected by its number."""
+        """Return the error for a cycle number that is not supported."""
         kind = _CYLINDER_CYCLES.get(node.cycle_number)
         told = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
         name = Message("CYCL DEF {number}{kind}", number=node.cycle_number, kind=told)
@@ -146,13 +150,14 @@ class ActiveCycle:
         )
 
     def _begin(self, number: int) -> None:
-        """Start the definition of another machining cycle and clear the previous one."""
+        """Start the definition of a machining cycle and discard the previous definition."""
         self._number, self._lines, self.called_program = number, {}, ""
 
     def _preset(self, column: int) -> None:
-        """Execute cycle 247: activate the zero and basic rotation of a row of the preset table.
+        """Execute cycle 247, which activates the zero and the basic rotation of a row of the preset table.
 
-        Without a preset table, the zero of the machine file remains, with a warning. Raises ProgramError.
+        Without a preset table, the zero of the machine file remains active and a warning is logged. Raises
+        ProgramError for an undefined preset.
         """
         state, number = self._state, self._state.q_values.get(_PRESET_NUMBER, 0.0)
         found = state.setup.presets.get(int(number)) if number == int(number) else None
@@ -180,9 +185,10 @@ class ActiveCycle:
         state.reset_transformations()
 
     def add_cycle_line(self, node: CycleLine) -> Iterator[Block]:
-        """Yield the blocks of a line of a cycle below 200, which are executed immediately if not machining.
+        """Yield the blocks of one line of a cycle numbered below 200.
 
-        Raises ProgramError if the cycle is not supported.
+        Cycles that do not machine are executed immediately. Raises ProgramError if the cycle is not
+        supported.
         """
         if node.cycle_number in _TRANSFORMS and node.line_number == 0:
             return  # the next line has the values
@@ -200,13 +206,14 @@ class ActiveCycle:
 
     @property
     def contours(self) -> tuple[ContourPart, ...]:
-        """The contours of the active cycle; empty for other cycles."""
+        """Return the contours of the active cycle, which are empty unless it is a contour cycle."""
         return self._contours if self._number in CONTOUR_CYCLES else ()
 
     def call_cycle(self, column: int, contours: ContourSequence = ()) -> Iterator[Block]:
-        """Yield the blocks of the cycle at the tool position. Raises ProgramError without a defined cycle.
+        """Yield the blocks of the active cycle at the tool position.
 
-        ``contours`` are the contours of ``contours``, as read from their subprograms.
+        The argument ``contours`` contains the contours of the active cycle after their subprograms were
+        read. Raises ProgramError if no cycle is defined.
         """
         text = "No machining cycle is defined."
         self._state.check(self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
@@ -230,7 +237,7 @@ class ActiveCycle:
         self._state.check(contours, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _check_lines(self, column: int) -> None:
-        """Raise ProgramError if a line of a cycle below 200 is missing."""
+        """Raise ProgramError if the definition of a cycle numbered below 200 lacks a line."""
         number = self._number
         missing = next(
             (part for part in range(1, LAST_LINE_NUMBERS[number] + 1) if part not in self._lines), None
@@ -265,7 +272,10 @@ class ActiveCycle:
         return self._state.setup.limits.can_orient_spindle
 
     def _angle(self, node: CycleLine) -> float:
-        """Return the angle of cycle 13, to which M19 turns the spindle. Raises ProgramError."""
+        """Return the angle of cycle 13, to which M19 turns the spindle, in degrees.
+
+        Raises ProgramError if the angle is missing.
+        """
         hint = "Write ANGLE with a value in degrees."
         self._state.check(node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint)
         angle = value(self._state, node.words[-1].value.formula)
@@ -278,7 +288,10 @@ class ActiveCycle:
         return angle
 
     def _name_contours(self, node: CycleLine) -> None:
-        """Add the contour labels of a line of cycle 14. Raises ProgramError if there are too many."""
+        """Add the contour labels of one line of cycle 14.
+
+        Raises ProgramError if there are too many labels.
+        """
         if node.line_number == 0:
             self._contours = ()
             return
@@ -297,7 +310,7 @@ class ActiveCycle:
             )
 
     def _seconds(self, word: AxisWord) -> float:
-        """Return the time of cycle 9 in seconds. Raises ProgramError if it is negative."""
+        """Return the dwell time of cycle 9 in seconds. Raises ProgramError if the time is negative."""
         seconds = value(self._state, word.value.formula)
         if seconds < 0.0:
             text = "The dwell time of {seconds} s is negative."
@@ -307,7 +320,8 @@ class ActiveCycle:
         return seconds
 
     def _make_tilt_plane(self, node: CycleLine) -> PlaneBlock:
-        """Return cycle 19 as a PLANE block with spatial angles; without angles, it resets the plane.
+        """Return cycle 19 converted to a PLANE block with spatial angles, or to a reset if it has no
+        angles.
 
         No axis moves unless the block has a feed. Raises ProgramError for an invalid word.
         """
@@ -330,7 +344,10 @@ class ActiveCycle:
         return PlaneBlock("SPATIAL", words, way, node.column)
 
     def _check_feed_modes(self, column: int) -> None:
-        """Raise ProgramError under M136; warn under M103, which does not change the feeds of a cycle."""
+        """Raise ProgramError if M136 is active, and log a warning if M103 is active.
+
+        M103 does not change the feeds of a cycle.
+        """
         if self._state.is_feed_per_revolution:
             raise make_unsupported_error(
                 self._state.line_number, column, "A cycle with M136 active (write M137 first)"
@@ -340,9 +357,10 @@ class ActiveCycle:
             self._state.log_once(column, Severity.WARNING, "cycle-feeds", text)
 
     def call_pattern(self, node: CycleCall) -> Iterator[Block]:
-        """Yield the blocks of CYCL CALL PAT: the cycle at each point, with moves at the safe height.
+        """Yield the blocks of CYCL CALL PAT, which executes the cycle at each point of the pattern.
 
-        Raises ProgramError without points or without a machining cycle.
+        The tool moves between the points at the safe height. Raises ProgramError if points or a machining
+        cycle are missing.
         """
         state = self._state
         text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
@@ -368,7 +386,9 @@ class ActiveCycle:
             state.q_values[_SURFACE] = surface
 
     def call_at(self, node: CycleCall) -> Iterator[Block]:
-        """Yield the blocks of CYCL CALL POS: to the position above the workpiece, then the cycle."""
+        """Yield the blocks of CYCL CALL POS: a move to the position above the workpiece, and then the
+        cycle.
+        """
         if not self._number:
             yield from self.call_cycle(node.column)
         tool = self._tool(self._number, node.column)
@@ -394,7 +414,9 @@ class ActiveCycle:
     # --- patterns -----------------------------------------------------------------------------------------
 
     def _pattern(self, node: CycleDefinition) -> Iterator[Block]:
-        """Yield the blocks of the previous cycle at each point of a circle (220) or of rows (221)."""
+        """Yield the blocks of the active cycle at each point of a circle (cycle 220) or of a grid (cycle
+        221).
+        """
         tool = self._tool(node.cycle_number, node.column)
         if self._number not in _MACHINING:
             text = "Cycle {number} needs a preceding machining cycle."

@@ -1,4 +1,4 @@
-"""Elements of cycles: tool position, parameters, moves, rings, dwells and spindle."""
+"""Common elements of cycles: parameters, moves, rings, dwells and spindle commands."""
 
 from __future__ import annotations
 
@@ -35,18 +35,19 @@ CycleParameters = Mapping[int, int | float | None]
 
 
 def make_orientation_block(state: State, angle_deg: float) -> Block:
-    """Return the block that orients the spindle to an angle, by the shorter distance.
+    """Return the block that orients the spindle to an angle in the shorter direction.
 
-    ``angle_deg`` is in degrees from the spindle index.
+    ``angle_deg`` is the angle from the spindle index, in degrees.
     """
     state.modal = state.modal._replace(spindle=0, oriented=angle_deg % _TURN)
     return state.make_action_block(SpindlePositioning(angle_deg % _TURN))
 
 
 class CycleTool:
-    """The tool in a cycle that is called at ``column`` of a block; mm, in program coordinates.
+    """The tool in a cycle, with positions in program coordinates in mm.
 
-    ``value`` returns a parameter of the cycle by its Q number, as written.
+    ``value`` is a function that returns a cycle parameter for its Q number, as programmed. ``column`` is
+    the column of the block at which the cycle is called.
     """
 
     def __init__(self, state: State, number: int, value: Callable[[int], float | None], column: int) -> None:
@@ -57,10 +58,10 @@ class CycleTool:
         self._told_as: CycleParameters = {}
 
     def with_parameters(self, parameters: CycleParameters) -> CycleTool:
-        """Return the tool for another cycle, with other parameters.
+        """Return a copy of the tool for another cycle with other parameters.
 
-        Each parameter is another parameter of this cycle, or a fixed value. Lengths among the fixed values
-        are in the program's unit. Parameters that are not listed are not defined.
+        Each parameter is either the number of a parameter of this cycle or a fixed value. Fixed lengths are
+        in the program's unit. Parameters that are not listed are undefined.
         """
 
         def value(q: int) -> float | None:
@@ -72,19 +73,22 @@ class CycleTool:
         return other
 
     def format_name(self, q: int) -> str:
-        """Return the name of a parameter in the program, such as Q200."""
+        """Return the name of a parameter as it appears in the program, such as Q200."""
         found = self._told_as.get(q, q)
         return f"Q{found if isinstance(found, int) else q}"
 
     @property
     def mm_per_unit(self) -> float:
-        """Millimeters per unit of the program."""
+        """Return the number of millimeters per length unit of the program."""
         return self._state.mm_per_unit
 
     # --- parameters of the cycle ----------------------------------------------------------------------------
 
     def read_value(self, q: int, default: float | None = None) -> float:
-        """Return a parameter as written. Raises ProgramError if it is missing and has no ``default``."""
+        """Return a parameter as programmed.
+
+        Raises ProgramError if the parameter is missing and no ``default`` is given.
+        """
         found = self._value(q)
         if found is None:
             found = default
@@ -96,14 +100,14 @@ class CycleTool:
     def read_length_mm(self, q: int, default_mm: float | None = None) -> float:
         """Return a length in mm, or ``default_mm`` if the parameter is missing.
 
-        Raises ProgramError if the parameter is missing and has no ``default_mm``.
+        Raises ProgramError if the parameter is missing and ``default_mm`` is None.
         """
         if default_mm is not None and self._value(q) is None:
             return default_mm
         return self.read_value(q) * self._state.mm_per_unit
 
     def read_feed(self, q: int) -> float | None:
-        """Return a feed as programmed; None for a rapid."""
+        """Return a feed as programmed, or None for a rapid."""
         found = self.read_value(q)
         if found == TOOL_FEED_VALUE and self._state.tool_feed is not None:
             return convert_to_feed_per_minute(
@@ -124,28 +128,33 @@ class CycleTool:
     def make_error(
         self, text: str, hint: str, code: str = INPUT_VALUE_INCORRECT, /, **values: object
     ) -> ProgramError:
-        """Return an error of this cycle; ``number`` is the placeholder for the number of the cycle."""
+        """Return an error of this cycle.
+
+        The texts can use the placeholder ``number`` for the cycle number.
+        """
         return self._state.make_error(self._column, code, text, hint, **{"number": self._number, **values})
 
     def check(
         self, condition: object, text: str, hint: str, code: str = INPUT_VALUE_INCORRECT, /, **values: object
     ) -> None:
-        """Raise the error of ``make_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_error(text, hint, code, **values)
 
     @property
     def radius_mm(self) -> float:
-        """Radius of the tool, in mm."""
+        """Return the radius of the tool in mm."""
         return self._state.tool_radius_mm / self._state.transformation.scale_factor
 
     def find_radius_mm(self, tool: int) -> float | None:
-        """Return the radius of another tool in mm, from TOOL DEF or the tool table; None if not defined."""
+        """Return the radius of another tool in mm from TOOL DEF or the tool table, or None if it is
+        undefined.
+        """
         found = find_tool_radius_mm(self._state, tool)
         return None if found is None else found / self._state.transformation.scale_factor
 
     def log_note(self, text: str) -> None:
-        """Note once that this cycle works differently on this control."""
+        """Log a note, once, that this cycle works differently on this control."""
         self._tell(Severity.NOTE, "cycle-otherwise", "Cycle {number}: {what}", what=text)
 
     def _tell(self, severity: Severity, code: str, text: str, hint: str = "", /, **values: object) -> None:
@@ -154,7 +163,10 @@ class CycleTool:
 
     @property
     def point_angle_deg(self) -> float:
-        """Point angle of the tool in degrees. Raises ProgramError if the tool table does not have it."""
+        """Return the point angle of the tool in degrees.
+
+        Raises ProgramError if the tool table does not contain a point angle.
+        """
         row = self._state.setup.mill_tools.get(self._state.modal.tool)
         if row is None or not 0.0 < row.point_angle_deg < 180.0:
             text = "Cycle {number} needs the point angle of the tool for a programmed diameter."
@@ -164,23 +176,23 @@ class CycleTool:
 
     @property
     def xy_position(self) -> Point:
-        """X and Y of the tool position."""
+        """Return X and Y of the tool position in program coordinates, in mm."""
         x, y, _ = self._state.programmed_position
         return x, y
 
     @property
     def z_position(self) -> float:
-        """Z of the tool position."""
+        """Return Z of the tool position in program coordinates, in mm."""
         return self._state.programmed_position[2]
 
     @property
     def programmed_rpm(self) -> float:
-        """S of the last TOOL CALL in rpm, also if the spindle is stopped."""
+        """Return S of the last TOOL CALL in rpm, even if the spindle is stopped."""
         return self._state.modal.rpm
 
     @property
     def running_rpm(self) -> float:
-        """Signed spindle speed in rpm. Raises ProgramError if the spindle is stopped."""
+        """Return the signed spindle speed in rpm. Raises ProgramError if the spindle is stopped."""
         found = self.signed_rpm
         text = "Cycle {number} needs a running spindle."
         self.check(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
@@ -188,13 +200,13 @@ class CycleTool:
 
     @property
     def signed_rpm(self) -> float:
-        """Signed spindle speed in rpm; 0 if the spindle is stopped."""
+        """Return the signed spindle speed in rpm, or 0 if the spindle is stopped."""
         return self._state.modal.rpm * self._state.modal.spindle
 
     def compute_thread_rpm(self, pitch: float) -> float:
-        """Return S in rpm, negative for a left-hand thread (negative pitch).
+        """Return the programmed speed S in rpm, which is negative for a left-hand thread (negative pitch).
 
-        Raises ProgramError without S.
+        Raises ProgramError if S is not programmed.
         """
         self.check(
             self.programmed_rpm, "Cycle {number} needs a spindle speed.", "Program S in TOOL CALL.", WRONG_RPM
@@ -202,9 +214,9 @@ class CycleTool:
         return math.copysign(self.programmed_rpm, pitch)
 
     def warn_uncoupled(self) -> None:
-        """Warn that Z is not synchronized with the spindle angle.
+        """Log a warning that Z is not synchronized with the spindle angle.
 
-        Z stops while the spindle reverses.
+        Z therefore stops while the spindle reverses.
         """
         text = (
             "Cycle {number}: Z is not synchronized with the spindle angle, so Z stops "
@@ -213,7 +225,9 @@ class CycleTool:
         self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_unoriented(self) -> None:
-        """Warn that this spindle cannot be oriented, so that the direction of the edge is unknown."""
+        """Log a warning that the direction of the cutting edge is unknown because the spindle cannot be
+        oriented.
+        """
         text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
         self._tell(Severity.WARNING, "spindle-not-oriented", text, hint, unoriented=CANNOT_ORIENT_TEXT)
@@ -221,19 +235,19 @@ class CycleTool:
     # --- moves and actions ----------------------------------------------------------------------------------
 
     def move_to_z(self, z: float, feed: float | None = None) -> Block:
-        """Return a move to height ``z``, in rapid without a feed."""
+        """Return a move to the height ``z``, which is a rapid if ``feed`` is None."""
         return self.move_straight(self.xy_position, z, feed)
 
     def move_above(self, position: Point, clearance_z_mm: float) -> Iterator[Block]:
-        """Yield rapids to a position at the height ``clearance_z_mm`` or higher, and down to that height."""
+        """Yield rapids to a position at or above ``clearance_z_mm``, and then down to this height."""
         yield self.move_to_z(max(clearance_z_mm, self.z_position))
         yield self.move_straight(position)
         yield self.move_to_z(clearance_z_mm)
 
     def make_tap_block(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
-        """Return a move into or out of a thread with ``lead`` mm/rev, independent of the feed override.
+        """Return a move into or out of a thread at ``lead`` mm/rev, without feed override.
 
-        Raises ProgramError if Z cannot move that fast.
+        Raises ProgramError if Z cannot move fast enough.
         """
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.linear_axes[2].vmax
@@ -248,11 +262,11 @@ class CycleTool:
         return replace(made, feed=lead, per_rev=True, follows_spindle=True, in_hole=in_hole)
 
     def convert_feed_to_lead(self, feed: float) -> float:
-        """Return a programmed feed in mm/rev. Raises ProgramError if the spindle is stopped."""
+        """Convert a programmed feed to mm/rev. Raises ProgramError if the spindle is stopped."""
         return self._state.convert_feed_to_mm_s(feed) * 60.0 / abs(self.running_rpm)
 
     def move_straight(self, position: Point, z: float | None = None, feed: float | None = None) -> Block:
-        """Return a straight move to a point, in rapid without a feed."""
+        """Return a straight move to a point, which is a rapid if ``feed`` is None."""
         state = self._state
         goal = state.to_machine_position((*position, self.z_position if z is None else z))
         rate = None if feed is None else state.convert_feed_to_mm_s(feed)
@@ -263,7 +277,7 @@ class CycleTool:
         )
 
     def move_on_arc(self, arc: Arc, z: float, feed: float) -> Block:
-        """Return a move along an arc, with Z to ``z``."""
+        """Return a move along an arc that ends at the height ``z``."""
         state = self._state
         levels = [state.transformation.to_plane((0.0, 0.0, at))[2] for at in (self.z_position, z)]
         names = state.axis_names
@@ -280,30 +294,31 @@ class CycleTool:
         return state.make_move_block(BlockKind.PLANE_ARC, goal, state.convert_feed_to_mm_s(feed), way)
 
     def make_dwell_blocks(self, seconds: float, *, in_hole: bool = False) -> list[Block]:
-        """Return a dwell block, or an empty list for 0 s."""
+        """Return a list with one dwell block, or an empty list for 0 s."""
         return (
             [replace(self._state.make_action_block(Dwell(seconds)), in_hole=in_hole)] if seconds > 0.0 else []
         )
 
     def run_spindle(self, rpm: float, *, in_hole: bool = False) -> Block:
-        """Return the block that runs the spindle at this signed speed in rpm."""
+        """Return the block that runs the spindle at the signed speed ``rpm``."""
         state = self._state
         state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1, oriented=None)
         return replace(state.make_action_block(SpindleRun(rpm)), in_hole=in_hole)
 
     def set_spindle_speed(self, rpm: float) -> list[Block]:
-        """Return the block that sets this signed spindle speed in rpm; 0 stops the spindle.
+        """Return the block that sets the signed spindle speed ``rpm``; a speed of 0 stops the spindle.
 
-        The list is empty if the spindle already has this speed.
+        The list is empty if the spindle already runs at this speed.
         """
         if rpm == self.signed_rpm:
             return []
         return [self.run_spindle(rpm) if rpm else self.stop_spindle()]
 
     def switch_coolant(self, q: int) -> list[Block]:
-        """Return the coolant block for a parameter with an M function (8, 9, or 0 for no change).
+        """Return the block that switches the coolant.
 
-        Raises ProgramError for any other value.
+        The parameter contains an M function number (8 or 9), or 0 for no change. Raises ProgramError for
+        any other value.
         """
         number, state = int(self.read_value(q, 0.0)), self._state
         if number == 0:
@@ -325,11 +340,14 @@ class CycleTool:
 
     @property
     def can_orient_spindle(self) -> bool:
-        """Whether the spindle of this machine can stop at an angle."""
+        """Return whether the spindle of this machine can stop at a given angle."""
         return self._state.setup.limits.can_orient_spindle
 
     def orient_spindle(self, q: int) -> Block:
-        """Return the block that orients the spindle to the angle of a parameter. Raises ProgramError."""
+        """Return the block that orients the spindle to the angle in a parameter.
+
+        Raises ProgramError for an invalid angle.
+        """
         angle = self.read_value(q, 0.0)
         if not -_TURN <= angle <= _TURN:
             text = "{parameter} is not a valid spindle angle."
@@ -339,7 +357,9 @@ class CycleTool:
         return make_orientation_block(self._state, angle)
 
     def stop_program(self, message: str) -> Block:
-        """Return a program stop for a manual action of the operator; Cycle Start continues."""
+        """Return a program stop for a manual action by the operator, after which Cycle Start continues the
+        program.
+        """
         return self._state.make_action_block(ProgramStop(optional=False, message=message))
 
 
@@ -348,34 +368,34 @@ _MIN_LENGTH_MM = 1e-6  # mm
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """Position of a figure in the program's X and Y.
+    """The position and rotation of a shape in the program's X and Y.
 
-    ``center`` is its center, and ``angle_deg`` is the angle of its first side in degrees.
+    ``center`` is the center of the shape. ``angle_deg`` is the angle of its first side in degrees.
     """
 
     center: Point
     angle_deg: float = 0.0
 
     def to_program_point(self, u: float, v: float) -> Point:
-        """Return the program point for coordinates along the first and second side, in mm."""
+        """Return the program point for distances along the first and second side from the center, in mm."""
         c, s = math.cos(math.radians(self.angle_deg)), math.sin(math.radians(self.angle_deg))
         return self.center[0] + c * u - s * v, self.center[1] + s * u + c * v
 
     def translate(self, u: float, v: float) -> Placement:
-        """Return the seat with its center moved along its sides."""
+        """Return a placement with its center moved by ``u`` and ``v`` along the sides."""
         return Placement(self.to_program_point(u, v), self.angle_deg)
 
 
 @dataclass(frozen=True, slots=True)
 class RoundedRectangle:
-    """A rectangle with half sides ``half_side_u_mm`` and ``half_side_v_mm`` and corner ``radius``, in mm."""
+    """A rectangle with rounded corners, defined by its half sides and its corner radius in mm."""
 
     half_side_u_mm: float
     half_side_v_mm: float
     corner_radius_mm: float
 
     def enlarge(self, margin_mm: float) -> RoundedRectangle:
-        """Return the ring enlarged by ``margin_mm`` mm on all sides; corners remain round."""
+        """Return the rectangle enlarged by ``margin_mm`` on all sides, with round corners."""
         return RoundedRectangle(
             self.half_side_u_mm + margin_mm,
             self.half_side_v_mm + margin_mm,
@@ -385,7 +405,10 @@ class RoundedRectangle:
     def mill(
         self, tool: CycleTool, placement: Placement, feed: float, *, is_clockwise: bool
     ) -> Iterator[Block]:
-        """Yield the moves once around the ring, from the middle of the side in +u, at the present height."""
+        """Yield the moves once around the rectangle at the present height.
+
+        The path starts at the middle of the side in the direction +u.
+        """
         r = min(self.corner_radius_mm, self.half_side_u_mm, self.half_side_v_mm)
         side = -1.0 if is_clockwise else 1.0
         u, v = self.half_side_u_mm - r, self.half_side_v_mm - r

@@ -1,4 +1,4 @@
-"""Hole cycles (200 to 209, 240, 241): drilling, reaming, boring, tapping, bore milling and centering."""
+"""Hole cycles (200 to 209, 240, 241) for drilling, reaming, boring, tapping, bore milling and centering."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _MAX_PECKS = 10_000
 
 
 def run_reaming(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 201: down and up at a feed."""
+    """Yield the blocks of cycle 201, which moves down and up at a feed."""
     surface, clear, bottom = read_heights(tool)
     feed = tool.read_feed(206)
     yield tool.move_to_z(clear)
@@ -33,10 +33,11 @@ def run_reaming(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_boring(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 202: bore, stop at the angle Q336, move off the wall (Q214), retract.
+    """Yield the blocks of cycle 202 (boring).
 
-    The spindle turns again after the retract. If the spindle cannot be oriented, it stops at any angle. With
-    a move off the wall, the program then stops so that the operator can turn the edge away from the wall.
+    The tool bores, stops at the spindle angle Q336, moves off the wall (Q214) and retracts. The spindle
+    runs again after the retract. If the spindle cannot be oriented, it stops at any angle. If the tool must
+    move off the wall, the program then stops so that the operator can turn the edge away from the wall.
     """
     surface, clear, bottom = read_heights(tool)
     rpm, way = tool.running_rpm, lateral_direction(tool, (0, 1, 2, 3, 4))
@@ -63,7 +64,10 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
 
 
 def lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
-    """Return the direction (x, y) of Q214 in which the tool leaves the wall. Raises ProgramError."""
+    """Return the direction (x, y) in which the tool moves off the wall, as specified by Q214.
+
+    Raises ProgramError for an invalid Q214.
+    """
     number = tool.read_value(214, 0.0)
     if number not in directions:
         text = "Q214 must be a whole number from {directions} to {directions2}."
@@ -72,10 +76,10 @@ def lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tuple[flo
 
 
 def run_back_boring(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 204: boring upward from below the part by Q249.
+    """Yield the blocks of cycle 204, which bores upward from below the part by the depth Q249.
 
     The tool passes off-center through the hole with the spindle oriented to Q336. Q252 is the height of the
-    edge above the tip, Q250 the thickness of the part, and Q251 the off-center distance.
+    edge above the tip. Q250 is the thickness of the part, and Q251 is the off-center distance.
     """
     text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
     hint = "Bore from the other side of the part, or {how_oriented}."
@@ -113,16 +117,19 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
 
 
 def drilling(tool: CycleTool) -> Iterator[Block]:
-    """Return the blocks of cycle 200: like 203, with equal infeeds and a full retract after each."""
+    """Return the blocks of cycle 200.
+
+    The cycle is like cycle 203, but with equal infeeds and a full retract after each infeed.
+    """
     return run_universal_drilling(
         tool.with_parameters({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)})
     )
 
 
 def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 203: pecks with Q213 chip breaks between full retracts.
+    """Yield the blocks of cycle 203, which breaks the chip Q213 times between full retracts.
 
-    Q212 reduces the infeeds, down to Q205.
+    Q212 reduces each infeed, down to a minimum of Q205.
     """
     surface, clear, bottom = read_heights(tool)
     feed, whole = tool.read_feed(206), surface - bottom
@@ -148,10 +155,10 @@ def run_universal_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 205: like cycle 203, but with a start point and stop distances.
+    """Yield the blocks of cycle 205, which is like cycle 203 but has a start point and stop distances.
 
-    The start is at Q379. After a full retract, the rapid stops Q258 to Q259 above the last depth. Q257 is the
-    depth between chip breaks.
+    Drilling starts at Q379. After a full retract, the rapid stops Q258 to Q259 above the last depth. Q257
+    is the depth between chip breaks.
     """
     surface, clear, bottom = read_heights(tool)
     feed, begin = tool.read_feed(206), surface - max(tool.read_length_mm(379, 0.0), 0.0)
@@ -180,16 +187,17 @@ def run_deep_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_floating_tapping(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 206: down at Q206, spindle reversal, up."""
+    """Yield the blocks of cycle 206, which taps at the feed Q206, reverses the spindle and retracts."""
     surface, clear, bottom = read_heights(tool)
     lead = tool.convert_feed_to_lead(tool.read_cutting_feed(206))
     yield from _tapped(tool, surface, clear, bottom, lead, tool.running_rpm)
 
 
 def run_rigid_tapping(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 207: like 206 with a pitch, whose sign sets the direction.
+    """Yield the blocks of cycle 207, which is like cycle 206 but has a pitch instead of a feed.
 
-    At the end, the spindle has its previous speed and direction.
+    The sign of the pitch determines the direction. At the end, the spindle runs again at its previous speed
+    and in its previous direction.
     """
     surface, clear, bottom = read_heights(tool)
     lead, rpm = _thread(tool)
@@ -197,7 +205,7 @@ def run_rigid_tapping(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 209: rigid tapping with a spindle reversal after each depth Q257."""
+    """Yield the blocks of cycle 209, which is rigid tapping with a spindle reversal after each depth Q257."""
     surface, clear, bottom = read_heights(tool)
     (lead, rpm), before = _thread(tool), tool.signed_rpm
     back, step = tool.read_length_mm(256, 0.0), tool.read_length_mm(257, 0.0)
@@ -216,7 +224,10 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread(tool: CycleTool) -> tuple[float, float]:
-    """Return the lead in mm/rev and the signed speed into the thread. Raises ProgramError without a pitch."""
+    """Return the lead in mm/rev and the signed spindle speed in rpm for cutting into the thread.
+
+    Raises ProgramError if the pitch is missing.
+    """
     tool.warn_uncoupled()
     pitch = tool.read_length_mm(239)
     tool.check(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
@@ -240,9 +251,9 @@ def _tapped(
 
 
 def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 208: a helix to the diameter Q335.
+    """Yield the blocks of cycle 208, which mills a helix with the diameter Q335.
 
-    The pitch is Q334. A full circle at the bottom finishes the hole.
+    The pitch of the helix is Q334. A full circle at the bottom finishes the hole.
     """
     surface, clear, bottom = read_heights(tool)
     feed = tool.read_feed(206) or 0.0
@@ -268,7 +279,10 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_centering(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 240: centering to a depth, or to a diameter by the point angle."""
+    """Yield the blocks of cycle 240, which centers to a depth or to a diameter.
+
+    The depth for a diameter is calculated with the point angle of the tool.
+    """
     if tool.read_value(343, 0.0) == 1.0:
         surface = tool.read_length_mm(203, 0.0)
         clear = surface + tool.read_length_mm(200)
@@ -283,10 +297,10 @@ def run_centering(tool: CycleTool) -> Iterator[Block]:
 
 
 def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 241.
+    """Yield the blocks of cycle 241 (single-lip deep-hole drilling).
 
-    The tool enters at the speed Q427 to the start at Q379, drills at the speed Q428 with coolant, and leaves
-    at the speed Q427.
+    The tool enters at the spindle speed Q427 to the start depth Q379 and drills at the speed Q428 with
+    coolant. It leaves the hole at the speed Q427.
     """
     surface, clear, bottom = read_heights(tool)
     rpm, sense = tool.running_rpm, {3: 1.0, 4: -1.0, 5: 0.0}.get(int(tool.read_value(426, 3.0)))
@@ -314,7 +328,10 @@ def run_single_lip_drilling(tool: CycleTool) -> Iterator[Block]:
 
 
 def read_heights(tool: CycleTool) -> tuple[float, float, float]:
-    """Return surface, set-up clearance and bottom in mm. Raises ProgramError for a positive depth."""
+    """Return the heights of the surface, the set-up clearance and the bottom in mm.
+
+    Raises ProgramError for a positive depth.
+    """
     surface, depth = tool.read_length_mm(203, 0.0), tool.read_length_mm(201)
     text = "Depth Q201={depth} mm is positive (upward)."
     tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
@@ -324,7 +341,7 @@ def read_heights(tool: CycleTool) -> tuple[float, float, float]:
 def compute_infeeds(
     tool: CycleTool, total_depth: float, step: float, decrement: float = 0.0, min_infeed: float = 0.0
 ) -> Iterator[float]:
-    """Yield the depths of the infeeds; the last one is the whole depth."""
+    """Yield the depth after each infeed, ending with the total depth."""
     if step <= 0.0 or step >= total_depth:
         yield total_depth
         return
@@ -340,13 +357,16 @@ def compute_infeeds(
 
 
 def compute_levels(tool: CycleTool, surface: float, bottom: float, step: Callable[[], float]) -> list[float]:
-    """Return the heights of the infeeds from the surface down to the bottom; empty without a depth."""
+    """Return the Z height after each infeed, from the surface to the bottom.
+
+    The list is empty if the depth is 0.
+    """
     whole = surface - bottom
     return [] if whole < MIN_LENGTH_MM else [surface - done for done in compute_infeeds(tool, whole, step())]
 
 
 def out(tool: CycleTool, surface: float, clearance_z_mm: float, feed: float | None) -> Iterator[Block]:
-    """Yield the retract to the set-up clearance, and to the second clearance if it is higher."""
+    """Yield the retract to the set-up clearance, or to the second set-up clearance if it is higher."""
     second = surface + tool.read_length_mm(204, 0.0)
     if feed is None:
         yield tool.move_to_z(max(clearance_z_mm, second))

@@ -1,6 +1,7 @@
-"""Cycles below 200: pecking (1), tapping (2, 17, 18), slot (3), rectangular (4) and circular pocket (5).
+"""Cycles numbered below 200: pecking, tapping, slot, rectangular pocket and circular pocket.
 
-The tool must be at the set-up clearance above the surface when such a cycle is called.
+The cycle numbers are 1 (pecking), 2, 17 and 18 (tapping), 3 (slot), 4 (rectangular pocket) and 5 (circular
+pocket). The tool must be at the set-up clearance above the surface when such a cycle is called.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ _MAX_LEVELS = 10_000
 
 
 class OlderCycleData:
-    """Values in the lines of a cycle below 200."""
+    """The values in the lines of a cycle numbered below 200."""
 
     def __init__(self, state: State, lines: CycleLines, column: int) -> None:
         self._state = state
@@ -34,13 +35,13 @@ class OlderCycleData:
 
     @property
     def cycle_number(self) -> int:
-        """Number of the cycle."""
+        """Return the number of the cycle, or 0 if no lines are defined."""
         return next(iter(self._lines.values())).cycle_number if self._lines else 0
 
     def read_number(self, line_number: int, axis: str = "") -> float:
-        """Return the first number of a line, or the number of an axis word.
+        """Return the first number of a line, or the number of its axis word if ``axis`` is given.
 
-        Raises ProgramError if it is missing.
+        Raises ProgramError if the number is missing.
         """
         words = self._lines[line_number].words if line_number in self._lines else ()
         word = next((each for each in words if each.axis == axis), None)
@@ -59,16 +60,16 @@ class OlderCycleData:
         return value(self._state, word.value.formula)
 
     def read_length_mm(self, line_number: int, axis: str = "") -> float:
-        """Return the same number as a length in mm."""
+        """Return the number of a line or of an axis word, converted to mm."""
         return self.read_number(line_number, axis) * self._state.mm_per_unit
 
     def read_feed(self, line_number: int) -> float | None:
-        """Return the feed of a line as programmed; None for a rapid."""
+        """Return the feed of a line as programmed, or None for a rapid."""
         line = self._lines.get(line_number)
         return word_values.evaluate_feed(self._state, line.feed if line else None, self._column)
 
     def read_cutting_feed(self, line_number: int) -> float:
-        """Return the feed of a line. Raises ProgramError for a rapid."""
+        """Return the feed of a line as programmed. Raises ProgramError for a rapid."""
         found = self.read_feed(line_number)
         if found is None:
             text = "A pocket cannot be milled at rapid."
@@ -76,7 +77,7 @@ class OlderCycleData:
         return found
 
     def read_direction(self, line_number: int) -> float:
-        """Return 1 for DR+ (counterclockwise) or -1 for DR-."""
+        """Return the direction of rotation, which is 1 for DR+ (counterclockwise) or -1 for DR-."""
         line = self._lines.get(line_number)
         return -1.0 if line is not None and line.rotation_direction == "-" else 1.0
 
@@ -88,7 +89,10 @@ class OlderCycleData:
 
 
 def _pecking(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 1: pecks with full retracts, and rapids to just above the last depth."""
+    """Yield the blocks of cycle 1, which drills in pecks with full retracts.
+
+    After each retract, a rapid returns to just above the last depth.
+    """
     clear, feed = tool.z_position, data.read_feed(5)
     depth, step = abs(data.read_length_mm(2)), abs(data.read_length_mm(3))
     surface = clear - data.read_length_mm(1)
@@ -103,7 +107,10 @@ def _pecking(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 2 (feed) or 17 (pitch, whose sign sets the direction)."""
+    """Yield the blocks of cycle 2, which has a feed, or of cycle 17, which has a pitch.
+
+    The sign of the pitch determines the direction.
+    """
     rigid = data.cycle_number == _RIGID
     clear, before = tool.z_position, tool.signed_rpm
     if rigid:
@@ -122,7 +129,7 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 3: levels along the first side, then around at the width."""
+    """Yield the blocks of cycle 3, which mills levels along the first side and then around the full width."""
     first, second = _sides(data, 4), _sides(data, 5)
     (x, y), clear = tool.xy_position, tool.z_position
     end = x + first[0], y + first[1]
@@ -156,7 +163,7 @@ def _round_slot(tool: CycleTool, start: Point, end: Point, width: float, feed: f
 
 
 def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 4: rectangles from the center outward on each level."""
+    """Yield the blocks of cycle 4, which mills rectangles from the center outward on each level."""
     (x, y), clear = tool.xy_position, tool.z_position
     half = (
         abs(data.read_length_mm(4, "X")) / 2.0 - tool.radius_mm,
@@ -184,7 +191,7 @@ def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _circular_pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 5: circles from the center outward on each level."""
+    """Yield the blocks of cycle 5, which mills circles from the center outward on each level."""
     (x, y), clear = tool.xy_position, tool.z_position
     radius = abs(data.read_length_mm(4, "R" if data.has_axis_word(4, "R") else "")) - tool.radius_mm
     tool.check(radius >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool.")
@@ -202,9 +209,9 @@ def _circular_pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
 
 def _thread_cutting(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 18: from the tool position to the depth at pitch times speed.
+    """Yield the blocks of cycle 18, which cuts a thread from the tool position to the depth.
 
-    The spindle stops at the depth.
+    The feed is pitch times spindle speed. The spindle stops at the depth.
     """
     tool.warn_uncoupled()
     rpm, pitch, depth = tool.programmed_rpm, data.read_length_mm(2), data.read_length_mm(1)
@@ -229,7 +236,7 @@ def _sides(told: OlderCycleData, part: int) -> Point:
 
 
 def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
-    """Yield the depths of the infeeds; the last one is the whole depth."""
+    """Yield the depth after each infeed, ending with the total depth."""
     if step <= 0.0 or step >= depth:
         yield depth
         return

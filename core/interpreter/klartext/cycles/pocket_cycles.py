@@ -1,8 +1,8 @@
-"""Milling cycles for pockets, slots and studs (210 to 215, 251 to 257), level by level.
+"""Milling cycles for pockets, slots and studs (210 to 215 and 251 to 257), executed level by level.
 
-Pockets are cleared from the inside out, studs from the blank inward; walls and floor are finished last. The
-tool path is TurnDesk's own, and the remaining material is as the parameters specify. A ramp has 3 degrees,
-because the tool table has no plunge angle.
+Pockets are cleared from the inside out, and studs are cleared from the blank inward. Walls and floor are
+finished last. TurnDesk calculates its own tool path, but the remaining material agrees with the parameters.
+Ramps have an angle of 3 degrees because the tool table has no plunge angle.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ _CENTRE, _LEFT_END, _MIDDLE, _RIGHT_END = range(4)
 
 
 class _MillingParameters:
-    """Parameters of a milling cycle."""
+    """The parameters of a milling cycle."""
 
     def __init__(self, tool: CycleTool) -> None:
         self.tool = tool
@@ -65,24 +65,27 @@ class _MillingParameters:
         self.is_up_cut = (tool.read_value(351, 1.0) < 0.0) != (tool.running_rpm < 0.0)
 
     def compute_levels(self) -> list[float]:
-        """Return the heights of the clearing levels, the deepest last."""
+        """Return the Z heights of the clearing levels in mm, ending with the deepest."""
         floor = self.bottom_z_mm + (self.floor_allowance_mm if self.scope != _FINISH else 0.0)
         return compute_levels(self.tool, self.surface_z_mm, floor, lambda: self.tool.read_length_mm(202))
 
     @property
     def has_finishing(self) -> bool:
-        """Whether walls and floor are finished."""
+        """Return whether the cycle finishes the walls and the floor."""
         return self.scope == _FINISH or (
             self.scope == _BOTH and max(self.side_allowance_mm, self.floor_allowance_mm) > MIN_LENGTH_MM
         )
 
     @property
     def finishing_feed(self) -> float:
-        """Feed of the finishing passes."""
+        """Return the feed of the finishing passes as programmed."""
         return self.tool.read_cutting_feed(385) if self.tool.read_value(385, 0.0) else self.feed
 
     def compute_wall_levels(self) -> list[float]:
-        """Return the heights of wall finishing in steps of Q338; with 0, only the bottom."""
+        """Return the Z heights of the wall finishing passes in mm, in steps of Q338.
+
+        If Q338 is 0, the only height is the bottom.
+        """
         step = self.tool.read_length_mm(338, 0.0)
         return [
             self.surface_z_mm - done
@@ -94,7 +97,10 @@ class _MillingParameters:
 
 
 def mill_rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 251: sides Q218 and Q219, corners Q220, rotation Q224, position Q367."""
+    """Yield the blocks of cycle 251, which mills a rectangular pocket.
+
+    The sides are Q218 and Q219, the corner radius is Q220, the rotation is Q224, and the position is Q367.
+    """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
     seat = Placement(tool.xy_position, tool.read_value(224, 0.0)).translate(*_placed(tool, corner))
@@ -102,13 +108,16 @@ def mill_rectangular_pocket(tool: CycleTool) -> Iterator[Block]:
 
 
 def mill_circular_pocket(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 252: a pocket of diameter Q223 around the tool position."""
+    """Yield the blocks of cycle 252, which mills a pocket with the diameter Q223 around the tool position."""
     radius = tool.read_length_mm(223) / 2.0
     yield from _pocket(tool, Placement(tool.xy_position), RoundedRectangle(radius, radius, radius))
 
 
 def mill_slot(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 253: length Q218, width Q219, rotation Q374, position Q367."""
+    """Yield the blocks of cycle 253, which mills a slot.
+
+    The length is Q218, the width is Q219, the rotation is Q374, and the position is Q367.
+    """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     tool.check(a >= b - MIN_LENGTH_MM, "The slot is wider than it is long.", "Correct Q218 and Q219.")
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
@@ -157,7 +166,10 @@ def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterato
 def _plunge(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, above: float, z: float
 ) -> Iterator[Block]:
-    """Yield the plunge from ``above`` to ``z`` at the start of the center line: straight, helix or zigzag."""
+    """Yield the plunge from ``above`` to ``z`` at the start of the center line.
+
+    The tool plunges straight down, on a helix or in a zigzag.
+    """
     tool, half = milling.tool, ring.half_side_u_mm - ring.half_side_v_mm
     start, end = placement.to_program_point(-half, 0.0), placement.to_program_point(half, 0.0)
     yield tool.move_to_z(min(milling.clearance_z_mm, above + tool.read_length_mm(200)))
@@ -217,7 +229,9 @@ def _clear_level(
 def _finish_walls(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle
 ) -> Iterator[Block]:
-    """Yield the finishing moves of floor and walls, with quarter circles as approach and departure."""
+    """Yield the finishing moves of the floor and the walls, with quarter circles as approach and
+    departure.
+    """
     tool, feed = milling.tool, milling.finishing_feed
     half = placement.to_program_point(ring.half_side_v_mm - ring.half_side_u_mm, 0.0)
     if milling.floor_allowance_mm > MIN_LENGTH_MM:
@@ -238,9 +252,10 @@ def _finish_walls(
 def _mill_ring(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle, quarter: float, feed: float
 ) -> Iterator[Block]:
-    """Yield the approach to a ring, one round, and the departure.
+    """Yield the approach to a ring, one pass around the ring, and the departure.
 
-    A positive ``quarter`` approaches from the inside, a negative one from the outside.
+    A positive ``quarter`` approaches from the inside, and a negative ``quarter`` approaches from the
+    outside.
     """
     tool, clockwise = milling.tool, milling.is_up_cut
     if quarter < 0.0:
@@ -262,9 +277,10 @@ def _mill_ring(
 
 
 def mill_rectangular_stud(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 256: sides Q218 and Q219, blank Q424 and Q425.
+    """Yield the blocks of cycle 256, which mills a rectangular stud.
 
-    Q220 is the corner radius, and Q224 is the rotation.
+    The sides are Q218 and Q219, and the sides of the blank are Q424 and Q425. Q220 is the corner radius,
+    and Q224 is the rotation.
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
     corner = {0: (0.0, 0.0), 1: (a, b), 2: (-a, b), 3: (-a, -b), 4: (a, -b)}
@@ -274,7 +290,10 @@ def mill_rectangular_stud(tool: CycleTool) -> Iterator[Block]:
 
 
 def mill_circular_stud(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 257: diameter Q223, blank Q222, start angle Q376."""
+    """Yield the blocks of cycle 257, which mills a circular stud.
+
+    The diameter is Q223, the diameter of the blank is Q222, and the start angle is Q376.
+    """
     radius = tool.read_length_mm(223) / 2.0
     seat = Placement(tool.xy_position, max(tool.read_value(376, 0.0), 0.0))
     yield from _stud(
@@ -285,8 +304,9 @@ def mill_circular_stud(tool: CycleTool) -> Iterator[Block]:
 def _stud(
     tool: CycleTool, placement: Placement, wall: RoundedRectangle, oversize_mm: float
 ) -> Iterator[Block]:
-    """Yield rings that approach the stud on each level; ``oversize_mm`` is the oversize of the blank in
-    mm.
+    """Yield the rings that approach the stud on each level.
+
+    ``oversize_mm`` is the oversize of the blank in mm.
     """
     told = _MillingParameters(tool)
     tool.check(
@@ -340,9 +360,10 @@ def _around(
 
 
 def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 254: width Q219 on the circle Q375, from Q376 over Q248 degrees.
+    """Yield the blocks of cycle 254, which mills circular slots.
 
-    Q377 is the number of slots, and Q378 is the angle between them.
+    A slot has the width Q219 on a circle with the diameter Q375. It starts at the angle Q376 and spans Q248
+    degrees. Q377 is the number of slots, and Q378 is the angle between them.
     """
     surface, clear, _ = read_heights(tool)
     safe = max(surface + tool.read_length_mm(204, 0.0), clear) / tool.mm_per_unit
@@ -367,7 +388,7 @@ def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
 
 
 def make_slot_outline(tool: CycleTool, center: Point, start_deg: float, sweep_deg: float) -> ElementLoop:
-    """Return the outline of one slot, counterclockwise. Raises ProgramError if its dimensions are invalid."""
+    """Return the counterclockwise outline of one slot. Raises ProgramError if the dimensions are invalid."""
     radius, half = tool.read_length_mm(375) / 2.0, tool.read_length_mm(219) / 2.0
     if not MIN_LENGTH_MM < half < radius or not 0.0 < abs(sweep_deg) <= 360.0:
         text = (
@@ -394,7 +415,10 @@ def make_slot_outline(tool: CycleTool, center: Point, start_deg: float, sweep_de
 
 
 def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
-    """Return center, start angle and sweep, from the parameters or from the tool position (Q367)."""
+    """Return the center, start angle and sweep of a slot.
+
+    Q367 determines whether they come from the parameters or from the tool position.
+    """
     begin, sweep, radius = tool.read_value(376), tool.read_value(248), tool.read_length_mm(375) / 2.0
     place = int(tool.read_value(367, 0.0))
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
@@ -415,7 +439,10 @@ _CONTOUR_PARAMETERS: CycleParameters = {
 
 
 def _finishing(tool: CycleTool) -> CycleParameters:
-    """Return the finishing parameters: feed Q385, infeeds of Q338, or one infeed if Q338 is 0."""
+    """Return the finishing parameters with the feed Q385 and infeeds of Q338.
+
+    If Q338 is 0, finishing has one infeed.
+    """
     feed: CycleParameters = {12: 385} if tool.read_value(385, 0.0) else {}
     return {**feed, 10: 338 if tool.read_value(338, 0.0) else -1e9}
 
@@ -431,7 +458,7 @@ _WALLS: CycleParameters = {**_HEIGHTS, 202: 202, 206: 206, 207: 207, 215: 2.0, 3
 
 
 def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> MillingCycle:
-    """Return a cycle around Q216, Q217 that executes another cycle with these parameters."""
+    """Return a cycle that executes another cycle with these parameters around the center Q216, Q217."""
 
     def run(tool: CycleTool) -> Iterator[Block]:
         surface, clear, _ = read_heights(tool)
@@ -443,7 +470,7 @@ def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> 
 
 
 def _round_corners(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 212, with corners of the tool radius if Q220 is 0."""
+    """Yield the blocks of cycle 212, whose corners have the tool radius if Q220 is 0."""
     radius = tool.read_length_mm(220, 0.0) or tool.radius_mm
     yield from _make_centered_cycle(
         mill_rectangular_pocket, {**_WALLS, 218: 218, 219: 219, 220: radius / tool.mm_per_unit}
@@ -451,7 +478,10 @@ def _round_corners(tool: CycleTool) -> Iterator[Block]:
 
 
 def _older_stud(tool: CycleTool) -> Iterator[Block]:
-    """Yield the blocks of cycle 213; the oversize of the blank is Q221, or the tool diameter without Q221."""
+    """Yield the blocks of cycle 213.
+
+    The oversize of the blank is Q221, or the tool diameter if Q221 is missing.
+    """
     more = 2.0 * (tool.read_value(221, 0.0) or tool.radius_mm / tool.mm_per_unit)
     sides = {424: tool.read_value(218) + more, 425: tool.read_value(219) + more}
     yield from _make_centered_cycle(mill_rectangular_stud, {**_WALLS, 218: 218, 219: 219, 220: 220, **sides})(

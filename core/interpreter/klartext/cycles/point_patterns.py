@@ -1,4 +1,4 @@
-"""Points of PATTERN DEF and of cycles 220 and 221, in the order of execution."""
+"""Generation of the points of PATTERN DEF and of cycles 220 and 221, in the order of execution."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
 
 
 def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
-    """Return X, Y and the height above Q203 of each point, in mm.
+    """Return X, Y and the height above Q203 for each point, in mm.
 
-    Raises ProgramError if there are too many points.
+    Raises ProgramError if the pattern has too many points.
     """
     found: list[Vector] = []
     for part in node.parts:
@@ -60,7 +60,7 @@ def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Itera
 
 
 def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:
-    """Yield the points of a grid in alternating directions; for a frame, only the border."""
+    """Yield the points of a grid row by row in alternating directions, or only the border for a frame."""
     columns, rows = _count(state, part, values["NUMX"]), _count(state, part, values["NUMY"])
     turn = values.get("ROT", 0.0)
     u = math.radians(turn + values.get("ROTX", 0.0))
@@ -95,7 +95,10 @@ def compute_circle_points(tool: CycleTool) -> list[Point]:
 
 
 def compute_row_points(tool: CycleTool) -> list[Point]:
-    """Return the points of cycle 221 by rows in alternating directions. Raises ProgramError."""
+    """Return the points of cycle 221 row by row, in alternating directions.
+
+    Raises ProgramError for invalid parameters.
+    """
     x, y = tool.read_length_mm(225), tool.read_length_mm(226)
     columns, rows = _told_count(tool, 242), _told_count(tool, 243)
     angle = math.radians(tool.read_value(224, 0.0))
@@ -113,13 +116,13 @@ def _told_count(tool: CycleTool, q: int) -> int:
 
 
 def _circle(center: Point, radius: float, count: int, first: float, step: float) -> Iterator[Point]:
-    """Yield points on a circle from an angle in degrees."""
+    """Yield ``count`` points on a circle, starting at the angle ``first``; angles are in degrees."""
     for angle in (math.radians(first + at * step) for at in range(count)):
         yield center[0] + radius * math.cos(angle), center[1] + radius * math.sin(angle)
 
 
 def _alternating_cells(columns: int, rows: int) -> Iterator[tuple[int, int]]:
-    """Yield column and row of each point of a grid, with every second row reversed."""
+    """Yield the column and row of each point of a grid, in reverse order in every second row."""
     for row in range(rows):
         order = range(columns) if row % 2 == 0 else range(columns - 1, -1, -1)
         yield from ((column, row) for column in order)

@@ -1,9 +1,9 @@
-"""Contours of SL cycles, as listed by cycle 14 or CONTOUR DEF, and the area that they enclose.
+"""Contours of SL cycles, as listed in cycle 14 or CONTOUR DEF, and the area that they enclose.
 
-A contour is a subprogram that is executed without moving an axis. A contour that runs clockwise with RR or
-counterclockwise with RL is a pocket; otherwise, it is an island. Pockets that overlap are combined. If the
-first pocket starts inside the other one, only their intersection counts (manual: areas of inclusion and
-intersection). Islands remain.
+A contour is a subprogram that is executed without axis motion. A contour is a pocket if it runs clockwise
+with RR or counterclockwise with RL; otherwise, it is an island. Overlapping pockets are combined. If the
+first pocket starts inside the other pocket, only their intersection is cleared (see areas of inclusion and
+intersection in the manual). Islands are not cleared.
 """
 
 from __future__ import annotations
@@ -40,10 +40,11 @@ MAX_CLOSING_GAP_MM = (
 
 @dataclass(frozen=True, slots=True)
 class SlContour:
-    """The elements of one contour in the program's X and Y; ``side`` is L, R or empty without compensation.
+    """The elements of one contour in the program's X and Y.
 
-    ``label`` is its name in messages. ``is_pocket`` comes from CONTOUR DEF; with None, the side determines
-    it.
+    ``label`` is the name of the contour in messages. ``side`` is L or R, or an empty string without
+    compensation. ``is_pocket`` comes from CONTOUR DEF; if it is None, the side determines whether the
+    contour is a pocket.
     """
 
     label: str
@@ -53,7 +54,7 @@ class SlContour:
 
 
 class ContourCollector(PathRunner):
-    """Runner that collects the elements of a contour, with corners, without generating blocks."""
+    """Path runner that collects the elements of a contour with its corners, without generating blocks."""
 
     def __init__(self, state: State) -> None:
         super().__init__(state)
@@ -62,7 +63,7 @@ class ContourCollector(PathRunner):
 
     @property
     def elements(self) -> tuple[Element, ...]:
-        """The elements after the block that leads to the start of the contour."""
+        """Return the elements that follow the move to the start of the contour."""
         behind = self._waiting[self._begun + 1 :]
         return tuple(
             each.planar_element
@@ -71,7 +72,10 @@ class ContourCollector(PathRunner):
         )
 
     def add_path_function(self, node: PathFunction) -> None:
-        """Add the element of a path function. Raises ProgramError if it is not allowed in a contour."""
+        """Add the element of a path function.
+
+        Raises ProgramError if a contour cannot contain this function.
+        """
         if node.function_name.startswith(("APPR", "DEP")):
             raise make_unsupported_error(
                 self._state.line_number,
@@ -99,12 +103,15 @@ class ContourCollector(PathRunner):
         return None
 
     def finish(self) -> None:
-        """Process the end of the subprogram. Raises ProgramError if a corner is unfinished."""
+        """Complete the contour at the end of the subprogram.
+
+        Raises ProgramError if a corner is incomplete.
+        """
         self._check_no_corner()
 
 
 def copy_state(state: State) -> State:
-    """Return a copy of the state for a contour, so that its assignments do not affect the program."""
+    """Return a copy of the state, so that assignments in a contour do not affect the program."""
     shared = (state.setup, state.log, state.kinematics)
     copied = deepcopy(state, {id(each): each for each in shared})
     copied.is_tcpm_active = False
@@ -115,7 +122,10 @@ def copy_state(state: State) -> State:
 
 
 def find_area_boundary(state: State, contours: Sequence[SlContour], column: int) -> list[ElementLoop]:
-    """Return the boundary of the area to clear. Raises ProgramError if the contours enclose no area."""
+    """Return the boundary of the area to clear.
+
+    Raises ProgramError if the contours do not enclose an area.
+    """
     pockets: list[ElementLoop] = []
     islands: list[ElementLoop] = []
     for figure in contours:
@@ -129,7 +139,10 @@ def find_area_boundary(state: State, contours: Sequence[SlContour], column: int)
 def _compute_boundary(
     state: State, loops: Sequence[ElementLoop], inside: Callable[[Point], bool], column: int
 ) -> list[ElementLoop]:
-    """Return the boundary of an area. Raises ProgramError if it cannot be determined or is empty."""
+    """Return the boundary of an area.
+
+    Raises ProgramError if the boundary cannot be determined or the area is empty.
+    """
     try:
         found = find_boundary(loops, inside)
     except AreaError as problem:
@@ -142,7 +155,7 @@ def _compute_boundary(
 
 
 def _make_loop(state: State, contour: SlContour, column: int) -> ElementLoop:
-    """Return the contour as a loop. Raises ProgramError if it is open."""
+    """Return the contour as a closed loop. Raises ProgramError if the contour is open."""
     text = "Contour {figure} does not contain any elements."
     hint = "Add path functions to the contour."
     state.check(contour.elements, column, CYCLE_MISSING, text, hint, figure=contour.label)

@@ -1,8 +1,8 @@
-"""Blocks without motion: labels, jumps, calls, Q parameters and system values.
+"""Execution of blocks without motion: labels, jumps, calls, Q parameters and system values.
 
-FN 18 SYSREAD reads system values, and FN 17 SYSWRITE writes them. Groups and numbers follow the public
-manuals of the control. Unknown numbers are errors. A column that the tool table lacks is read as an empty
-cell, with a warning.
+FN 18 SYSREAD reads system values, and FN 17 SYSWRITE writes system values. Group and value numbers follow
+the public manuals of the control. Unknown numbers are errors. If the tool table lacks a column, its cells
+are read as empty and a warning is logged.
 """
 
 from __future__ import annotations
@@ -28,7 +28,10 @@ from core.message import Message
 def execute_flow_block(
     state: State, flow: Flow, line: int, node: nodes.Label | nodes.LabelCall | nodes.ConditionalJump
 ) -> None:
-    """Execute a label, call or jump. Raises ProgramError for an invalid repeat count or condition."""
+    """Execute a label, a call or a jump.
+
+    Raises ProgramError for an invalid repeat count or condition.
+    """
     if isinstance(node, nodes.Label):
         flow.execute_label(node)
     elif isinstance(node, nodes.LabelCall):
@@ -42,10 +45,10 @@ def execute_flow_block(
 def check_endless_loop(
     state: State, flow: Flow, loop_detector: EndlessLoopDetector, line: int, node: nodes.ConditionalJump
 ) -> None:
-    """Raise ProgramError if a jump back makes the loop endless.
+    """Raise ProgramError if a backward jump causes an endless loop.
 
-    It is endless if the state is the same as at an earlier jump. The state includes the parameters and, for
-    Q108 to Q114, tool, spindle and coolant.
+    A loop is endless if the state is the same as at an earlier jump. The state includes the parameters and,
+    because of Q108 to Q114, the tool, spindle and coolant.
     """
     if flow.next_index >= line:
         return
@@ -81,7 +84,10 @@ CalculationNode = (
 
 
 def execute_calculation(state: State, node: CalculationNode) -> None:
-    """Execute a Q parameter or FN block. Raises ProgramError, always for FN 14."""
+    """Execute a block with Q parameters or FN functions.
+
+    Raises ProgramError for an invalid block, and always for FN 14.
+    """
     match node:
         case nodes.Assignment():
             word_values.set_parameter(
@@ -128,7 +134,7 @@ _DEFAULT_RADIUS_VALUE = 99_999.9999  # value of the default R, which means the t
 
 
 def execute_system_read(state: State, node: SystemRead) -> None:
-    """Execute FN 18. Raises ProgramError for system values that this control lacks."""
+    """Execute FN 18, which reads a system value. Raises ProgramError for values that this control lacks."""
     group, number = int(value(state, node.group)), int(value(state, node.number))
     index = int(value(state, node.index)) if node.index is not None else 0
     if group == _TOOL_TABLE:
@@ -139,10 +145,11 @@ def execute_system_read(state: State, node: SystemRead) -> None:
 
 
 def execute_system_write(state: State, node: SystemWrite) -> None:
-    """Execute FN 17, which does not change the control. Raises ProgramError for an unknown value.
+    """Execute FN 17, which does not change the control.
 
-    Values of the tool table without effect on motion are noted, and FN 18 then returns them. A value that
-    would change a path is an error, unless the table already has it.
+    Values of the tool table that do not affect motion are stored, and FN 18 then returns them. A value that
+    would change a path is an error, unless the table already contains this value. Raises ProgramError for
+    an unknown value.
     """
     group, number = int(value(state, node.group)), int(value(state, node.number))
     index = int(value(state, node.index)) if node.index is not None else 0
@@ -171,7 +178,10 @@ def execute_system_write(state: State, node: SystemWrite) -> None:
 
 
 def _cell(state: State, column: int, number: int, index: int) -> float:
-    """Return a value of the tool table, lengths in the program's unit; index 0 is the active tool."""
+    """Return a value of the tool table, with lengths in the program's unit.
+
+    Index 0 selects the active tool.
+    """
     tool = index or state.modal.tool
     if (tool, number) in state.system_written_values:
         return state.system_written_values[tool, number]
@@ -192,7 +202,7 @@ def _cell(state: State, column: int, number: int, index: int) -> float:
 
 
 def _row(state: State, tool: int) -> MillTool | None:
-    """Return the known data of a tool; TOOL DEF has priority over the table."""
+    """Return the known data of a tool; data of TOOL DEF have priority over the tool table."""
     row = state.setup.mill_tools.get(tool)
     if tool in state.tool_definitions:
         length, radius = state.tool_definitions[tool]
@@ -278,7 +288,7 @@ _PLAIN: Mapping[tuple[int, int], Callable[[State, int], float]] = {
 
 
 def _axis_value(state: State, group: int, number: int, axis: str) -> float | None:
-    """Return a system value of one axis, in mm or degrees; None if it does not exist."""
+    """Return a system value of one axis in mm or degrees, or None if the value does not exist."""
     linear = axis in "XYZ"
     if number == 1 and group in {240, 270}:
         state.record_position_read()
@@ -301,9 +311,10 @@ def _axis_value(state: State, group: int, number: int, axis: str) -> float | Non
 
 
 def _compensation(state: State, number: int, index: int) -> float:
-    """Return the active radius, length or R2 in mm.
+    """Return the radius, length or R2 of the active tool, in mm.
 
-    With ``index`` 1, it is the table value; 2 adds the deltas of the table, and 3 also those of TOOL CALL.
+    With ``index`` 1, the result is the table value. With 2, it includes the deltas of the table, and with 3
+    also the deltas of TOOL CALL.
     """
     row = _row(state, state.modal.tool) or MillTool()
     plain, off, called = {

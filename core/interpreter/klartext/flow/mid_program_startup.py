@@ -1,6 +1,6 @@
-"""Start of a pass from a saved state: MDI, and mid-program startup (RESTORE POS).
+"""Start of a pass from a saved state, for MDI and for mid-program startup (RESTORE POS).
 
-The modal state comes from the saved pass, and the axis positions are the present ones.
+The modal state comes from the saved pass. The axis positions are the present positions.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from core.message import Message
 
 
 class InterpreterParts(NamedTuple):
-    """State of an interpreter. ``pending_line`` is a line that was read but not yet executed."""
+    """The state of an interpreter; ``pending_line`` is a line that was read but not yet executed."""
 
     state: State
     path_runner: PathRunner
@@ -38,7 +38,7 @@ class InterpreterParts(NamedTuple):
 
 
 def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...]) -> Checkpoint:
-    """Return the state in which the next line begins; another pass can continue from it."""
+    """Return the state at the start of the next line, from which another pass can continue."""
     state = parts.state
     x, _, z = state.tip_in_plane
     return Checkpoint(
@@ -54,7 +54,7 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...]) -> Chec
 
 
 def restore_state(state: State, start: PassStart, *, inch: bool) -> None:
-    """Set the present axis positions, tool, preset and machine functions in the state."""
+    """Update the state with the present axis positions, tool, preset and machine functions."""
     setup, point = state.setup, start.checkpoint
     assert setup.kinematics is not None  # otherwise, the pass was rejected
     state.kinematics = setup.kinematics
@@ -67,9 +67,9 @@ def restore_state(state: State, start: PassStart, *, inch: bool) -> None:
 
 
 def generate_mill_approach(state: State, start: PassStart) -> Iterator[Block]:
-    """Yield the blocks of the approach.
+    """Yield the blocks of the approach to the start position.
 
-    They are numbered so that later blocks have the same numbers as in a full run.
+    The blocks are numbered so that later blocks have the same numbers as in a full run.
     """
     wanted = state.modal
     if start.approach:
@@ -94,7 +94,7 @@ def generate_mill_approach(state: State, start: PassStart) -> Iterator[Block]:
 
 
 def _lines(state: State) -> Iterator[StateLine]:
-    """Yield the modal state, one line for each group of functions."""
+    """Yield the modal state as text, with one line for each group of functions."""
     modal, figure = state.modal, state.transformation
     yield StateLine("tool", f"T{modal.tool} {state.tool_axis}".rstrip() if modal.tool else "")
     yield StateLine(

@@ -1,4 +1,4 @@
-"""Conversion of words to numbers: Q parameters, formulas, input ranges, and lengths in mm."""
+"""Evaluation of words: Q parameters, formulas, input ranges, and conversion of lengths to mm."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ CONTROL_Q_PARAMETERS: dict[int, Callable[[State], float]] = {
 
 
 def held(state: State, kind: str, number: int) -> float | None:
-    """Return the value of a parameter; None if it has no value."""
+    """Return the value of a parameter, or None if it has no value."""
     if kind != "Q":
         return state.ql_and_qr_values.get((kind, number))
     kept = CONTROL_Q_PARAMETERS.get(number)
@@ -44,7 +44,7 @@ def held(state: State, kind: str, number: int) -> float | None:
 
 
 def read_parameter(state: State, kind: str, number: int, column: int) -> float:
-    """Return the value of a parameter. Raises ProgramError if it has no value."""
+    """Return the value of a parameter. Raises MissingValueError if it has no value."""
     found = held(state, kind, number)
     if found is None:
         raise MissingValueError(state.line_number, column, (kind, number))
@@ -52,7 +52,10 @@ def read_parameter(state: State, kind: str, number: int, column: int) -> float:
 
 
 def _predefined(state: State, number: int, column: int) -> float:
-    """Return the value of GLOBAL DEF for a cycle parameter. Raises ProgramError without one."""
+    """Return the GLOBAL DEF value of a cycle parameter.
+
+    Raises ProgramError if GLOBAL DEF does not define it.
+    """
     if number not in state.global_def_values:
         text = Message(
             "Q{number}=PREDEF, but no GLOBAL DEF defines Q{number2}.", number=number, number2=number
@@ -64,7 +67,7 @@ def _predefined(state: State, number: int, column: int) -> float:
 
 
 def value(state: State, formula: Formula) -> float:
-    """Return the value of a formula. Raises ProgramError if it has no value or is out of range."""
+    """Return the value of a formula. Raises ProgramError if the formula has no value or is out of range."""
 
     def parameter(asked: Parameter) -> float:
         assert isinstance(asked.number, int)  # Q parameters have no computed numbers
@@ -112,9 +115,9 @@ MAX_SPEED_RPM = 99_999.999
 def number(
     state: State, value: Value, description: str, maximum: float, minimum: float | None = None
 ) -> float:
-    """Return the number or the Q parameter value.
+    """Return the number of a word, or the value of its Q parameter.
 
-    Raises ProgramError outside ±``maximum`` or below ``minimum``.
+    Raises ProgramError if the value is outside ±``maximum`` or below ``minimum``.
     """
     found = value.number
     if value.parameter_number is not None:
@@ -142,17 +145,17 @@ def evaluate_coordinate(state: State, word: AxisWord) -> float:
 
 
 def evaluate_length_mm(state: State, value: Value | None, description: str) -> float:
-    """Return an unsigned length in mm; 0 without a value."""
+    """Return an unsigned length in mm, or 0 if ``value`` is None."""
     return (
         0.0 if value is None else number(state, value, description, MAX_COORDINATE, 0.0) * state.mm_per_unit
     )
 
 
 def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | None:
-    """Return F per minute in its unit, or None for a rapid; without a word, the active feed.
+    """Return F per minute in the program's unit, or None for a rapid.
 
-    Raises ProgramError without a feed, for a feed that is not above 0, and for a feed per revolution with the
-    spindle stopped.
+    Without an F word, the active feed is returned. Raises ProgramError if no feed is active, if the feed is
+    not above 0, or if it is a feed per revolution and the spindle is stopped.
     """
     found = read_programmed_feed(state, feed, column)
     return (
@@ -163,7 +166,11 @@ def evaluate_feed(state: State, feed: FeedWord | None, column: int) -> float | N
 
 
 def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tuple[float, str] | None:
-    """Return F as programmed and its base (U per revolution, Z per tooth); None for a rapid."""
+    """Return F as programmed and its base, or None for a rapid.
+
+    The base is U for a feed per revolution, Z for a feed per tooth, or an empty string for a feed per
+    minute.
+    """
     if feed is None:
         if state.feed is None:
             raise _missing(state, column, "No feed rate is active.", "Write F or FMAX.")

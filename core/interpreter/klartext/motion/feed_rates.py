@@ -1,6 +1,6 @@
 """Feeds per revolution or per tooth (FU, FZ, M136), and the plunging factor (M103).
 
-They are converted to feeds per minute with the spindle speed that is programmed at their block.
+These feeds are converted to feeds per minute with the spindle speed that is active in their block.
 """
 
 from __future__ import annotations
@@ -21,9 +21,11 @@ _TENTHS = 10.0  # F of an INCH program is in tenths of an inch
 
 
 def execute_feed_codes(state: State, codes: Sequence[MFunction]) -> None:
-    """Execute M136 and M137 (feed per revolution or per minute), and M103 (plunging factor in percent).
+    """Execute M136, M137 and M103.
 
-    M136 and M137 cancel the active feed, because its number has another unit. Raises ProgramError.
+    M136 selects a feed per revolution, M137 selects a feed per minute, and M103 sets the plunging factor in
+    percent. M136 and M137 cancel the active feed, because its number has another unit. Raises ProgramError
+    for an invalid factor.
     """
     for code in codes:
         if code.number in {136, 137}:
@@ -53,7 +55,7 @@ def _factor(state: State, code: MFunction) -> float:
 
 
 def convert_to_feed_per_minute(state: State, feed: float, base: str, column: int) -> float:
-    """Return a feed per minute in mm, or in tenths of an inch in an INCH program.
+    """Convert a feed to a feed per minute in mm, or in tenths of an inch in an INCH program.
 
     Raises ProgramError if the spindle is stopped, the number of teeth is unknown, or the feed is too high.
     """
@@ -89,7 +91,10 @@ def _teeth(state: State, column: int) -> int:
 
 
 def reduce_plunging_feed(state: State, feed: float | None, length: float, descent: float) -> float | None:
-    """Return the feed of a move of ``length`` that descends by ``descent``, reduced by the factor of M103."""
+    """Return the feed of a downward move, reduced by the factor of M103.
+
+    ``length`` is the length of the move, and ``descent`` is its downward Z component.
+    """
     if state.plunging_feed_factor is None or feed is None or descent <= POINT_TOLERANCE:
         return feed
     return feed * min(1.0, state.plunging_feed_factor * length / descent)
@@ -98,8 +103,9 @@ def reduce_plunging_feed(state: State, feed: float | None, length: float, descen
 def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float]) -> float:
     """Return the feed of a move of only rotary axes to ``targets``, in degrees/s.
 
-    F is in degrees/min. Under M116, F is in mm/min of the tip on the workpiece, calculated from its distance
-    to the axes at the start; on the axis line, degrees apply.
+    F is normally in degrees/min. Under M116, F is in mm/min of the tip relative to the workpiece. It is
+    then converted with the distance of the tip from the rotary axes at the start. If the tip is on the axis
+    line, F is in degrees/min.
     """
     way = {name: goal - state.rotary_angles[name] for name, goal in targets.items()}
     whole = math.hypot(*way.values())

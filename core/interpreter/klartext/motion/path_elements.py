@@ -1,7 +1,8 @@
 """Conversion of path functions to path elements in program coordinates, in mm and degrees.
 
-C, CR, CT, CP and CTP are arcs, with Z helices; LP and CP are relative to the pole (CC). With a pole in YZ or
-ZX, arcs are vertical, in the view with Y to the right and Z up, or Z to the right and X up.
+C, CR, CT, CP and CTP are arcs, or helices if Z also moves. LP and CP are relative to the pole (CC). With a
+pole in YZ or ZX, arcs are vertical. They are viewed with Y to the right and Z up, or with Z to the right
+and X up.
 """
 
 from __future__ import annotations
@@ -41,10 +42,11 @@ _MAX_TURNS = 1000
 
 @dataclass(frozen=True, slots=True)
 class PathElement:
-    """A line or ``arc`` from ``start`` to ``end``; ``feed`` is as programmed, None for a rapid.
+    """A line or arc from ``start`` to ``end``.
 
-    The arc is in the first two axes of ``axis_order``, usually X and Y. ``rotary`` are the continuous
-    targets of rotary axes. ``line_number`` and ``text`` are those of its block.
+    ``feed`` is the programmed feed, or None for a rapid. ``arc`` is in the first two axes of
+    ``axis_order``, usually X and Y. ``rotary`` contains the continuous target angles of rotary axes in
+    degrees. ``line_number`` and ``block_text`` are the line and the text of its block.
     """
 
     start: Vector
@@ -59,12 +61,14 @@ class PathElement:
 
     @property
     def is_vertical_arc(self) -> bool:
-        """Whether the element is a vertical arc, in YZ or ZX."""
+        """Return whether the element is a vertical arc in YZ or ZX."""
         return self.arc is not None and self.axis_order != XY
 
     @property
     def planar_element(self) -> Element | None:
-        """The element in X and Y; None without motion in X and Y, and for a vertical arc."""
+        """Return the element in X and Y, or None for a vertical arc and for an element without motion in X
+        and Y.
+        """
         if self.is_vertical_arc:
             return None
         if self.arc is not None:
@@ -74,7 +78,7 @@ class PathElement:
 
     @property
     def end_direction(self) -> Point | None:
-        """Unit vector in X and Y at the end; None without motion in X and Y."""
+        """Return the direction at the end as a unit vector in X and Y, or None without motion in X and Y."""
         flat = self.planar_element
         return None if flat is None else flat.end_direction
 
@@ -87,10 +91,11 @@ def make_elements(
     feed: float | None,
     rotary: Mapping[str, float],
 ) -> Iterator[PathElement]:
-    """Yield the element of a path function from ``start``, or several for more than one revolution.
+    """Yield the element of a path function from ``start``, or several elements for more than one
+    revolution.
 
-    ``before`` is the direction at the end of the previous path. Raises ProgramError if the element is
-    invalid.
+    ``previous_direction`` is the direction at the end of the previous element. Raises ProgramError if the
+    element is invalid.
     """
     node = _with_direction(state, node)
     order = state.pole_plane if node.function_name in _POLAR_FORMS else XY
@@ -112,7 +117,7 @@ _POLAR_FORMS = {"C", "CP"}
 
 
 def _with_direction(state: State, node: PathFunction) -> PathFunction:
-    """Return the path function with the last DR if C, CR or CP has none."""
+    """Return the path function with the last programmed DR if C, CR or CP has no DR."""
     if node.function_name not in {"C", "CR", "CP"}:
         return node
     state.rotation_direction = node.rotation_direction or state.rotation_direction
@@ -120,7 +125,10 @@ def _with_direction(state: State, node: PathFunction) -> PathFunction:
 
 
 def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
-    """Return the plane of the axes of CC; with a single axis, the plane may remain unchanged."""
+    """Return the plane that the axes of CC define.
+
+    If CC names only one axis, the plane remains unchanged if it contains this axis.
+    """
     named = {word.axis for word in node.axes}
     if len(named) < 2:
         return previous_plane if named and named <= {"XYZ"[column] for column in previous_plane[:2]} else XY
@@ -128,7 +136,9 @@ def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
 
 
 def compute_end_point(state: State, node: PathFunction, start: Vector) -> Vector:
-    """Return the end point of a path function, from its axes or from radius and angle about the pole."""
+    """Return the end point of a path function, from its axis words or from polar coordinates about the
+    pole.
+    """
     x, y, z = (_along(state, node.find_word(axis), at) for axis, at in zip("XYZ", start, strict=True))
     if node.find_word("PR") is None and node.find_word("PA") is None:
         return _paraxial(state, node, start, (x, y, z))
@@ -141,7 +151,7 @@ def compute_end_point(state: State, node: PathFunction, start: Vector) -> Vector
 def _paraxial(state: State, node: PathFunction, start: Vector, end: Vector) -> Vector:
     """Return the end point of a paraxial move with R+ or R-.
 
-    R+ extends the move along its axis by the tool radius, and R- shortens it, as in the manual.
+    As in the manual, R+ extends the move along its axis by the tool radius, and R- shortens the move.
     """
     if node.compensation not in {"+", "-"}:
         return end
@@ -173,7 +183,10 @@ def _along(state: State, word: AxisWord | None, at: float) -> float:
 
 
 def _polar(state: State, node: PathFunction, start: Vector) -> tuple[float, float]:
-    """Return radius (mm) and angle (degrees from X toward Y) of the end; missing values are unchanged."""
+    """Return the polar radius (mm) and angle (degrees from X toward Y) of the end point.
+
+    Values that are not programmed remain unchanged.
+    """
     cx, cy = read_pole(state, node)
     x, y, _ = to_plane_order(state.pole_plane, start)
     radius, angle = math.hypot(x - cx, y - cy), math.degrees(math.atan2(y - cy, x - cx))
@@ -190,7 +203,7 @@ def _polar(state: State, node: PathFunction, start: Vector) -> tuple[float, floa
 
 
 def _arc_about_pole(state: State, node: PathFunction, start: Point, end: Point, _: Point | None) -> Arc:
-    """Return the arc of C about the pole. Raises ProgramError if the end is not on the circle."""
+    """Return the arc of C about the pole. Raises ProgramError if the end point is not on the circle."""
     centre = read_pole(state, node)
     _demand_radius(state, node, math.dist(start, centre))
     _demand_on_circle(state, node, math.dist(start, centre), math.dist(end, centre))
@@ -202,7 +215,10 @@ def _arc_about_pole(state: State, node: PathFunction, start: Point, end: Point, 
 
 
 def _arc_by_radius(state: State, node: PathFunction, start: Point, end: Point, _: Point | None) -> Arc:
-    """Return the arc of CR: a positive radius is the shorter arc, a negative radius the longer one."""
+    """Return the arc of CR.
+
+    A positive radius selects the shorter arc, and a negative radius selects the longer arc.
+    """
     word = node.find_word("R")
     assert word is not None  # guaranteed by the reader
     radius = word_values.evaluate_coordinate(state, word)
@@ -229,7 +245,9 @@ def _arc_by_radius(state: State, node: PathFunction, start: Point, end: Point, _
 def _tangential(
     state: State, node: PathFunction, start: Point, end: Point, previous_direction: Point | None
 ) -> Arc | None:
-    """Return the arc of CT or CTP, tangent to the previous element; None for a straight line."""
+    """Return the arc of CT or CTP, tangent to the previous element, or None if the path is a
+    straight line.
+    """
     if previous_direction is None:
         text = "No move precedes {form}, so its starting direction is not defined."
         raise state.make_error(
@@ -259,7 +277,7 @@ _ARCS = {"C": _arc_about_pole, "CR": _arc_by_radius, "CT": _tangential, "CTP": _
 
 
 def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> Iterator[PathElement]:
-    """Yield the elements of CP: an angle about the pole of any number of revolutions, with a helix."""
+    """Yield the elements of CP, which rotates about the pole by any angle, with a helix if Z also moves."""
     order, centre = made.axis_order, read_pole(state, node)
     start = to_plane_order(order, made.start)
     radius = math.dist(start[:2], centre)
@@ -289,7 +307,7 @@ def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> It
 
 
 def _sweep(state: State, node: PathFunction, first: float) -> float:
-    """Return the angle of CP in degrees, positive counterclockwise.
+    """Return the angle of CP in degrees, which is positive for counterclockwise rotation.
 
     Raises ProgramError if IPA and DR conflict.
     """

@@ -59,7 +59,10 @@ _ROTATION_AXES = {"SPA": X_AXIS, "SPB": Y_AXIS, "SPC": Z_AXIS}
 
 
 def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
-    """Return the plane of a block. Raises ProgramError if it is not defined or cannot be reached."""
+    """Return the plane of a PLANE block.
+
+    Raises ProgramError if the plane is undefined or cannot be reached.
+    """
     if node.kind == "AXIAL":
         return _axial(state, node)
     frame = multiply_matrices(
@@ -80,9 +83,9 @@ def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
 
 
 def _note_swivel_direction(state: State, node: PlaneBlock, frame: Matrix) -> None:
-    """Note that the swivel direction depends on the start position of the table.
+    """Log a note that the swivel direction depends on the start position of the table.
 
-    The proof does not know this position.
+    The proof does not know the start position.
     """
     if len(find_reachable_solutions(state.kinematics, frame, state.rotary_angles)) > 1:
         text = (
@@ -94,7 +97,10 @@ def _note_swivel_direction(state: State, node: PlaneBlock, frame: Matrix) -> Non
 
 
 def _axial(state: State, node: PlaneBlock) -> ActivePlane:
-    """Return the plane of PLANE AXIAL: absolute or incremental axis angles, without the basic rotation."""
+    """Return the plane of PLANE AXIAL.
+
+    The axis angles are absolute or incremental and do not include the basic rotation.
+    """
     angles = state.target_angles
     for word in node.words:
         axis = state.kinematics.find_rotary_axis(word.axis)
@@ -165,13 +171,16 @@ def _spatial(state: State, node: PlaneBlock) -> Matrix:
 
 
 def _relative(state: State, node: PlaneBlock) -> Matrix:
-    """Return the rotation of PLANE RELATIV about an axis of the active plane, or of the workpiece system."""
+    """Return the rotation of PLANE RELATIV about an axis of the active plane or of the workpiece system."""
     (word,) = node.words
     return rotation_about(_ROTATION_AXES[word.axis], _angle(state, word))
 
 
 def _base(state: State, node: PlaneBlock) -> Matrix:
-    """Return the reference frame of the block: the basic rotation, or for RELATIV the active plane."""
+    """Return the reference frame of the block.
+
+    The reference frame is the active plane for PLANE RELATIV, and the basic rotation otherwise.
+    """
     relative = node.kind == "RELATIV" and state.active_plane is not None
     return (
         state.active_plane.frame
@@ -181,10 +190,10 @@ def _base(state: State, node: PlaneBlock) -> Matrix:
 
 
 def _transform_frame(state: State, node: PlaneBlock, frame: Matrix) -> Matrix:
-    """Return the frame in a system changed by TRANS MIRROR, ROTATION and SCALE: T F T⁻¹.
+    """Return the frame transformed by the active TRANS MIRROR, ROTATION and SCALE: T F T⁻¹.
 
-    The program in the plane is also transformed by T, so that p = T F q, the mirrored or rotated image of the
-    original plane. PLANE AXIAL specifies axis angles and is not changed.
+    T also transforms the program in the plane. The result p = T F q is therefore the mirrored or rotated
+    image of the original plane. PLANE AXIAL specifies axis angles and is not transformed.
     """
     figure = state.transformation
     if figure.is_identity:
@@ -214,9 +223,9 @@ LIMIT_CLEARANCE_MM = 0.001  # mm; distance of MB MAX from the software limit
 
 
 def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
-    """Yield the blocks of PLANE: the retract, if any, and a block of kind ``plane``.
+    """Yield the blocks of PLANE: the retract, if programmed, and a block of kind ``plane``.
 
-    Raises ProgramError before any change.
+    Raises ProgramError before the state changes.
     """
     _demand_possible(state, node)
     made = None if node.kind == "RESET" else make_working_plane(state, node)
@@ -241,14 +250,20 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
 
 
 def make_retract_block(state: State, distance_mm: float, feed: float | None) -> Block:
-    """Return a retract from the workpiece along the tool; ``feed`` is as programmed, None for a rapid."""
+    """Return the block of a retract from the workpiece along the tool axis.
+
+    ``feed`` is the programmed feed, or None for a rapid.
+    """
     goal = dict(zip(LINEAR_AXES, _raised(state, distance_mm), strict=True))
     rate = None if feed is None else state.convert_feed_to_mm_s(feed)
     return state.make_move_block(BlockKind.RAPID if rate is None else BlockKind.FEED, goal, rate)
 
 
 def compute_retract_length(state: State, retract_word: RetractWord | None) -> float:
-    """Return the length of MB in mm, or 0 without it; MB MAX ends just before the first software limit."""
+    """Return the length of the retract MB in mm, or 0 without MB.
+
+    MB MAX ends just before the first software limit.
+    """
     if retract_word is None:
         return 0.0
     if retract_word.distance is not None:
@@ -282,7 +297,7 @@ def _demand_possible(state: State, node: PlaneBlock) -> None:
 
 
 def _check_tool_axis(state: State, node: PlaneBlock) -> None:
-    """Raise ProgramError if a tilted plane has no tool axis; a plane that is not tilted needs none."""
+    """Raise ProgramError if the plane is tilted but no tool axis is defined."""
     if not state.tool_axis:
         text = "No TOOL CALL has defined a tool axis."
         raise state.make_error(node.column, TOOL_AXIS_MISSING, text, "Write TOOL CALL n Z before this block.")
@@ -295,7 +310,7 @@ def _raised(state: State, up: float) -> Vector:
 
 
 def _pivot(state: State, distance: float) -> Vector:
-    """Return the pivot point of MOVE in the machine-parallel system at the workpiece zero."""
+    """Return the pivot point of MOVE in the machine-parallel system with its origin at the workpiece zero."""
     place = state.kinematics.make_transform(state.rotary_angles, tool_length=state.tool_length_mm)
     return place.to_frame_point(_raised(state, -distance))
 
@@ -311,7 +326,11 @@ def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
 def _swivel(
     state: State, goal: Mapping[str, float], feed: float | None, pivot: Vector | None, distance: float
 ) -> Block:
-    """Return the block of kind ``plane``: only rotary axes, or with linear axes that hold the pivot point."""
+    """Return the block of kind ``plane``.
+
+    Only the rotary axes move, unless ``pivot`` is given. The linear axes then keep the tool at the pivot
+    point.
+    """
     rate = None if feed is None else feed / 60.0
     start = state.rotary_angles
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
@@ -322,7 +341,7 @@ def _swivel(
 
 
 def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
-    """Warn of a datum shift in a tilted system that another PLANE follows, which is a common mistake."""
+    """Log a warning if another PLANE follows a datum shift in a tilted system, which is a common mistake."""
     if plane is None or state.active_plane is None or state.shift == ORIGIN_POINT:
         return
     text = "The datum was shifted in the tilted coordinate system that is defined on line {line}."
@@ -340,7 +359,7 @@ def set_tcpm_active(state: State, *, active: bool) -> None:
 
 
 def move_with_rotary_axes(state: State, element: PathElement) -> Block:
-    """Return a straight move of the tip on the workpiece with a proportional move of the rotary axes.
+    """Return a straight move of the tip on the workpiece, with a proportional move of the rotary axes.
 
     The feed is in mm of the tip path, or in degrees if the tip does not move.
     """
@@ -373,7 +392,7 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
 
 
 def _parallel(state: State, point: Vector) -> Vector:
-    """Return a point of the working plane in the machine-parallel system at the workpiece zero, in mm."""
+    """Convert a point of the working plane to the machine-parallel system at the workpiece zero, in mm."""
     frame = (
         state.active_plane.frame if state.active_plane is not None else state.kinematics.workpiece_rotation
     )

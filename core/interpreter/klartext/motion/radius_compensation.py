@@ -1,7 +1,8 @@
 """Radius compensation with RL and RR, and approaches and departures with APPR and DEP.
 
 The tool center is one radius to the left or right of the contour. Without APPR, the tool moves straight to
-the point perpendicular to the start of the contour. It remains perpendicular to its end until R0 leads away.
+the point perpendicular to the start of the contour. At the end of the contour, the tool remains at the
+perpendicular point until a block with R0.
 """
 
 from __future__ import annotations
@@ -35,7 +36,9 @@ _MAX_CCA = 360.0
 
 
 class CompensatedContour:
-    """The elements of a contour, and the path of the tool center ``radius`` mm to its ``side``."""
+    """The elements of a contour, with the path of the tool center offset to one side by the tool radius in
+    mm.
+    """
 
     def __init__(self, elements: list[PathElement], side: str, tool_radius_mm: float) -> None:
         self._flats = [each for each in elements if each.planar_element is not None]
@@ -46,12 +49,12 @@ class CompensatedContour:
 
     @property
     def end(self) -> Point | None:
-        """End of the contour; None without motion in the plane."""
+        """Return the end point of the contour, or None without motion in the plane."""
         return self._flats[-1].end[:2] if self._flats else None
 
     @property
     def end_direction(self) -> Point | None:
-        """Direction at the end of the contour."""
+        """Return the direction at the end of the contour, or None without motion in the plane."""
         return self._flats[-1].end_direction if self._flats else None
 
     def _beside(self, left: float) -> list[OffsetPiece]:
@@ -70,7 +73,7 @@ class CompensatedContour:
             raise make_klartext_error(at.line_number, at.column, RADIUS_TOO_LARGE, text, hint) from None
 
     def generate_path(self, element: PathElement, start: Vector) -> Iterator[PathElement]:
-        """Yield the tool path along one element from ``here``, including an outside corner at its end."""
+        """Yield the tool path along one element from ``start``, including an outside corner at its end."""
         mine = self._pieces[id(element)]
         z0, z1 = element.start[2], element.end[2]
         if not mine:
@@ -93,9 +96,9 @@ def _along(element: PathElement, flat: Element, z0: float, z1: float) -> PathEle
 
 @dataclass(frozen=True, slots=True)
 class ContourEntry:
-    """A block that leads to a contour, from the tool position ``start`` to its first point ``at``.
+    """A block that leads from the tool position ``start`` to the first point of a contour.
 
-    ``side`` is L or R with the tool ``radius``, or empty without compensation; mm, in program coordinates.
+    ``side`` is L or R, or empty without compensation. All lengths are in mm, in program coordinates.
     """
 
     node: PathFunction
@@ -107,7 +110,7 @@ class ContourEntry:
 
 
 def plan_approach_path(state: State, entry: ContourEntry, direction: Point) -> Iterator[PathElement]:
-    """Yield the approach to a contour that begins in this direction (a unit vector)."""
+    """Yield the approach to a contour that starts in ``direction`` (a unit vector)."""
     beside = _offset_point(entry.contour_start, direction, entry.side, entry.radius_mm)
     made = PathElement(entry.start, entry.start, entry.feed, state.line_number, state.text, entry.node.column)
     form = entry.node.function_name.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
@@ -134,7 +137,9 @@ def plan_departure_path(
     radius: float,
     feed: float | None,
 ) -> Iterator[PathElement]:
-    """Yield the departure of DEP from a contour that ends ``here`` in this direction (a unit vector)."""
+    """Yield the departure of DEP from a contour that ends at ``contour_end`` in ``direction`` (a unit
+    vector).
+    """
     beside = _offset_point(contour_end, direction, side, radius)
     made = PathElement(beside, beside, feed, state.line_number, state.text, node.column)
     form = node.function_name.removeprefix("DEP ").replace("PL", "L")
@@ -156,9 +161,9 @@ def plan_departure_path(
 def _arc_in(
     state: State, entry: ContourEntry, direction: Point, offset_point: Vector, *, tangent: bool
 ) -> Arc:
-    """Return the arc that ends at the offset contour, in the direction of the contour.
+    """Return the approach arc, which ends at the offset contour in the direction of the contour.
 
-    Its angle is CCA, or it begins at a tangent line.
+    The angle of the arc is CCA, or the arc starts at a tangent line.
     """
     size, turn = _radius(state, entry)
     left = left_normal(direction)
@@ -175,10 +180,11 @@ def _arc_in(
 
 
 def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
-    """Return the radius of the center's arc, and 1 if its center is on the left, else -1.
+    """Return the radius of the arc of the tool center, and 1 if the arc center is on the left, or -1
+    otherwise.
 
-    A positive R is on the side of the tool, a negative R on the side of the workpiece; without compensation,
-    the center is on the left.
+    With a positive R, the arc is on the side of the tool; with a negative R, it is on the side of the
+    workpiece. Without compensation, the arc center is on the left.
     """
     word = entry.node.find_word("R")
     assert word is not None
@@ -201,7 +207,7 @@ def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
 def _tangent_point(
     state: State, entry: ContourEntry, center: Point, size: float, *, clockwise: bool
 ) -> Point:
-    """Return the point at which a line from the start of the entry is tangent to the circle."""
+    """Return the point where a line from the start of the entry is tangent to the circle."""
     if math.dist(entry.start[:2], center) < size:
         text = "No path is possible for {form} because the tool is inside the arc of this move."
         hint = "Start farther from the contour, or reduce R."
@@ -212,7 +218,7 @@ def _tangent_point(
 
 
 def _offset_point(point: Vector, direction: Point, side: str, radius: float) -> Vector:
-    """Return the tool center perpendicular to a point of the contour."""
+    """Return the position of the tool center perpendicular to a point of the contour."""
     if not side:
         return point
     left = left_normal(direction)
@@ -221,9 +227,9 @@ def _offset_point(point: Vector, direction: Point, side: str, radius: float) -> 
 
 
 def _outward_normal(direction: Point, side: str) -> Point:
-    """Return the direction perpendicular to the contour on the tool side.
+    """Return the unit vector perpendicular to the contour on the tool side.
 
-    Without compensation, it is to the left.
+    Without compensation, it points to the left.
     """
     left = left_normal(direction)
     return (-left[0], -left[1]) if side == "R" else left

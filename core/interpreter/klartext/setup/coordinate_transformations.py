@@ -1,6 +1,6 @@
 """Datum shift, mirroring, rotation and scaling (TRANS, cycles 7, 8, 10 and 11).
 
-The datum shift is as programmed, independent of the other transformations, which act about the datum.
+Mirroring, rotation and scaling act about the datum. They do not change a programmed datum shift.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ MAX_TABLE_ROW = 999_999.0
 
 
 def execute_datum_shift(state: State, node: DatumShift) -> None:
-    """Execute TRANS DATUM or cycle 7, in the workpiece system or within the active plane."""
+    """Execute TRANS DATUM or cycle 7, which shifts the datum in the workpiece system or in the active
+    plane.
+    """
     if node.table_row is not None:
         node = DatumShift(_read_table_row(state, node.table_row, node.column))
     if node.is_reset:
@@ -42,7 +44,10 @@ def execute_datum_shift(state: State, node: DatumShift) -> None:
 
 
 def _read_table_row(state: State, row: Value, column: int) -> tuple[AxisWord, ...]:
-    """Return the axis words of a row of the datum table. Raises ProgramError without the table or row."""
+    """Return the axis words of a row of the datum table.
+
+    Raises ProgramError if the table or row is missing.
+    """
     if state.datum_table_rows is None:
         text = "No datum table is selected."
         raise state.make_error(
@@ -69,7 +74,10 @@ def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
 
 
 def execute_transformation(state: State, node: CoordinateTransform) -> None:
-    """Execute TRANS MIRROR, ROTATION or SCALE, or cycles 8, 10 and 11. Raises ProgramError."""
+    """Execute TRANS MIRROR, ROTATION or SCALE, or cycle 8, 10 or 11.
+
+    Raises ProgramError for invalid values.
+    """
     figure = state.transformation
     if node.kind == "MIRROR":
         state.transformation = replace(figure, mirrored_axes=node.axes)

@@ -1,4 +1,4 @@
-"""M functions: their effect, before or after the motion of their block."""
+"""Execution of M functions, before or after the motion of their block."""
 
 from __future__ import annotations
 
@@ -69,10 +69,7 @@ _ADVICE = {
 
 
 def check(state: State, codes: Sequence[MFunction]) -> None:
-    """Raise ProgramError for codes that this machine lacks and for conflicts.
-
-    Codes that M128 excludes are also errors.
-    """
+    """Raise ProgramError for M functions that this machine lacks, that conflict, or that M128 excludes."""
     limits = state.setup.limits
     known = (
         CODES_BEFORE_MOTION
@@ -125,7 +122,7 @@ def check(state: State, codes: Sequence[MFunction]) -> None:
 
 
 def _check_datum(state: State, code: MFunction, codes: Sequence[MFunction]) -> None:
-    """Raise ProgramError for M91 or M92 while M128 is active, or for both in one block."""
+    """Raise ProgramError for M91 or M92 while M128 is active, or for M91 and M92 in one block."""
     text = "M{number} is not allowed while M128 is active."
     hint = "Switch M128 off with M129 before this block."
     state.check(not state.is_tcpm_active, code.column, NOT_ALLOWED_WITH_M128, text, hint, number=code.number)
@@ -135,7 +132,9 @@ def _check_datum(state: State, code: MFunction, codes: Sequence[MFunction]) -> N
 
 
 def read_machine_datum(state: State, codes: Sequence[MFunction]) -> Mapping[str, float] | None:
-    """Return the machine positions to which M91 or M92 refers; None for the workpiece zero."""
+    """Return the machine positions to which M91 or M92 refers, or None if words refer to the workpiece
+    zero.
+    """
     numbers = {code.number for code in codes}
     if M92 in numbers:
         return {axis: points[0] for axis, points in state.setup.limits.fixed_points.items() if points}
@@ -143,7 +142,7 @@ def read_machine_datum(state: State, codes: Sequence[MFunction]) -> Mapping[str,
 
 
 def execute_before_motion(state: State, codes: Sequence[MFunction]) -> Iterator[Block]:
-    """Yield the blocks of the codes that act before the motion."""
+    """Yield the blocks of the M functions that act before the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in _TURNS:
@@ -163,7 +162,7 @@ def execute_before_motion(state: State, codes: Sequence[MFunction]) -> Iterator[
 
 
 def execute_after_motion(state: State, codes: Sequence[MFunction], comment: str) -> Iterator[Block]:
-    """Yield the blocks of the codes that act after the motion."""
+    """Yield the blocks of the M functions that act after the motion."""
     for code in codes:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
@@ -187,7 +186,10 @@ def execute_after_motion(state: State, codes: Sequence[MFunction], comment: str)
 
 
 def execute_program_end(state: State) -> Block:
-    """Return the block of M2, M30 or END PGM, which resets the plane; rotary axes do not move."""
+    """Return the block of M2, M30 or END PGM.
+
+    The block resets the plane without moving the rotary axes.
+    """
     state.is_tcpm_active = False
     state.transformation = ProgramTransform()
     state.uses_shorter_rotation = True
@@ -221,7 +223,7 @@ def _output(state: State, name: str, on: bool) -> Block:
 
 
 def _retract(state: State, code: MFunction) -> Iterator[Block]:
-    """Yield the retract of M140 along the tool, at its feed or in rapid."""
+    """Yield the retract of M140 along the tool axis, at the programmed feed or at rapid."""
     assert code.retract is not None
     up = compute_retract_length(state, code.retract)
     feed = word_values.evaluate_feed(state, code.feed, code.column) if code.feed is not None else None

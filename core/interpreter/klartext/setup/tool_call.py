@@ -1,4 +1,4 @@
-"""TOOL DEF and TOOL CALL: tool dimensions, tool change, tool axis, speed and feed."""
+"""Execution of TOOL DEF and TOOL CALL: tool dimensions, tool change, tool axis, speed and feed."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ from core.tool_edges import FIRST_NAMED_TOOL, NamedTool
 
 
 def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterator[Block]:
-    """Yield the blocks of TOOL CALL. The axes do not move; the tip position follows from the new length.
+    """Yield the blocks of TOOL CALL.
 
-    Raises ProgramError before any change.
+    The axes do not move, but the tip position changes with the new tool length. Raises ProgramError before
+    the state changes.
     """
     changes = node.tool is not None or node.length is not None or node.radius is not None
     if state.is_tcpm_active and changes:
@@ -58,7 +59,10 @@ def execute_tool_call(state: State, node: ToolCall, usage: ToolUsage) -> Iterato
 
 
 def define_tool(state: State, node: ToolDefinition) -> None:
-    """Execute TOOL DEF, whose length and radius have priority over the tool table. Raises ProgramError."""
+    """Execute TOOL DEF, whose length and radius have priority over the tool table.
+
+    Raises ProgramError for an invalid length or radius.
+    """
     if node.length is None and node.radius is None:
         return  # the block only prepares the tool
     length = _oversize(state, node.length, "L", word_values.MAX_COORDINATE)
@@ -66,7 +70,10 @@ def define_tool(state: State, node: ToolDefinition) -> None:
 
 
 def _number(state: State, tool: int | str | Value | None, column: int) -> int | None:
-    """Return the number of the called tool; a name must be in the program or in the tool table."""
+    """Return the number of the called tool.
+
+    A tool name must be defined in the program or in the tool table.
+    """
     if isinstance(tool, Value):
         return round(word_values.number(state, tool, "TOOL CALL", MAX_TOOL_NUMBER, 0.0))
     if not isinstance(tool, str):
@@ -87,7 +94,7 @@ def _oversize(state: State, value: Value | None, what: str, most: float = 99.999
 def _change(
     state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
 ) -> Iterator[Block]:
-    """Yield the blocks of a tool change: spindle stop, tool, and a stop for a manual change."""
+    """Yield the blocks of a tool change: spindle stop, tool, and a program stop for a manual change."""
     before = state.modal.tool
     if state.modal.spindle:
         state.modal = state.modal._replace(spindle=0, oriented=None)
@@ -104,7 +111,10 @@ def _change(
 def _measure(
     state: State, tool: int, delta_length_mm: float, delta_radius_mm: float, usage: ToolUsage, column: int
 ) -> None:
-    """Set the tool dimensions from TOOL DEF or from its offset; 0 with a warning if not measured."""
+    """Set the tool dimensions from TOOL DEF or from the tool offset.
+
+    If the tool has not been measured, the dimensions are 0 and a warning is logged.
+    """
     state.tool_deltas_mm = delta_length_mm, delta_radius_mm
     if 0 < tool < FIRST_NAMED_TOOL:
         usage.record_tool(tool)
@@ -116,7 +126,7 @@ def _measure(
 
 
 def update_tool_dimensions(state: State) -> None:
-    """Set length and radius of the active tool from the present TOOL DEF or tool table."""
+    """Update the length and radius of the active tool from the present TOOL DEF or tool table."""
     tool, (longer, thicker) = state.modal.tool, state.tool_deltas_mm
     offset = state.setup.tools.get(tool)
     table = (offset.z, offset.nose_radius) if tool and offset is not None else (0.0, 0.0)
@@ -126,7 +136,10 @@ def update_tool_dimensions(state: State) -> None:
 
 
 def find_tool_radius_mm(state: State, tool: int) -> float | None:
-    """Return the radius of a tool without deltas in mm, from TOOL DEF or the table; None if not defined."""
+    """Return the radius of a tool without deltas in mm, or None if it is undefined.
+
+    The radius comes from TOOL DEF or the tool table.
+    """
     if (told := _defined(state, tool)) is not None:
         return told[1]
     offset = state.setup.tools.get(tool)
@@ -138,7 +151,7 @@ def _defined(state: State, tool: int) -> tuple[float, float] | None:
 
 
 def format_tool(tool: int) -> str:
-    """Return the tool number or name as the program writes it."""
+    """Return the tool number or name in the notation of the program."""
     return f'"{tool.name}"' if isinstance(tool, NamedTool) else f"{tool}"
 
 
@@ -149,9 +162,9 @@ def _name_of(state: State, tool: int) -> str:
 
 
 def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float:
-    """Return the speed in rpm for S(VC = 120) in m/min at the tool radius.
+    """Return the spindle speed in rpm for a cutting speed such as S(VC = 120) in m/min at the tool radius.
 
-    Raises ProgramError without a radius.
+    Raises ProgramError if the tool radius is unknown.
     """
     assert node.cutting_speed is not None
     speed = word_values.number(state, node.cutting_speed, "VC", word_values.MAX_SPEED_RPM, 0.0)

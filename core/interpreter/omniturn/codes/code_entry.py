@@ -1,4 +1,4 @@
-"""Types of the code table: words, meanings of F and S, limits, and conditions that reject a code."""
+"""Types of the code table: entries, word rules, meanings of F and S, limits, and rejecting conditions."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EXAMPLE_TAIL = "G94F300X.6Z1\nM30\n"
 
 
 class ActionKind(Enum):
-    """Kind of action of a code, which determines when it is executed; see ``block_execution``."""
+    """Kind of action of a code, which determines when the code is executed (see ``block_execution``)."""
 
     PLAIN = auto()  # a line without a one-shot code: a straight move or no move
     WORD = auto()  # a letter
@@ -54,7 +54,7 @@ class SMeaning(Enum):
 
 
 class WordLimit(Enum):
-    """A limit from the machine file or the modal state; its value is the text on the reference page."""
+    """A limit from the machine file or the modal state; the enum value is its text on the reference page."""
 
     FEED = "the machine's maximum feed"
     ACTIVE_FEED = (
@@ -72,7 +72,7 @@ MAX_FEEDS_PER_REV = tuple(inches * units.MM_PER_INCH for inches in (0.2, 1.0, 2.
 
 
 class RejectCondition(Enum):
-    """A condition that can reject a code; its value is the text on the reference page."""
+    """A condition that can reject a code; the enum value is its text on the reference page."""
 
     WITH_OTHER_WORDS = "the line contains other words"
     WITH_FEED = "the line contains F, G94 or G95 and is not the first line of the program"
@@ -102,14 +102,15 @@ class RejectCondition(Enum):
 
 
 class CodeEntryError(CodedError, ValueError):
-    """A row of the code table contradicts itself."""
+    """Error for an entry of the code table that contradicts itself."""
 
 
 class ErrorTemplate(NamedTuple):
-    """Template of a diagnostic: code, message, remedy, and location (letter, column, or "" for the code).
+    """Template of a diagnostic, with its code, message, remedy and location.
 
-    The texts may contain the placeholders ``diagnostic_code``, ``number``, ``make_letter_entry``,
-    ``description`` and ``word``, and further placeholders whose values the caller supplies.
+    The location is a word letter, a column, or an empty string for the code itself. The texts may contain
+    the placeholders ``code``, ``number``, ``name``, ``letter`` and ``word``, and further placeholders whose
+    values the caller supplies.
     """
 
     diagnostic_code: str
@@ -120,11 +121,12 @@ class ErrorTemplate(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class WordRule:
-    """Meaning of a word on the line of a code, and the range of its number, from ``minimum`` to ``most``.
+    """Meaning of a word on the line of a code, and the range of its number.
 
-    With ``excludes_minimum``, the number must exceed ``minimum``. ``missing_error`` is the error without the
-    word, ``invalid_error`` the error for an invalid number, and ``too_large_error`` a separate error for a
-    number above the limit. ``bare_value`` is the value of the letter without a number.
+    The range is from ``minimum`` to ``maximum``. With ``excludes_minimum``, the number must exceed
+    ``minimum``. ``missing_error`` is the error if the word is missing, and ``invalid_error`` is the error
+    for an invalid number. ``too_large_error`` is a separate error for a number above the limit.
+    ``bare_value`` is the value of the letter without a number.
     """
 
     description: str
@@ -143,7 +145,10 @@ class WordRule:
     )
 
     def find_error(self, number: float, limit: float = inf) -> ErrorTemplate | None:
-        """Return the error for a number, or None. ``most`` is the present value of a ``WordLimit``."""
+        """Return the error for a number, or None if the number is valid.
+
+        ``limit`` is the present value if the maximum is a ``WordLimit``.
+        """
         too_small = number < self.minimum or (self.excludes_minimum and number == self.minimum)
         if too_small or (self.is_nonzero and number == 0) or (self.is_whole and number % 1):
             return self.invalid_error
@@ -152,7 +157,7 @@ class WordRule:
 
     @property
     def errors(self) -> tuple[ErrorTemplate, ...]:
-        """All errors of this rule."""
+        """Return all errors that this rule defines."""
         said = (
             self.missing_error,
             self.no_number_error,
@@ -164,7 +169,10 @@ class WordRule:
 
 
 class WordGroup(NamedTuple):
-    """A set of words of which a line has at most one, or at least one, and the error otherwise."""
+    """A group of words with the error for a line that violates the rule of the group.
+
+    A line must have at least one of these words, or may have at most one.
+    """
 
     letters: tuple[str, ...]
     refusal: ErrorTemplate
@@ -172,14 +180,15 @@ class WordGroup(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class CodeEntry:
-    """Entry of one code. ``example`` are lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``; ``subroutine``
-    follows the end.
+    """Entry of one code in the code table.
 
-    ``allowed_words`` are the permitted words other than G and M. ``rules`` limit their numbers,
-    ``required_words`` and ``exclusive_words`` specify required and exclusive words, and
-    ``reject_conditions`` lists the conditions that reject the code, in the order of the checks.
-    ``other_diagnostic_codes`` are diagnostic codes of checks that need geometry, other lines or the program
-    structure. Raises CodeEntryError if words, rules and the meaning of F contradict each other.
+    ``example`` contains the program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``; ``subroutine``
+    contains the lines after the program end. ``allowed_words`` are the permitted words other than G and M.
+    ``rules`` limit the numbers of these words, and ``required_words`` and ``exclusive_words`` specify which
+    words are required or exclude each other. ``reject_conditions`` lists the conditions that reject the
+    code, in the order of the checks. ``other_diagnostic_codes`` are the diagnostic codes of checks that
+    need geometry, other lines or the program structure. Raises CodeEntryError if words, rules and the
+    meaning of F contradict each other.
     """
 
     name: str
@@ -223,24 +232,24 @@ class CodeEntry:
 
     @property
     def entry_errors(self) -> tuple[ErrorTemplate, ...]:
-        """The errors whose messages are in the entry."""
+        """Return the errors whose messages are in this entry."""
         together = (*self.exclusive_words, *((self.required_words,) if self.required_words else ()))
         of_words = (each for rule in self.rules.values() for each in rule.errors)
         return (*self.reject_conditions.values(), *of_words, *(each.refusal for each in together))
 
     @property
     def diagnostic_codes(self) -> frozenset[str]:
-        """All diagnostic codes of errors and warnings for this code."""
+        """Return all diagnostic codes of the errors and warnings for this code."""
         return self.other_diagnostic_codes | {each.diagnostic_code for each in self.entry_errors}
 
     @property
     def example_program(self) -> str:
-        """The example as a complete program."""
+        """Return the example as a complete program."""
         return f"{EXAMPLE_HEAD}{self.example}\n{EXAMPLE_TAIL}{self.subroutine}"
 
 
 def names(text: str) -> frozenset[str]:
-    """Return a set of names from a text with blanks between them."""
+    """Return the set of names in a space-separated text."""
     return frozenset(text.split())
 
 

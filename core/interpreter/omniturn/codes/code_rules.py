@@ -1,7 +1,7 @@
-"""Rules of the code table applied to a line: ranges of words and conditions that reject a code.
+"""Application of the code table's rules to a line: ranges of words, and conditions that reject a code.
 
-The entry (``code_table``) has the messages and remedies. The function that executes a code calls these checks
-when it needs a word.
+Messages and remedies are in the entries of ``code_table``. The functions that execute codes call these
+checks when they need a word.
 """
 
 from __future__ import annotations
@@ -29,7 +29,10 @@ _ROUNDING = 1 + 1e-9
 def refused(
     statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **told: object
 ) -> ProgramError:
-    """Return the error to raise for a refusal; ``told`` has the values of further placeholders."""
+    """Return the error for an error template.
+
+    ``told`` contains the values of further placeholders.
+    """
     told = {
         "code": code.name,
         "number": code.name[1:],
@@ -47,9 +50,9 @@ def refused(
 
 
 def number(state: State, statement: Statement, letter: str, code: CodeEntry | None = None) -> float | None:
-    """Return the number of a word as written, checked by the rule of the line's code; None without the word.
+    """Return the number of a word as written, or None if the line lacks the word.
 
-    Raises ProgramError if the rule rejects the number.
+    Raises ProgramError if the rule of the line's code rejects the number.
     """
     code = code or statement.code_entry
     rule, word = code.rules[letter], statement.words.get(letter)
@@ -67,10 +70,10 @@ def check_value(
     *,
     extra_remedy: str = "",
 ) -> float | None:
-    """Return a converted number (mm, rounded, unsigned) after checking it by the rule of the line's code.
+    """Check a converted number by the rule of the line's code, and return it.
 
-    ``extra_remedy`` is another remedy for a number above the limit. Raises ProgramError if the rule rejects
-    the number.
+    The number is converted to mm, rounded, or without its sign. ``extra_remedy`` is another remedy for a
+    number above the limit. Raises ProgramError if the rule rejects the number.
     """
     code = code or statement.code_entry
     rule, word = code.rules[letter], statement.words.get(letter)
@@ -99,7 +102,7 @@ def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None)
 
 
 def get_limit(state: State, maximum: WordLimit) -> float:
-    """Return the present value of a limit: mm/s or mm/rev for feeds, rpm for speeds."""
+    """Return the present value of a limit, in mm/s or mm/rev for feeds and in rpm for speeds."""
     return _LIMITS[maximum](state)
 
 
@@ -127,7 +130,7 @@ _LIMITS: dict[WordLimit, Callable[[State], float]] = {
 
 
 def check_word_groups(statement: Statement, code: CodeEntry) -> None:
-    """Raise ProgramError if a line has none of the required words, or two that exclude each other."""
+    """Raise ProgramError if a line has none of the required words, or two words that exclude each other."""
     if code.required_words is not None and statement.words.keys().isdisjoint(code.required_words.letters):
         raise refused(statement, code, code.required_words.refusal)
     for letters, refusal in code.exclusive_words:
@@ -139,9 +142,10 @@ def check_word_groups(statement: Statement, code: CodeEntry) -> None:
 def check_conditions(
     state: State, statement: Statement, code: CodeEntry, *only: RejectCondition, word: Word | None = None
 ) -> None:
-    """Raise ProgramError for the first condition that rejects a code; ``only`` restricts the conditions.
+    """Raise ProgramError for the first condition that rejects a code.
 
-    ``word`` is the location of the error if it is not the code itself.
+    If ``only`` is not empty, only its conditions are checked. ``word`` is the location of the error if it
+    is not the code itself.
     """
     for when, refusal in code.reject_conditions.items():
         if (not only or when in only) and _CONDITION_CHECKS[when](state, statement, code):

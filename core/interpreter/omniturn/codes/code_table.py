@@ -1,10 +1,11 @@
-"""Table of all OmniTurn codes, one entry each: form, words, meaning of F, group, limits and errors.
+"""Table of all OmniTurn codes, with one entry for each code.
 
-The entries are in ``move_codes``, ``cycle_codes`` and ``flow_codes``. A code without an entry does not exist.
-``handler`` names the function that executes the code, as ``folder.file:name`` in the package of this dialect.
+An entry contains the form, words, meaning of F, group, limits and errors of a code. The entries are in
+``move_codes``, ``cycle_codes`` and ``flow_codes``. Codes without an entry do not exist. ``handler`` is the
+name of the function that executes the code, as ``folder.file:name`` in the package of this dialect.
 ``action_kind`` determines the order of the actions on a line. An invalid entry raises an error when the
 table is loaded, or fails ``tests/interpreter/test_code_table.py``. ``language_page`` generates
-``docs/language.md`` from this table, and its examples are proved.
+``docs/language.md`` from this table. The examples in the table are proved.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ FLOW_CODES = {
 
 
 def load_handler(code: CodeEntry) -> Callable[..., Any]:
-    """Return the function that executes a code. Its module is imported on first use."""
+    """Return the function that executes a code, and import its module on first use."""
     return _function(code.handler)
 
 

@@ -49,7 +49,7 @@ with the code.
 
 
 def render_language_reference() -> str:
-    """Return the text of ``docs/language.md``."""
+    """Return the text of the page ``docs/language.md``."""
     anchors: set[str] = set()
     chapters = "".join(
         f"\n## {title}\n\n" + "".join(_anchor(code, anchors) + _entry(code) for code in codes)
@@ -72,9 +72,9 @@ def _numbers() -> str:
 
 
 def _anchor(entry: CodeEntry, anchors: set[str]) -> str:
-    """Return the anchor of a code, such as ``#g75``, before its first entry.
+    """Return the HTML anchor of a code, such as ``#g75``, for its first entry.
 
-    For its other entries, the text is empty.
+    The text is empty for further entries of the same code.
     """
     name = re.sub(r"[^a-z0-9]", "", entry.name.lower())
     if not name or name in anchors:
@@ -94,7 +94,9 @@ def _entry(entry: CodeEntry) -> str:
 
 
 def _rules(entry: CodeEntry) -> list[str]:
-    """Return the rules of an entry: limits of its words, conditions that reject it, and further findings."""
+    """Return the rules of an entry: limits of its words, conditions that reject the code, and other
+    findings.
+    """
     rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
     if entry.required_words is not None:
         letters, refusal = entry.required_words

@@ -1,4 +1,4 @@
-"""Code book of OmniTurn, generated from its code table."""
+"""Generator of the OmniTurn code book from the code table."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _PLAIN = {
 
 
 def build_code_book() -> CodeBook:
-    """Return the code book with all entries of the table by chapter."""
+    """Return the code book with all entries of the code table, grouped by chapter."""
     chapters = tuple((title, tuple(map(_entry, codes))) for title, codes in CODE_CHAPTERS)
     meanings = dict(each for _, codes in CODE_CHAPTERS for code in codes for each in _meanings(code))
     return CodeBook(chapters, EXAMPLE_HEAD, EXAMPLE_TAIL, "(", _PLAIN | meanings, r"[A-Z](?=n|O|$)")
@@ -58,7 +58,9 @@ def _meanings(code: CodeEntry) -> Iterator[tuple[str, str]]:
 
 
 def _range(rule: WordRule) -> str:
-    """Return the range of a word as text if the entry has both limits; otherwise an empty text."""
+    """Return the range of a word as text, or an empty string unless the rule has a fixed minimum and
+    maximum.
+    """
     most = rule.maximum
     if isinstance(most, WordLimit) or not (isfinite(most) and isfinite(rule.minimum)):
         return ""

@@ -1,4 +1,4 @@
-"""Common functions of all canned cycles: their checks, and the elementary blocks of their motions."""
+"""Common functions of all canned cycles: their checks, and the elementary blocks of their motion."""
 
 from __future__ import annotations
 
@@ -24,23 +24,30 @@ _TOLERANCE_MM = 1e-9  # mm
 
 
 def get_cycle_code(statement: Statement) -> str:
-    """Return the code of the cycle for messages, such as G75."""
+    """Return the code of the cycle as text for messages, such as G75."""
     return f"G{statement.one_shot_code}"
 
 
 def check_ready(state: State, statement: Statement) -> None:
-    """Raise ProgramError if the start point or feed is unknown, or if nose compensation is active."""
+    """Raise ProgramError if a cycle cannot start.
+
+    A cycle cannot start if the start point or the feed is unknown, or if nose compensation is active.
+    """
     check_conditions(state, statement, statement.code_entry)
 
 
 def read_length_mm(state: State, statement: Statement, letter: str) -> float:
-    """Return a length word in mm, or 0 without the word. Raises ProgramError if its rule rejects it."""
+    """Return a length word in mm, or 0 if the line lacks the word.
+
+    Raises ProgramError if the rule of the word rejects its number.
+    """
     return check_value(state, statement, letter, round_to_resolution(state, statement, letter)) or 0.0
 
 
 def check_pass_count(statement: Statement, letter: str, count: int, description: str) -> None:
-    """Raise ProgramError if a cycle has too many passes; ``description`` is the plural noun for the
-    message.
+    """Raise ProgramError if a cycle has too many passes.
+
+    ``description`` is the plural noun for the passes in the message.
     """
     if count > MAX_PASSES:
         raise statement.make_error(
@@ -57,9 +64,10 @@ def check_pass_count(statement: Statement, letter: str, count: int, description:
 
 
 def make_move_blocks(state: State, statement: Statement, moves: Sequence[CycleMove]) -> Iterator[Block]:
-    """Yield the motions as blocks, without those of zero length. All are checked before the first is yielded.
+    """Yield the motions as blocks, without motions of zero length.
 
-    Raises ProgramError without a valid feed, or if the feed is per revolution and the spindle is stopped.
+    All motions are checked before the first block is yielded. Raises ProgramError without a valid feed, or
+    for a feed per revolution with the spindle stopped.
     """
     kept: list[CycleMove] = []
     at = state.x, state.z

@@ -15,7 +15,10 @@ _ROUNDING_TOLERANCE = 1e-6  # of a peck; tolerance for the rounding of decimal f
 
 
 def plan_drilling(state: State, statement: Statement) -> list[CycleMove]:
-    """Return the motions of G81: feed to Z, rapid to the start. Raises ProgramError for invalid words."""
+    """Return the motions of G81: a feed move to Z, and a rapid back to the start.
+
+    Raises ProgramError for invalid words.
+    """
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
     depth = _depth(state, statement)
@@ -23,10 +26,11 @@ def plan_drilling(state: State, statement: Statement) -> list[CycleMove]:
 
 
 def plan_pecking(state: State, statement: Statement) -> list[CycleMove]:
-    """Return the motions of G83: pecks of K with a retract to R and a return to C above the last depth.
+    """Return the motions of G83, which drills in pecks of depth K.
 
-    The last peck drills the remaining depth. The cycle ends at the start point. Raises ProgramError for
-    invalid words.
+    After each peck, the tool retracts to R and returns to the distance C above the last depth. The last
+    peck drills the remaining depth. The cycle ends at the start point. Raises ProgramError for invalid
+    words.
     """
     moves = _position(state, statement)
     x = moves[-1].x if moves else state.x
@@ -58,7 +62,7 @@ def plan_pecking(state: State, statement: Statement) -> list[CycleMove]:
 
 
 def _position(state: State, statement: Statement) -> list[CycleMove]:
-    """Return the move to the X position of the hole; an empty list without X."""
+    """Return the move to the X position of the hole, or an empty list if X is not programmed."""
     x = round_to_resolution(state, statement, "X")
     if x is None:
         return []
@@ -82,7 +86,7 @@ def _depth(state: State, statement: Statement) -> float:
 
 
 def _retract(state: State, statement: Statement, first: float) -> float:
-    """Return the retract position in Z (R), or the start point without R."""
+    """Return the Z position of the retract from R, or of the start point without R."""
     r = round_to_resolution(state, statement, "R")
     if r is None:
         return state.z
@@ -94,7 +98,7 @@ def _retract(state: State, statement: Statement, first: float) -> float:
 
 
 def _rate(state: State, statement: Statement) -> float:
-    """Return the rate of retract and return moves (L) in mm/s."""
+    """Return the feed rate of the retract and return moves (L) in mm/s."""
     value = statement.get_value("L")
     if value is None:
         return min(_RETRACT_RATE, state.setup.limits.max_feed)

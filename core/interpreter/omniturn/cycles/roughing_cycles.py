@@ -1,6 +1,6 @@
-"""Roughing cycles G74 (box) and G75, G78 (contour), in passes parallel to Z.
+"""Roughing cycles G74 (box), G75 and G78 (contour), in passes parallel to Z.
 
-In lines that describe a contour, only the words that define the geometry have an effect.
+In the lines that describe a contour, only the words that define geometry have an effect.
 """
 
 from __future__ import annotations
@@ -55,7 +55,8 @@ _CORNERS = frozenset({"C", "R"})
 
 
 def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
-    """Return the contour from its first point on, in mm in the frame of the cycle's line ``statement``.
+    """Return the contour from its first point, in mm in the coordinate frame of the cycle's line
+    ``statement``.
 
     The active state does not change. Raises ProgramError for a line that is not allowed in a contour.
     """
@@ -71,7 +72,7 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
 
 
 class _Reader:
-    """Reader of contour lines, which works on a copy of the state so that changes end with the contour."""
+    """Reader of contour lines, which works on a copy of the state so that its changes are discarded."""
 
     def __init__(self, state: State, statement: Statement) -> None:
         self._state, self._made = state, statement
@@ -108,7 +109,9 @@ class _Reader:
             self._move(line)
 
     def finish(self) -> list[Element]:
-        """Return the elements. Logs a warning if the modes at the end differ from those at the start."""
+        """Return the elements, and log a warning if the modes at the end differ from the modes at the
+        start.
+        """
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
                 text = (
@@ -152,7 +155,7 @@ class _Reader:
             self._moves.append((block, corner))
 
     def _begin(self, line: Statement, corner: Word | None) -> None:
-        """Read the first line, which is the move from the start point to the first point of the contour."""
+        """Read the first line, which moves from the start point to the first point of the contour."""
         if line.code_entry.action_kind is ActionKind.ARC or corner is not None:
             column = corner.column if corner else 1
             text = "The first line of a contour defines its start point and cannot contain an arc or a corner"
@@ -166,7 +169,9 @@ class _Reader:
         return own.move(BlockKind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
-        """Return the shift in X (radius) and Z, in mm, from the frame of this block to that of the cycle."""
+        """Return the shift from the frame of this block to the frame of the cycle in mm, with X as a
+        radius.
+        """
         return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
 
 
@@ -180,7 +185,7 @@ _SAME = 1e-6  # mm
 
 
 def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[Statement]) -> list[CycleMove]:
-    """Return the motions of G75 or G78 along the contour in ``lines``, from the start point and back.
+    """Return the motions of G75 or G78 along the contour in ``lines``, from the start point and back to it.
 
     Raises ProgramError if a word is missing or the contour cannot be cut from the start point.
     """
@@ -232,7 +237,10 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
 
 
 def _plunges_at_start(first: Element) -> bool:
-    """Return whether a contour, in depth and length from the start point, goes deeper at its first point."""
+    """Return whether the contour becomes deeper at its first point.
+
+    ``first`` is in depth and length from the start point.
+    """
     (depth, way), (there, further) = first.start, first.end
     return there > depth + _SAME and abs(further - way) > _SAME
 
@@ -263,7 +271,7 @@ def _passes(
 
 
 def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
-    """Return the frame of the contour. Raises ProgramError with the code cycle-quadrant or cycle-nothing."""
+    """Return the frame of the contour. Raises ProgramError (code ``cycle-quadrant`` or ``cycle-nothing``)."""
     start, first, last = (state.x, state.z), contour[0].start, contour[-1].end
     for axis, letter in ((0, "X"), (1, "Z")):
         to_first, to_last = first[axis] - start[axis], last[axis] - start[axis]
@@ -285,7 +293,8 @@ def _make_view(state: State, statement: Statement, contour: list[Element]) -> Co
 
 
 def plan_box_cycle(state: State, statement: Statement) -> list[CycleMove]:
-    """Return the motions of G74: equal passes of at most I from the start to X, with the allowance U.
+    """Return the motions of G74, which cuts equal passes of at most I from the start to X with the
+    allowance U.
 
     The tool enters each pass at the feed, because it may cut material at a shoulder. The cycle ends at the
     start point. Raises ProgramError for invalid words.
@@ -316,7 +325,7 @@ def plan_box_cycle(state: State, statement: Statement) -> list[CycleMove]:
 
 
 def _corner(state: State, statement: Statement, letter: str, start: float, offset: float) -> float:
-    """Return X or Z of the corner opposite the start point."""
+    """Return X or Z of the box corner opposite the start point."""
     end = read_length_mm(state, statement, letter) + (offset if state.absolute else start)
     text = "The box has zero size along {letter} because its corner is at the start point."
     hint = "Correct {letter} or the start point."

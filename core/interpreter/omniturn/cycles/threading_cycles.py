@@ -1,4 +1,4 @@
-"""Threading cycles G33 and G34: the passes and the rapids between them.
+"""Threading cycles G33 and G34, with their passes and the rapids between the passes.
 
 All lengths are in mm, with X as a radius. The formulas are in
 docs/decisions/0004-contours-and-cycles-calculated-first.md.
@@ -29,11 +29,12 @@ _NEAR = 1e-6  # mm
 
 @dataclass(frozen=True, slots=True)
 class ThreadCycle:
-    """One threading cycle, in mm with X as a radius, and radians. ``x0 z0`` is the start point.
+    """The data of one threading cycle, in mm with X as a radius, and in radians.
 
-    ``x_outward_sign`` is the sign of X away from the part, and ``z_cutting_sign`` is the sign of Z in the
-    cutting direction. ``depth`` is the depth of the last pass from the start point, ``first_infeed`` is the
-    I word per side, and ``taper`` is the change of X from the start point to the end.
+    ``x0`` and ``z0`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
+    ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth`` is the depth of the last pass
+    from the start point. ``first_infeed`` is the I word per side. ``taper`` is the change of X from the
+    start point to the end.
     """
 
     x0: float
@@ -51,14 +52,17 @@ class ThreadCycle:
 
     @property
     def retract_x(self) -> float:
-        """X of the return move: 3 I outside the start point, plus the taper if the far end is farther out."""
+        """Return X of the return move, which is 3 I outside the start point.
+
+        The taper is added if the far end is farther out than the start point.
+        """
         return self.x0 + self.x_outward_sign * (
             3 * self.first_infeed + max(self.x_outward_sign * self.taper, 0.0)
         )
 
 
 def read_thread(state: State, statement: Statement) -> ThreadCycle:
-    """Return the threading cycle of a line. Raises ProgramError if it is invalid."""
+    """Return the threading cycle of a line. Raises ProgramError if the cycle is invalid."""
     if state.tool_line:
         check_tool_first_move(state, statement.line, None, None)
     number(state, statement, "P")
@@ -128,7 +132,7 @@ def _check_spindle(state: State, statement: Statement, lead: float) -> None:
 
 
 def _cutting_direction(state: State, statement: Statement) -> tuple[float, float]:
-    """Return the sign of the cutting direction, and Z of the end."""
+    """Return the sign of Z in the cutting direction, and Z of the thread end in mm."""
     z = check_value(state, statement, "Z", round_to_resolution(state, statement, "Z")) or 0.0
     z1 = (z if state.absolute else state.pz + z) + state.secondary_z
     if abs(z1 - state.z) <= _NEAR:
@@ -158,7 +162,7 @@ def _depth(state: State, statement: Statement) -> tuple[float, float]:
 
 
 def _count(statement: Statement, depth: float, first_infeed: float, lead: float) -> int:
-    """Return the number of passes. Raises ProgramError if I does not fit the lead."""
+    """Return the number of passes. Raises ProgramError if I does not match the lead."""
     text = "{text}: the first pass would be deeper than the lead."
     hint = "Correct I (the depth of the first pass) or K."
     statement.check(first_infeed <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
@@ -172,7 +176,7 @@ def _count(statement: Statement, depth: float, first_infeed: float, lead: float)
 
 
 def _read_radius_word(state: State, statement: Statement, letter: str) -> float | None:
-    """Return I or A in mm as a radius (a diameter word under G72), or None without the word."""
+    """Return I or A in mm as a radius, or None without the word. Under G72, the word is a diameter."""
     value = round_to_resolution(state, statement, letter)
     return None if value is None else value * state.mm_per_x_unit / state.mm_per_z_unit
 
@@ -182,9 +186,9 @@ _FACE = 1e-9  # mm
 
 
 def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
-    """Return an iterator of the blocks of a G33 or G34 line, which start and end at the same point.
+    """Generate the blocks of a G33 or G34 line, which start and end at the same point.
 
-    Raises ProgramError before the first block.
+    Raises ProgramError before the first block is generated.
     """
     thread = read_thread(state, statement)
     _warn(state, statement, thread)
@@ -192,9 +196,9 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
 
 
 def compute_pass_depths(thread: ThreadCycle) -> list[float]:
-    """Return the depth of each pass from the start point in mm.
+    """Return the depth of each pass from the start point, in mm.
 
-    The depths are I(√k - 1), so that each pass removes the same area.
+    After k passes, the depth is I(√k - 1), so that each pass removes the same area.
     """
     if thread.pass_count == 1:
         return [thread.depth]
@@ -203,7 +207,7 @@ def compute_pass_depths(thread: ThreadCycle) -> list[float]:
 
 
 def compute_start_z(thread: ThreadCycle, depth: float) -> float:
-    """Return the start Z of a pass of this depth, shifted along the flank in the cutting direction."""
+    """Return the start Z of a pass at this depth, shifted along the flank in the cutting direction, in mm."""
     return thread.z0 + thread.z_cutting_sign * depth * tan(thread.angle_rad)
 
 
@@ -251,7 +255,7 @@ class _ThreadBlockGenerator:
         return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
 
     def _text(self, code: str, x: float, z: float) -> str:
-        """Return the motion as a program line, in the active unit and X mode."""
+        """Return the motion as a program line, in the active unit and as radius or diameter."""
         state = self._state
         places = 4 if state.modal.metric else 5
         return f"{code}X{x / state.mm_per_x_unit + 0.0:.{places}f}Z{z / state.mm_per_z_unit + 0.0:.{places}f}"
@@ -281,10 +285,10 @@ def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
 
 
 def _run_up(thread: ThreadCycle) -> float:
-    """Return the run-up of the deepest pass before the part, in mm.
+    """Return the run-up of the deepest pass in front of the part, in mm.
 
-    It ends at part zero if the pass crosses part zero. Otherwise the whole pass counts, because the start of
-    the part is unknown.
+    If the pass crosses part zero, the run-up ends at part zero. Otherwise, the run-up is the whole pass,
+    because the start of the part is unknown.
     """
     z = compute_start_z(thread, thread.depth)
     if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:

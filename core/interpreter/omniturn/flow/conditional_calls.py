@@ -1,4 +1,6 @@
-"""Both branches of conditional calls (M95, M97): a pass that is copied at an input for the other branch."""
+"""Execution of both branches of conditional calls (M95, M97), with a copy of the pass for the
+other branch.
+"""
 
 from __future__ import annotations
 
@@ -23,22 +25,24 @@ from core.interpreter.shared.job_setup import Setup
 
 
 class BranchRecord(Protocol):
-    """Record of the branches that have been executed."""
+    """Protocol for the record of the branches that passes have executed."""
 
     def is_known(self, branch_pass: BranchingPass) -> bool:
-        """Return whether another pass was in this state, so that the rest has already been checked."""
+        """Return whether another pass was in the same state, so that the remaining program is already
+        checked.
+        """
         ...
 
     def record_branch(self, branch_pass: BranchingPass, statement: Statement, is_call_made: bool) -> None:
-        """Record that a pass reads an input and continues with or without the call (``is_call_made``)."""
+        """Record that a pass reads an input, and whether it then makes the call (``is_call_made``)."""
         ...
 
 
 class BranchingPass(Interpreter):
-    """A pass that a guide follows. ``fork`` returns a copy that takes the other branch at the next input.
+    """A pass that can be copied at a conditional call, so that the copy executes the other branch.
 
-    An input is assumed to keep its state until an action occurs. ``has_input_change`` is True if a branch
-    contradicts this assumption.
+    ``fork`` returns the copy. An input is assumed not to change until the next action. ``has_input_change``
+    is True if a branch contradicts this assumption.
     """
 
     def __init__(self, program: Program, setup: Setup, branch_record: BranchRecord) -> None:
@@ -54,17 +58,22 @@ class BranchingPass(Interpreter):
 
     @property
     def block_count(self) -> int:
-        """Number of blocks so far, including the blocks of the pass that was copied."""
+        """Return the number of blocks so far, including the blocks of the original pass before the copy was
+        made.
+        """
         return self._state.blocks
 
     @property
     def is_stopped(self) -> bool:
-        """Whether an error has stopped the blocks."""
+        """Return whether an error has stopped the pass."""
         return self._stopped
 
     @property
     def state_key(self) -> Hashable:
-        """Key that is equal in two passes only if all later blocks are equal for equal inputs."""
+        """Return a key for the state of the pass.
+
+        Two passes have the same key only if they generate the same blocks from the same inputs.
+        """
         state = self._state
         return (
             self._flow.position,
@@ -77,7 +86,10 @@ class BranchingPass(Interpreter):
         )
 
     def fork(self, statement: Statement, is_call_made: bool) -> BranchingPass:
-        """Return a copy of this pass that takes the other branch at this line and has its own findings."""
+        """Return a copy of this pass that takes the other branch at this line.
+
+        The copy has its own diagnostic log.
+        """
         twin = copy(self)
         twin._log = DiagnosticLog()
         twin._state = state = copy(self._state)
@@ -93,9 +105,8 @@ class BranchingPass(Interpreter):
         return twin
 
     def _known_input(self, statement: Statement) -> bool | None:
-        """Return whether the input of the call is closed, as far as it is known.
-
-        Returns None if the input was not read since the last action.
+        """Return whether the input of the call is closed, or None if it has not been read since the last
+        action.
         """
         if self._held_to != self._state.blocks:
             self._held = {}

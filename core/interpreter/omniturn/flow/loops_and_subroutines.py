@@ -1,4 +1,7 @@
-"""Loops, subroutines and program end, which are located before execution and then followed."""
+"""Loops, subroutines and program end of OmniTurn programs.
+
+They are located before execution, so that the program flow can follow them.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +23,7 @@ _CONTOUR_CYCLE = re.compile(r"G7[58](?![0-9])", re.IGNORECASE)
 
 
 class ProgramStructure(NamedTuple):
-    """Structure of a program. All positions are line indices from 0."""
+    """Structure of a program, with all positions as line indices from 0."""
 
     loop_ends: dict[int, int]  # index of LS → index of its LF
     loop_starts: dict[int, int]
@@ -31,7 +34,7 @@ class ProgramStructure(NamedTuple):
 
 
 class _Finder:
-    """Finder of the program structure, which reads the relevant statements once."""
+    """Finder of the program structure, which processes each relevant statement once."""
 
     def __init__(self, length: int) -> None:
         self.structure = ProgramStructure({}, {}, {}, {}, length, {})
@@ -67,9 +70,9 @@ class _Finder:
             self._end_main(statement.line)
 
     def _in_contour(self, statement: Statement) -> bool:
-        """Return whether the line belongs to a contour or is its RF.
+        """Return whether the line belongs to a contour or is the RF that ends it.
 
-        Such a line does not affect the structure.
+        Such lines do not affect the structure.
         """
         if statement.flow_code == "RF":
             if self._contour is None and not self._contour_lost:
@@ -135,7 +138,7 @@ class _Finder:
         self._inside = None
 
     def _closed_by_job_end(self, number: int) -> bool:
-        """Return whether M30 or M02 ends the subroutine, so that the subroutine needs no M99."""
+        """Return whether M30 or M02 ends the subroutine, so that M99 is not required."""
         if self._job_end is None:
             return False
         self.structure.subroutine_ends.setdefault(number, self._job_end)
@@ -201,19 +204,19 @@ class _Finder:
 
 
 def _ends_program(statement: Statement) -> bool:
-    """Return whether the line ends the program, or is an unreadable line that was intended to do so."""
+    """Return whether the line ends the program, or is unreadable but was probably intended to end it."""
     return statement.ends_program or _is_probably(statement, "M0*(?:30|2)(?![0-9])")
 
 
 def _is_probably(statement: Statement, word: str) -> bool:
-    """Return whether an unreadable line was probably intended as this word."""
+    """Return whether an unreadable line was probably intended to contain the word that matches ``word``."""
     return statement.flow_code == UNREADABLE_FLOW and re.search(word, statement.text.upper()) is not None
 
 
 def find_structure(statements: Iterable[Statement], length: int) -> tuple[ProgramStructure, list[Diagnostic]]:
-    """Return the structure of a program of ``length`` lines, and its errors.
+    """Return the structure of a program of ``length`` lines, and the errors of the structure.
 
-    ``statements`` are the lines with more than X and Z, in order.
+    ``statements`` are the lines that contain more than X and Z, in order.
     """
     finder = _Finder(length)
     calls: list[Statement] = []
@@ -238,27 +241,27 @@ def find_structure(statements: Iterable[Statement], length: int) -> tuple[Progra
 
 
 def get_subroutine_number(statement: Statement) -> int:
-    """Return the number of the called subroutine; M95 always calls subroutine 1."""
+    """Return the number of the called subroutine, which is always 1 for M95."""
     return 1 if statement.flow_code == "M95" else int(statement.get_value("P") or 0)
 
 
 def get_input_terminal(statement: Statement) -> str:
-    """Return the input that a conditional call reads."""
+    """Return the terminal of the input that a conditional call reads."""
     return FLOW_CODES[statement.flow_code].required_input[0] or f"{statement.get_value('I'):.0f}"
 
 
 def is_call_made(statement: Statement, inputs: Callable[[str], bool]) -> bool:
-    """Return whether a conditional call is made with the present states of the inputs."""
+    """Return whether a conditional call is made in the present state of the inputs."""
     return inputs(get_input_terminal(statement)) == get_calling_state(statement)
 
 
 def get_calling_state(statement: Statement) -> bool:
-    """Return the input state in which a conditional call is made."""
+    """Return the input state for which a conditional call is made."""
     return statement.flow_code == "M95" or statement.get_value("C") == 1
 
 
 class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
-    """Position in a program, with an optional line at which execution stops."""
+    """The position in a program, with an optional line at which execution stops."""
 
     def __init__(self, structure: ProgramStructure) -> None:
         super().__init__(FlowFrame(structure, 0, structure.main_end_index))
@@ -272,29 +275,29 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         return twin
 
     def stop(self) -> None:
-        """End the program here, so that no further line is executed."""
+        """End the program at the present position, so that no further line is executed."""
         self._stop = None
         self.end_index = self.next_index
 
     def stop_before(self, line: int) -> None:
-        """Stop before this line (from 1) the next time execution reaches it, in any loop pass or call."""
+        """Stop before this line (from 1) when execution next reaches it, in any loop pass or call."""
         self._stop = line - 1
         self._update_end()
 
     @property
     def is_at_stop_line(self) -> bool:
-        """Whether the line of ``stop_before`` is the next line."""
+        """Return whether the next line is the line passed to ``stop_before``."""
         return self._stop is not None and self.next_index == self._stop
 
     def skip_stop_once(self) -> None:
-        """Execute the line of ``stop_before`` once, and stop when execution reaches it again."""
+        """Execute the line passed to ``stop_before`` once, and stop when execution reaches it again."""
         self.end_index = self.active_frame.end_index
 
     @property
     def position(self) -> FlowPosition:
-        """The position with all active loops and calls, the outermost first.
+        """Return the position with all active loops and calls, from the outermost to the innermost.
 
-        Programs continue equally from equal positions.
+        Programs at equal positions continue identically.
         """
         self.active_frame.next_index = self.next_index
         return tuple(
@@ -303,7 +306,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         )
 
     def resume(self, line: int, position: FlowPosition) -> None:
-        """Set the next line (from 1) and the active loops and calls."""
+        """Set the next line (counted from 1) and the active loops and calls."""
         if position:
             structure = self.active_frame.routine
             self.frames = [
@@ -314,17 +317,22 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.next_index = line - 1
 
     def _update_end(self) -> None:
-        """Set the end of execution: the end of the frame, or the line before which execution stops."""
+        """Set the end of execution to the end of the frame or to the stop line, whichever is
+        reached first.
+        """
         stop, end = self._stop, self.active_frame.end_index
         self.end_index = stop if stop is not None and self.next_index <= stop < end else end
 
     def get_remaining_repeats(self, start: int) -> int:
-        """Return the remaining repeats of the innermost loop; 0 if its LS is not at index ``start``."""
+        """Return the remaining repeats of the innermost loop, or 0 if its LS is not at index ``start``."""
         left = self.active_frame.remaining_repeats
         return left[start] if left and next(reversed(left)) == start else 0
 
     def record_loop_executions(self, start: int, times: int) -> None:
-        """Record ``times`` executions of the loop with this LS, each ending back at its first line."""
+        """Record ``times`` executions of the loop whose LS is at index ``start``.
+
+        Each execution ends at the first line of the loop.
+        """
         self.active_frame.remaining_repeats[start] -= times
 
     def execute_flow_line(self, statement: Statement) -> None:
@@ -358,9 +366,9 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
             self._update_end()
 
     def skip_contour(self, statement: Statement) -> range | None:
-        """Return the line indices of the contour of a G75 or G78, and skip these lines.
+        """Skip the contour of a G75 or G78, and return the indices of its lines.
 
-        Returns None if the contour is missing, which was reported when the program was read.
+        Returns None if the contour is missing. This error was reported when the program was parsed.
         """
         structure = self.active_frame.routine
         if "P" not in statement.words:
@@ -374,7 +382,10 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         return None if start is None else range(start + 1, structure.subroutine_ends.get(number, start))
 
     def _loop_end(self, remaining: dict[int, int], start: int | None) -> None:
-        """Jump back to the line after LS while repeats remain, but only from the LF of the innermost loop."""
+        """Jump back to the line after LS if repeats remain.
+
+        Only the LF of the innermost loop causes the jump.
+        """
         if start is None or next(reversed(remaining), None) != start:
             return
         if remaining[start] > 0:

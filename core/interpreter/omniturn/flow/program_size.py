@@ -1,4 +1,4 @@
-"""Size of a program, calculated before execution, so that programs with excessive loops are rejected."""
+"""Size of a program, which is calculated before execution to reject programs with excessive loops."""
 
 from __future__ import annotations
 
@@ -16,7 +16,10 @@ from core.message import Message
 
 
 class ProgramSize(NamedTuple):
-    """Number of elementary blocks and executed lines, and the line of the largest loop (0 for none)."""
+    """The number of elementary blocks and of executed lines of a program or section.
+
+    ``largest_loop_line`` is the line of the largest loop, or 0 without loops.
+    """
 
     block_count: int = 0
     line_count: int = 0
@@ -26,8 +29,8 @@ class ProgramSize(NamedTuple):
 def check_program_size(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
     """Return the error for a program that executes too many blocks or lines, or None.
 
-    Loops multiply the counts, and subroutines count at each call. Conditional calls depend on the present
-    inputs.
+    Loops multiply the counts, and each call adds the counts of its subroutine. Conditional calls depend on
+    the present inputs.
     """
     if not program.structure.loop_ends and not program.structure.subroutines:
         return _refusal(ProgramSize(len(program.executable_lines), len(program.executable_lines)))
@@ -55,7 +58,7 @@ def _refusal(count: ProgramSize) -> Diagnostic | None:
 
 
 def _format_count(count: int) -> str:
-    """Return a count as text, up to 10^24 in full and above that as a power of ten."""
+    """Return a count as text, in full up to 10^24 and as a power of ten above that."""
     tens = int(math.log10(count))
     return f"{count:,}" if tens < 24 else Message("about 10^{tens}", tens=tens)
 
@@ -67,7 +70,10 @@ class _Counter:
         self._known: dict[tuple[int, int], ProgramSize] = {}
 
     def region(self, start: int, end: int, depth: int) -> ProgramSize:
-        """Return the count of the lines from index ``start`` to before ``end``, at call depth ``depth``."""
+        """Return the size of the lines from index ``start`` to the index before ``end``.
+
+        ``depth`` is the call depth.
+        """
         # end of the loop, number of passes, count before the loop
         open_loops: list[tuple[int, int, ProgramSize]] = []
         total = ProgramSize()
@@ -128,7 +134,7 @@ def _sum(a: ProgramSize, b: ProgramSize) -> ProgramSize:
 
 
 def estimate_block_count(statement: Statement) -> int:
-    """Return the maximum number of elementary blocks of a line; for a cycle, the minimum."""
+    """Return the maximum number of elementary blocks of a line, or the minimum number for a cycle."""
     if statement.flow_code:
         return (
             1
@@ -152,5 +158,8 @@ def estimate_block_count(statement: Statement) -> int:
 
 
 def count_corner_blocks(statement: Statement) -> int:
-    """Return the number of blocks that C and R add before the next move; C may also be an axis word."""
+    """Return the number of blocks that the corner words C and R add before the next move.
+
+    C is counted even if it is an axis word.
+    """
     return int(statement.one_shot_code is None and not {"C", "R"}.isdisjoint(statement.words))

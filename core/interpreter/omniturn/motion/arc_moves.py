@@ -1,4 +1,4 @@
-"""Arcs with G02 and G03, with the center from R or from I and K."""
+"""Arcs with G02 and G03, whose center is defined by R or by I and K."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
 def _warn_about_large_arc(state: State, statement: Statement, sweep: float) -> None:
     """Log a warning for an arc of more than half a circle with I and K.
 
-    An insert can hardly cut such an arc, so the code is probably that of the opposite direction.
+    An insert can rarely cut such an arc, so the direction code is probably wrong.
     """
     if pi + _ROUNDING_TOLERANCE < sweep < 2.0 * pi - _ROUNDING_TOLERANCE:
         text = "The arc spans {sweep} degrees."
@@ -93,7 +93,10 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
 
 
 def _center_by_words(state: State, statement: Statement, start: Point) -> Point:
-    """Return the center from I and K: coordinates under G90 with G73, otherwise distances from the start."""
+    """Return the center from I and K.
+
+    I and K are coordinates under G90 with G73, and distances from the start point otherwise.
+    """
     i, k = round_to_resolution(state, statement, "I"), round_to_resolution(state, statement, "K")
     if state.modal.diameter or not state.absolute:
         return start[0] + (i or 0.0) + state.secondary_x, start[1] + (k or 0.0) + state.secondary_z

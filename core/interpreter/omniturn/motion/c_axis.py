@@ -1,4 +1,4 @@
-"""C axis: M19, M89 and G89 lock the spindle as the C axis, and CA, CI and C move it."""
+"""C axis: M19, M89 and G89 lock the spindle as the C axis; CA, CI and C move it."""
 
 from __future__ import annotations
 
@@ -38,7 +38,10 @@ def uses_c_speed(state: State, statement: Statement) -> bool:
 
 
 def lock_spindle(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks of M19, M89 or G89, which stop and lock the spindle; M19 then turns C to 0."""
+    """Yield the blocks of M19, M89 or G89, which stop the spindle and lock it as the C axis.
+
+    M19 also turns C to 0.
+    """
     word = statement.m_word if statement.m_number in {19, 89} else statement.code_word
     code = (
         statement.m_code_entry
@@ -59,22 +62,29 @@ def lock_spindle(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def _entry(state: State, statement: Statement) -> CodeEntry:
-    """Return the entry of the word that moves C; C alone acts like CA under G90 and like CI under G91."""
+    """Return the code entry of the word that moves C.
+
+    C alone acts like CA under G90 and like CI under G91.
+    """
     return LETTER_ENTRIES[
         "CI" if "CI" in statement.words or ("C" in statement.words and not state.absolute) else "CA"
     ]
 
 
 def read_c_rpm(state: State, statement: Statement, code: CodeEntry) -> float | None:
-    """Return S of the line in rpm, unsigned, or None. Raises ProgramError above the limit of C."""
+    """Return S of the line in rpm without its sign, or None without S.
+
+    Raises ProgramError if S exceeds the limit of C.
+    """
     speed = statement.get_value("S")
     return None if speed is None else check_value(state, statement, "S", abs(speed), code)
 
 
 def _turn_to_zero(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the turn of C to 0 in the direction of the sign of S, or by the shorter distance without S.
+    """Yield the rotation of C to 0.
 
-    C then counts from 0 again.
+    The sign of S determines the direction. Without S, C moves the shorter distance. C then counts from 0
+    again.
     """
     at = state.c + state.modal.offset_c
     over = at % _TURN
@@ -92,7 +102,7 @@ def _turn_to_zero(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the move of a line with C, alone or together with X and Z."""
+    """Yield the move of a line with C, either alone or together with X and Z."""
     word = _c_word(state, statement)
     warn_about_short_dwell(state)
     c0, x0, z0 = state.c, state.x, state.z
@@ -122,9 +132,7 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def rotate_c_axis(state: State, line: int, text: str, target_deg: float) -> Block:
-    """Return the block that turns C alone to ``target_deg`` (degrees) at the active speed, and update the
-    state.
-    """
+    """Return the block that rotates C alone to ``target_deg`` at the active speed, and update the state."""
     rpm = state.modal.c_rpm or state.setup.limits.c_max_rpm
     c0, state.c = state.c, target_deg
     start = state.x, state.z, c0
@@ -142,7 +150,7 @@ def _c_word(state: State, statement: Statement) -> Word:
 
 
 def _target(state: State, statement: Statement, word: Word) -> float:
-    """Return the target of C in degrees, rounded to its step."""
+    """Return the target of C in degrees, rounded to the resolution of C."""
     step, value = state.setup.limits.c_resolution_deg, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
@@ -162,9 +170,9 @@ def _target(state: State, statement: Statement, word: Word) -> float:
 
 
 def _check_turns(state: State, statement: Statement, word: Word, path_mm: float, c_travel_deg: float) -> None:
-    """Check a move with feed per revolution of C. Raises ProgramError.
+    """Raise ProgramError for an invalid move with a feed per revolution of C.
 
-    C must turn far enough for the move, and its speed must be programmed.
+    C must rotate far enough for the move, and the speed of C must be programmed.
     """
     modal, limits = state.modal, state.setup.limits
     feed = modal.feed or 0.0

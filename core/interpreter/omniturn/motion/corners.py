@@ -1,4 +1,7 @@
-"""Corners with C and R, and the stages from the moves of the lines to blocks: corners, then compensation."""
+"""Corners with C and R, and the stages that convert the moves of lines to blocks.
+
+The first stage inserts corners, and the second stage applies nose compensation.
+"""
 
 from __future__ import annotations
 
@@ -38,9 +41,9 @@ point, or all motion before it must have ended."""
 
 
 def read_corner(state: State, statement: Statement) -> None:
-    """Store the corner of a line after its straight move. Raises ProgramError for an invalid size.
+    """Store the corner of a line after its straight move.
 
-    A C word is a corner unless C is an axis.
+    A C word is a corner unless C is an axis. Raises ProgramError for an invalid size.
     """
     chamfers = None if state.modal.c_locked else statement.words.get("C")
     word = statement.words.get("R") or chamfers
@@ -54,13 +57,13 @@ def read_corner(state: State, statement: Statement) -> None:
 
 
 def read_corner_size_mm(state: State, statement: Statement, word: Word) -> float:
-    """Return the size of a corner in mm. Raises ProgramError if it is invalid."""
+    """Return the size of a corner in mm. Raises ProgramError if the size is invalid."""
     size = round_to_resolution(state, statement, word.letter)
     return check_value(state, statement, word.letter, size or 0.0, LETTER_ENTRIES[word.letter]) or 0.0
 
 
 def check_radius_word(state: State, statement: Statement) -> None:
-    """Raise ProgramError for R on a line without a straight move of only X and Z."""
+    """Raise ProgramError for R on a line that is not a straight move of only X and Z."""
     word = statement.words.get("R")
     if word is not None:
         check_conditions(state, statement, LETTER_ENTRIES["R"], word=word)
@@ -70,14 +73,16 @@ _BufferedMove = BufferedMove[Corner, CompensationSwitch]
 
 
 class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
-    """Corner stage for corners between two straight moves."""
+    """Stage that inserts corners between two straight moves."""
 
     def __init__(self, log: DiagnosticLog, moves: AdjustedMoveFactory) -> None:
         super().__init__(moves)
         self._log = log
 
     def check_line(self, statement: Statement) -> None:
-        """Raise ProgramError if a corner waits for a move and the line does not begin with a plain move."""
+        """Raise ProgramError if a corner needs a following move and the line does not start with a plain
+        move.
+        """
         held = self._held
         if (
             held is not None
@@ -89,7 +94,10 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
             raise _refused(held, "corner-next", text)
 
     def finish(self) -> None:
-        """Check the end of the program. Raises ProgramError if a corner remains."""
+        """Check the corner state at the end of the program.
+
+        Raises ProgramError if a corner has no following move.
+        """
         held, self._held = self._held, None
         if held is not None:
             raise _refused(held, "corner-next", "no move follows the corner")
@@ -148,7 +156,7 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
 
 
 class ContourCornerStage(LineCornerStage):
-    """Corner stage for the contour of a cycle."""
+    """Stage that inserts corners into the contour of a cycle."""
 
     def insert_corners(self, moves: Iterable[tuple[Block, Corner | None]]) -> list[Block]:
         """Return the moves with their corners inserted. Raises ProgramError if a corner is not possible."""
@@ -193,10 +201,10 @@ def _refused(held: _BufferedMove, code: str, why: str) -> ProgramError:
 
 
 class ContourBuffer:
-    """Buffer of blocks while a corner waits for its second move or nose compensation is on.
+    """Buffer of blocks while a corner needs its second move or nose compensation is active.
 
-    It buffers at most one corner and the moves that compensation looks ahead. The returned blocks are
-    numbered without a gap.
+    The buffer contains at most one corner and the moves that compensation looks ahead. The returned blocks
+    are numbered consecutively.
     """
 
     def __init__(self, state: State) -> None:
@@ -207,7 +215,7 @@ class ContourBuffer:
         self._count: int | None = None  # number of the last returned block while the modifier is active
 
     def accept(self, block: Block) -> Iterator[Block]:
-        """Accept a block, and yield the blocks that no later line can change.
+        """Accept a block, and yield the blocks that later lines cannot change.
 
         Raises ProgramError if the corner or the compensation is not possible.
         """
@@ -220,13 +228,13 @@ class ContourBuffer:
         yield from self._put(block, corner)
 
     def check_line(self, statement: Statement) -> None:
-        """Raise ProgramError if a line is not allowed after the buffered moves."""
+        """Raise ProgramError if a line must not follow the buffered moves."""
         if self._state.contour.is_buffering:
             self._corners.check_line(statement)
             check_compensated_line(self._state, statement)
 
     def switch_compensation(self, switch: CompensationSwitch) -> Iterator[Block]:
-        """Process G41, G42 or G40, and yield the blocks that no later line can change.
+        """Process G41, G42 or G40, and yield the blocks that later lines cannot change.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -234,7 +242,7 @@ class ContourBuffer:
         yield from self._put(switch, None)
 
     def finish(self) -> Iterator[Block]:
-        """Process the end of the program. Raises ProgramError if a corner still waits for its second move."""
+        """Process the end of the program. Raises ProgramError if a corner has no second move."""
         self._corners.finish()
         yield from ()
 

@@ -1,6 +1,7 @@
 """Feed words G94, G95, F, G00 and G01, checks of feed moves, and the coarse feeds G35, G35F2 and G36.
 
-A coarse feed has a coarser resolution, so the position must be programmed again (G92) at each change.
+A coarse feed reduces the position resolution, so the position must be programmed again (G92) at each
+change.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ _ROUNDING = 1 + 1e-9
 
 
 def execute_feed_words(state: State, statement: Statement, *, is_first_line: bool) -> None:
-    """Execute G94, G95, G00, G01 and F of a line; ``first`` means the first line of the program."""
+    """Execute G94, G95, G00, G01 and F of a line.
+
+    ``is_first_line`` means that the line is the first line of the program.
+    """
     modes = {0, 1, 94, 95}.intersection(statement.modal_codes)
     word = statement.words.get("F") if statement.f_is_feed else None
     if not modes and word is None:
@@ -102,10 +106,10 @@ def _feed(state: State, statement: Statement, word: Word, *, first: bool) -> Non
 
 
 def set_plain_feed(state: State, f: float) -> bool:
-    """Set the feed of a plain move if a new cutting feed is its only change; return whether it was set.
+    """Set the feed of a plain move if a new cutting feed is its only change, and return whether it was set.
 
-    Returns False, without a change, if the full statement is needed: after a rapid, during a contour or
-    compensation, under G35 and G36, and for a feed that causes an error or a warning.
+    Returns False without a change if the full statement is needed. This is the case after a rapid, within a
+    contour, during compensation, under G35 and G36, and for a feed that causes an error or a warning.
     """
     feed = state.convert_feed(f)
     if state.modal.coarse or state.contour.is_buffering or not _is_usual(state, feed):
@@ -117,7 +121,7 @@ def set_plain_feed(state: State, f: float) -> bool:
 
 
 def _is_usual(state: State, feed: float) -> bool:
-    """Return whether this cutting feed (mm/s or mm/rev) causes neither an error nor a warning."""
+    """Return whether a cutting feed (mm/s or mm/rev) does not cause an error or a warning."""
     per_rev = state.modal.per_rev
     most = get_limit(state, WordLimit.ACTIVE_FEED)
     least, most = (_MIN_FEED, min(most, HIGH_FEED_MM_PER_REV)) if per_rev else (_MIN_FEED / 60, most)
@@ -125,9 +129,10 @@ def _is_usual(state: State, feed: float) -> bool:
 
 
 def passes_feed_checks(state: State, feed: float) -> bool:
-    """Return whether a move at another feed (mm/s or mm/rev) passes all checks except that of its length.
+    """Return whether a move at another feed (mm/s or mm/rev) passes all checks except the check of its
+    length.
 
-    Requires ``state.fast``: a move at the active feed must have passed the checks.
+    Requires ``state.fast``, which means that a move at the active feed has passed the checks.
     """
     if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
         return False
@@ -137,12 +142,12 @@ def passes_feed_checks(state: State, feed: float) -> bool:
 
 
 def compute_feed_speed(state: State, feed: FloatOrArray) -> FloatOrArray:
-    """Return programmed feeds in mm/s at a constant spindle speed."""
+    """Convert programmed feeds to mm/s at a constant spindle speed."""
     return feed * abs(state.rpm) / 60 if state.modal.per_rev else feed
 
 
 def set_feed(state: State, feed: float) -> None:
-    """Set the feed of the last move of a series, so that the next plain move needs no checks."""
+    """Set the feed to that of the last move of a series, so that the next plain move needs no checks."""
     state.set_modal(replace_feed(state.modal, feed))
     state.slow_length_mm = compute_feed_speed(state, feed) * SLOW_MOVE_S
     state.fast = True
@@ -151,7 +156,7 @@ def set_feed(state: State, feed: float) -> None:
 def describe_feed_error(
     modal: ModalState, feed: float, minimum: float, maximum: float
 ) -> tuple[str, str, str]:
-    """Return code, message and remedy for an invalid feed under G94 or G95."""
+    """Return the code, message and remedy for an invalid feed under G94 or G95."""
     rule = LETTER_ENTRIES["F"].rules["F"]
     refusal = rule.too_large_error if feed > maximum else rule.invalid_error
     assert refusal is not None
@@ -167,7 +172,10 @@ def describe_feed_error(
 def warn_about_crash_feed(
     state: State, statement: Statement, following_lines: Sequence[ExecutableLine]
 ) -> None:
-    """Warn of F003 for F.003: a G95 feed above 0.05 in/rev, unless the spindle reverses soon (tapping)."""
+    """Log a warning for a G95 feed above 0.05 in/rev, such as F003 instead of F.003.
+
+    The warning is omitted if the spindle reverses soon, as in tapping.
+    """
     modal, word = state.modal, statement.words.get("F")
     if word is None or not statement.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
         return
@@ -189,7 +197,8 @@ def _taps(spindle: int, ahead: Sequence[ExecutableLine]) -> bool:
 def check_move_feed(state: State, line: int, x0: float, x: float, length: float) -> None:
     """Check the feed of a straight move or arc from radius ``x0`` to ``x``, with ``length`` in mm.
 
-    Raises ProgramError with the code feed-missing, spindle-stopped, surface-speed-missing or feed-over-speed.
+    Raises ProgramError with the code ``feed-missing``, ``spindle-stopped``, ``surface-speed-missing`` or
+    ``feed-over-speed``.
     """
     if state.turning is not None:
         warn_about_short_dwell(state)
@@ -245,7 +254,7 @@ def check_move_feed(state: State, line: int, x0: float, x: float, length: float)
 
 
 def _raise_once(state: State, line: int, code: str, message: str, hint: str) -> None:
-    """Raise ProgramError for a move, but only once for each code."""
+    """Raise ProgramError for a move, but only once for each error code."""
     if code not in state.reported:
         state.reported.add(code)
         raise make_program_error(line, 0, code, message, hint)
@@ -267,16 +276,19 @@ _COARSE_STEP = 0.0005 * units.MM_PER_INCH * (1 + 1e-9)  # mm; the coarsest resol
 
 
 def needs_following_lines(statement: Statement) -> bool:
-    """Return whether a line needs the following lines: G92 after G35 and G36, or tapping after F."""
+    """Return whether the execution of a line needs the following lines.
+
+    G35 and G36 need a following G92, and F needs to know whether tapping follows.
+    """
     return "F" in statement.words or not COARSE_FEED_CODES.isdisjoint(statement.modal_codes)
 
 
 def execute_coarse_feed(
     state: State, statement: Statement, following_lines: Sequence[ExecutableLine]
 ) -> bool:
-    """Execute a line with G35 or G36; return False for any other line. Raises ProgramError.
+    """Execute a line with G35 or G36, or return False for any other line.
 
-    T is an error while G35 is active.
+    T is an error while G35 is active. Raises ProgramError for an invalid line.
     """
     if COARSE_FEED_CODES.isdisjoint(statement.modal_codes):
         if "T" in statement.words:
@@ -287,7 +299,7 @@ def execute_coarse_feed(
 
 
 def _change(state: State, statement: Statement, following_lines: Sequence[ExecutableLine]) -> None:
-    """Start or end the coarse feed; ``ahead`` are the following lines."""
+    """Start or end the coarse feed."""
     code = 35 if 35 in statement.modal_codes else 36
     before = state.modal.coarse
     entry = G_CODES[code]
@@ -305,7 +317,7 @@ def _change(state: State, statement: Statement, following_lines: Sequence[Execut
 
 
 def _check_position(state: State, statement: Statement, code: int) -> None:
-    """Check that G36 is at the position of its G35. Raises ProgramError."""
+    """Raise ProgramError if G36 is not at the position of its G35."""
     if code == 35 or state.coarse_start_point is None:
         return
     x, z = state.coarse_start_point
@@ -324,7 +336,7 @@ def _check_position(state: State, statement: Statement, code: int) -> None:
 def _check_preset(
     state: State, statement: Statement, code: int, following_lines: Sequence[ExecutableLine]
 ) -> None:
-    """Check that the next line is G92 with the present coordinates. Raises ProgramError."""
+    """Raise ProgramError unless the next line is a G92 with the present coordinates."""
     line = next((step for step in following_lines if step is not None), None)
     hint = "Write G92 with the current X and Z on the next line."
     if not isinstance(line, Statement) or line.one_shot_code != 92 or not {"X", "Z"}.issubset(line.words):

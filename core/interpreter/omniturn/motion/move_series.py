@@ -1,7 +1,7 @@
-"""Series of straight moves from many lines: consecutive lines, or passes of a loop.
+"""Series of straight moves from consecutive lines or from the passes of a loop.
 
-All rules are in other modules: ``is_already_active`` determines which words change nothing, the end points
-are those of ``line_to``, and warnings are logged by the functions for single lines.
+All rules are in other modules. ``is_already_active`` determines which words do not change anything. The end
+points agree with those of ``make_straight_move``. The functions for single lines log the warnings.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries,
 
 
 def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
-    """Return a mask (m,) of the lines with only X, Z and words that are already active."""
+    """Return a mask (m,) of the lines that contain only X, Z and words that are already active."""
     answer = lines.is_plain_move.copy()
     fed = ~np.isnan(lines.f)
     for g in (0, 1, NO_G_CODE):
@@ -56,8 +56,8 @@ def mask_unchanged_lines(state: State, lines: LineColumns) -> BoolArray:
 def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
     """Return a mask (m,) of the lines that can be part of a series.
 
-    These are the ``mask_unchanged_lines`` lines, and lines that only change the cutting feed to one that
-    needs no check.
+    The mask contains the lines of ``mask_unchanged_lines``, and lines that only change the cutting feed to
+    a feed that needs no check.
     """
     answer = mask_unchanged_lines(state, lines)
     if state.steady_feed is None:
@@ -70,7 +70,7 @@ def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
 
 
 def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
-    """Return the feed (m,) of each line in mm/s or mm/rev; None if no line changes the feed."""
+    """Return the feed (m,) of each line in mm/s or mm/rev, or None if no line changes the feed."""
     fed = ~np.isnan(lines.f)
     feeds = np.where(fed, state.convert_feed(lines.f), state.feed)
     if (feeds == state.feed).all():
@@ -82,10 +82,10 @@ def _feeds(state: State, lines: LineColumns) -> FloatArray | None:
 def make_series(
     state: State, lines: LineColumns, line_numbers: IntArray, texts: Sequence[str]
 ) -> StraightMoveSeries:
-    """Return these lines as a series of moves; ``line`` (m,) are their numbers.
+    """Return these lines as a series of moves.
 
-    All lines must be ``mask_plain_lines``. Requires ``state.fast``: a move with this state must have passed
-    all checks.
+    ``line_numbers`` (m,) are the numbers of the lines. All lines must be in ``mask_plain_lines``. Requires
+    ``state.fast``, which means that a move with this state has passed all checks.
     """
     x, x_finer = _round_to_resolution(state, "X", lines.x, lines.has_fifth_decimal)
     z, z_finer = _round_to_resolution(state, "Z", lines.z, lines.has_fifth_decimal)
@@ -114,7 +114,10 @@ def make_series(
 
 
 def _compute_positions(state: State, word: FloatArray, at: float, scale: float) -> FloatArray:
-    """Return the positions in mm after each word (NaN for none) from position ``at``, by G90 or G91."""
+    """Return the positions in mm after each word, starting at the position ``at``, under G90 or G91.
+
+    ``word`` is NaN for lines without the word.
+    """
     named = ~np.isnan(word)
     if not state.absolute:
         ways = np.where(named, word, 0.0) + 0.0  # -0 as 0
@@ -131,7 +134,7 @@ def _round_to_resolution(
 ) -> tuple[FloatArray, BoolArray]:
     """Return the numbers rounded to the control's resolution, and a mask of the numbers that were finer.
 
-    The rounding is that of ``straight_moves.round_coordinates``.
+    The result agrees with ``straight_moves.round_coordinates``.
     """
     if not fine.any():
         return word, fine
@@ -167,7 +170,7 @@ MIN_SERIES_LENGTH = 48
 
 
 class SeriesReader:
-    """Look-ahead that combines the next moves of a program in one series."""
+    """Reader that combines the next moves of a program into one series."""
 
     def __init__(self, state: State, program: Program, flow: Flow) -> None:
         self._state, self._flow = state, flow
@@ -176,9 +179,10 @@ class SeriesReader:
         self._without = range(0)  # indices of lines at which no series starts
 
     def read_next_series(self, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
-        """Return the next moves and the number of executed lines; None if a series is not worthwhile.
+        """Return the next moves and the number of executed lines, or None if a series is not worthwhile.
 
-        ``lines`` and ``blocks`` are the remaining limits. Requires ``state.fast``.
+        ``lines`` and ``blocks`` are the remaining numbers of lines and blocks up to the limits. Requires
+        ``state.fast``.
         """
         at = self._flow.next_index
         if at in self._without:
@@ -214,7 +218,10 @@ class SeriesReader:
         return make_series(self._state, part.select_lines(slice(0, count)), numbers, self._texts), count
 
     def _passes(self, start_index: int, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
-        """Return the series of all passes of a loop except the last one, within the limits, or None."""
+        """Return the series of all passes of a loop except the last pass, or None.
+
+        The passes must be within the limits ``lines`` and ``blocks``.
+        """
         length = self._loops[start_index - 1] - start_index
         if not length or self._flow.end_index <= start_index + length:
             return None

@@ -1,4 +1,4 @@
-"""Moves as text of program lines, in the active mode and unit."""
+"""Conversion of moves to the text of program lines, in the active mode and unit."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ _HALF_TURN = pi - 1e-3  # rad; R does not define a longer arc reliably
 
 
 def format_move(modal: ModalState, element: Element, required_letters: str = "") -> str:
-    """Return an element of the program frame as words: coordinates, or distances under G91.
+    """Return an element in the program frame as words with coordinates, or with distances under G91.
 
-    ``required_letters`` are letters that are included even if that axis does not move.
+    The words of ``required_letters`` are included even if their axes do not move.
     """
     start, end = element.start, element.end
     scale = units.get_mm_per_unit(is_metric=modal.metric)
@@ -51,9 +51,9 @@ def _arc(modal: ModalState, arc: Arc, words: str) -> str:
 
 
 def replace_move_words(block: Block, element: Element) -> str:
-    """Return the text of a block whose move now follows ``element``.
+    """Return the text of a block after its move was changed to ``element``.
 
-    The text has the block's modal words, feed and D, with new coordinates.
+    The text contains the modal words, feed and D of the block, with new coordinates.
     """
     words = [match for match in _WORD.finditer(block.text.upper()) if match[0] not in _ARC_CODES]
     before = "".join(word[0] for word in words if word[1] not in _POSITION_WORDS and word[1] != "D")
@@ -64,7 +64,7 @@ def replace_move_words(block: Block, element: Element) -> str:
 
 
 def _without_secondary_offset(block: Block, element: Element, words: dict[str, float]) -> Element:
-    """Return the element without the distance that D adds to the X and Z words of its line."""
+    """Return the element without the secondary offset that D adds to the X and Z words of its line."""
     scale = units.get_mm_per_unit(is_metric=block.modal.metric)
     scale_x = scale / 2 if block.modal.diameter else scale
     x = block.x - block.x0 - words.get("X", 0.0) * scale_x
@@ -77,7 +77,10 @@ def _without_secondary_offset(block: Block, element: Element, words: dict[str, f
 
 
 def number(value: float, *, metric: bool) -> str:
-    """Return a number as program text: five decimal places in inches, four in mm, without trailing zeros."""
+    """Return a number as program text without trailing zeros.
+
+    The text has at most five decimal places in inches and four in mm.
+    """
     text = f"{value:.{4 if metric else 5}f}".rstrip("0").rstrip(".")
     if text in {"-0", ""}:
         return "0"
@@ -85,22 +88,24 @@ def number(value: float, *, metric: bool) -> str:
 
 
 class RewordedMoveFactory(AdjustedMoveFactory):
-    """Factory of adjusted moves whose text states the new coordinates."""
+    """Factory of adjusted moves whose text contains the new coordinates."""
 
     def __init__(self, max_rpm: float) -> None:
         self._max_rpm = max_rpm
 
     @property
     def max_rpm(self) -> float:
-        """The speed limit of the spindle in rpm."""
+        """Return the speed limit of the spindle in rpm."""
         return self._max_rpm
 
     def replace_element(self, block: Block, element: Element) -> Block:
-        """Return the block with its move along another element of the same kind."""
+        """Return the block with its move changed to another element of the same kind."""
         if (block.x0, block.z0) == element.start and (block.x, block.z) == element.end:
             return block
         return self._placed(block, element, replace_move_words(block, element))
 
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move along an element, to follow ``block`` with the same line, feed and state."""
+        """Return a new move along an element, to be inserted after ``block`` with the same line, feed and
+        state.
+        """
         return self._placed(block, element, format_move(block.modal, element))

@@ -1,4 +1,7 @@
-"""Nose compensation with G41, G42 and G40: permitted words, and the path of the nose along the contour."""
+"""Nose compensation with G41, G42 and G40.
+
+This module checks the permitted words and calculates the path of the tool nose along the contour.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,10 @@ from core.message import Message, fill_template
 
 
 class ApproachOrDeparture(NamedTuple):
-    """An approach or departure; ``contour`` are the adjacent moves of the contour, the nearest first."""
+    """An approach to or departure from a contour.
+
+    ``contour`` contains the adjacent moves of the contour, from the nearest to the farthest.
+    """
 
     block: Block
     is_departure: bool
@@ -42,20 +48,22 @@ class ApproachOrDeparture(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Name for messages: approach or departure."""
+        """Return the name for messages, which is ``approach`` or ``departure``."""
         return "departure" if self.is_departure else "approach"
 
     def make_error(self, code_suffix: str, text: str, hint: str, /, **values: object) -> ProgramError:
-        """Return the error for this approach or departure; ``code_suffix`` is the end of the diagnostic
-        code.
+        """Return an error for this approach or departure.
+
+        ``code_suffix`` is the end of the diagnostic code.
         """
         return _refused(self.block, f"comp-{self.name}{code_suffix}", text, hint, **values)
 
     def check_path(self, path: Line, free_end: Point, corner: Point, log: DiagnosticLog) -> None:
-        """Check the distance of its free end from the part, and that the move does not cut the part.
+        """Check that the free end is far enough from the part, and that the move does not cut the part.
 
-        A distance below the nose radius is an error, and below twice the radius a warning. ``free_end`` is
-        the free end as programmed, and ``corner`` is the end of the contour. Raises ProgramError.
+        A distance below the nose radius is an error, and a distance below twice the radius is a warning.
+        ``free_end`` is the programmed free end of the move. ``corner`` is the end of the contour. Raises
+        ProgramError if a check fails.
         """
         if dist(free_end, corner) < self.nose_radius_mm - SAME_POINT_TOLERANCE_MM:
             raise self.make_error(
@@ -99,7 +107,7 @@ _DISTANCE_TEXTS = {  # key: whether it is a departure, and whether it is closer 
 class _Contour(ContourStage):
     """The contour between G41 or G42 and G40.
 
-    The contour includes the secondary offset, and so does the compensated path.
+    Both the contour and the compensated path include the secondary offset.
     """
 
     def __init__(
@@ -116,7 +124,10 @@ class _Contour(ContourStage):
         self._recent: deque[Element] = deque(maxlen=WINDOW_ELEMENTS)
 
     def move(self, block: Block) -> Iterator[Block]:
-        """Add a move, which is the departure if no other move follows. Raises ProgramError."""
+        """Add a move, which is the departure if no other move follows.
+
+        Raises ProgramError if compensation is not possible.
+        """
         if (
             block.kind is not BlockKind.ARC
             and dist((block.x0, block.z0), (block.x, block.z)) < SAME_POINT_TOLERANCE_MM
@@ -133,7 +144,10 @@ class _Contour(ContourStage):
         yield from self._yield_pieces(self._add_move(last, element))
 
     def close(self) -> Iterator[Block]:
-        """Process G40, so that the last move is the departure. Raises ProgramError."""
+        """Process G40, which makes the last move the departure.
+
+        Raises ProgramError if compensation is not possible.
+        """
         if not self.move_count:
             text = "{name} has no contour move between its approach and its departure."
             hint = "Write the contour between the approach and the departure."
@@ -186,7 +200,7 @@ class CompensationStage:
 
     @property
     def is_active(self) -> bool:
-        """Whether G41 or G42 is active."""
+        """Return whether G41 or G42 is active."""
         return self._mark is not None
 
     def discard(self) -> None:
@@ -196,7 +210,7 @@ class CompensationStage:
         self._contour: _Contour | None = None
 
     def accept(self, item: StageItem) -> Iterator[Block]:
-        """Accept an item, and yield the blocks that no later item can change.
+        """Accept an item, and yield the blocks that later items cannot change.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -241,17 +255,17 @@ _TURNS_C = frozenset({"CA", "CI"})
 
 
 def get_nose_code(statement: Statement) -> int:
-    """Return the G40, G41 or G42 of a line, or 0."""
+    """Return the code number of G40, G41 or G42 on a line, or 0."""
     return next((code for code in statement.modal_codes if code in NOSE_CODES), 0)
 
 
 def execute_compensation_code(
     state: State, statement: Statement, code: int, *, is_in_subroutine: bool
 ) -> CompensationSwitch | None:
-    """Return the mark for G41, G42 or G40; None for a G40 without active compensation.
+    """Execute G41, G42 or G40, and return the compensation switch for the stages.
 
-    ``is_in_subroutine`` means that the line is in a subroutine. Raises ProgramError if the code is not
-    allowed.
+    Returns None for a G40 without active compensation. ``is_in_subroutine`` means that the line is in a
+    subroutine. Raises ProgramError if the code is not allowed.
     """
     on = state.modal.compensation_code
     if code == 40 and on == 40:
@@ -295,7 +309,7 @@ def check_compensated_line(state: State, statement: Statement) -> None:
 
 
 def check_approach_move(state: State, block: Block) -> None:
-    """Check that the first move after G41 or G42 is a straight line with D. Raises ProgramError."""
+    """Raise ProgramError unless the first move after G41 or G42 is a straight line with D."""
     line, state.contour.approach_line = state.contour.approach_line, 0
     if not line:
         return

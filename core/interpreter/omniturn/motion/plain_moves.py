@@ -1,8 +1,9 @@
-"""Lines with only G00 or G01, X, Z and F, which are nearly all lines of a long program, read as numbers.
+"""Parsing of lines with only G00 or G01, X, Z and F, which are nearly all lines of a long program.
 
-A statement takes 1 kB and 10 µs; a move in this form takes a hundredth of both. Lines of a long program
-mostly differ only in their digits. Lines with the same other characters have the same words at the same
-columns, so that each column of digits is a column of an array. Lines of a rare form are read one by one.
+A statement takes 1 kB and 10 µs, and a parsed plain move takes a hundredth of both. Lines of a long program
+mostly differ only in their digits. Lines that agree in all other characters have the same words at the same
+columns. Each column of digits therefore becomes a column of an array. Lines of a rare form are parsed
+individually.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ _PAGE, _PAGES = 1024, 32
 
 
 def parse_plain_move(text: str) -> PlainMove | None:
-    """Return the numbers of a line with only G00 or G01, X, Z and F; None for any other line."""
+    """Return the numbers of a line with only G00 or G01, X, Z and F, or None for any other line."""
     match = _words(text)
     if match is None:
         return None
@@ -51,7 +52,10 @@ def parse_plain_move(text: str) -> PlainMove | None:
 
 
 def _words(text: str) -> re.Match[str] | None:
-    """Return the match with the groups ``g x z f`` of a plain move, which has X or Z; otherwise None."""
+    """Return the match of a plain move with the groups ``g x z f``, or None for any other line.
+
+    A plain move has X or Z.
+    """
     match = _MOVE.fullmatch(text)
     return None if match is None or match["x"] is match["z"] is None else match
 
@@ -62,9 +66,11 @@ def _is_fine(text: str) -> bool:
 
 
 class LineColumns(NamedTuple):
-    """Arrays of m lines: X, Z and F as written (NaN for none), and G 0, 1 or NO_G_CODE.
+    """Arrays with the words of m lines.
 
-    ``has_fifth_decimal`` marks lines with a fifth decimal place, and ``is_plain_move`` marks plain moves.
+    X, Z and F are stored as written, with NaN for a missing word. G is 0, 1 or NO_G_CODE.
+    ``has_fifth_decimal`` is True for lines with a fifth decimal place. ``is_plain_move`` is True for plain
+    moves.
     """
 
     x: FloatArray
@@ -76,7 +82,7 @@ class LineColumns(NamedTuple):
 
     @staticmethod
     def empty(line_count: int) -> LineColumns:
-        """Return the columns of m lines, none of which is known."""
+        """Return the columns for ``line_count`` lines, none of which is a plain move yet."""
         x, z, f = (np.full(line_count, np.nan) for _ in range(3))
         return LineColumns(
             x,
@@ -88,19 +94,21 @@ class LineColumns(NamedTuple):
         )
 
     def store_line(self, index: int, move: PlainMove) -> None:
-        """Store a line that was read separately."""
+        """Store a plain move that was parsed individually."""
         x, z, f, g, fine = move
         self.x[index], self.z[index], self.f[index] = (np.nan if v is None else v for v in (x, z, f))
         self.g[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
     def list_moves(self) -> list[PlainMove | None]:
-        """Return each line as ``parse_plain_move`` returns it; None for a line that is not a plain move."""
+        """Return each line in the form of ``parse_plain_move``, or None for a line that is not a plain
+        move.
+        """
         x, z, f = (_column_values(column) for column in self[:3])
         rows = zip(x, z, f, self.g.tolist(), self.has_fifth_decimal.tolist(), strict=True)
         return [row if known else None for row, known in zip(rows, self.is_plain_move.tolist(), strict=True)]
 
     def select_lines(self, indices: slice | IntArray) -> LineColumns:
-        """Return the lines of a slice or with these indices."""
+        """Return the lines with these indices or in this slice."""
         return LineColumns(
             self.x[indices],
             self.z[indices],
@@ -120,8 +128,9 @@ def _column_values(column: FloatArray) -> list[float | None]:
 
 
 def parse_columns(text: str, columns: LineColumns) -> None:
-    """Fill the columns from the text; ``is_plain_move`` remains False for other lines and lines of a rare
-    form.
+    """Fill the columns from the text.
+
+    ``is_plain_move`` remains False for other lines and for lines of a rare form.
     """
     raw = text.encode("ascii", "replace")  # one byte per character
     digits, shapes = np.frombuffer(raw, np.uint8), np.frombuffer(raw.translate(_SHAPE), np.uint8)
@@ -140,7 +149,10 @@ def _read_length(
     digits: DigitArray,
     shapes: DigitArray,
 ) -> None:
-    """Fill the lines ``rows``, all of which have this length, form by form; the most in their first line."""
+    """Fill the lines ``rows``, which all have this length.
+
+    Lines of the same form are filled together, starting with the form of the first line.
+    """
     rare = 0
     while len(rows) >= _FEW and rare < _FEW:
         lines, begin = _Lines.of(starts[rows]), starts[rows[0]]
@@ -157,7 +169,10 @@ def _read_length(
 
 
 class _Lines(NamedTuple):
-    """The first characters of lines in a text; ``step`` is the distance between lines, 0 if it varies."""
+    """The indices of the first characters of lines in a text.
+
+    ``step`` is the distance between lines, or 0 if the distance varies.
+    """
 
     first: IntArray
     step: int
@@ -169,7 +184,7 @@ class _Lines(NamedTuple):
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
 
     def column(self, text: DigitArray, at: int) -> DigitArray:
-        """Return the character ``at`` (from 0) of each line."""
+        """Return the character at index ``at`` of each line."""
         if not self.step:
             return text.take(self.first + at)
         return text[self.first[0] + at : self.first[-1] + at + 1 : self.step]
@@ -178,7 +193,7 @@ class _Lines(NamedTuple):
 def _read_shape(
     columns: LineColumns, rows: IntArray, match: re.Match[str], digits: DigitArray, lines: _Lines
 ) -> None:
-    """Fill the lines ``rows``, all of which have the form of the match."""
+    """Fill the lines ``rows``, which all have the form of the match."""
     known = np.ones(len(rows), bool)
     for name, column in (("x", columns.x), ("z", columns.z), ("f", columns.f)):
         if match[name] is not None:
@@ -196,8 +211,8 @@ def _read_shape(
 def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray) -> FloatArray:
     """Return the numbers of a word in these lines.
 
-    Digits as a whole number and powers of ten are exact, so that their quotient equals the result of
-    ``float``.
+    The digits as a whole number and the powers of ten are exact. Their quotient therefore equals the result
+    of ``float``.
     """
     text, start = match[name], match.start(name)
     whole = np.zeros(len(lines.first), np.int32)  # at most nine digits
@@ -212,7 +227,10 @@ def _numbers(match: re.Match[str], name: str, lines: _Lines, digits: DigitArray)
 
 
 class ExecutableLines(Sequence[ExecutableLine]):
-    """The lines of a program from index 0: plain moves in ``columns``, all other lines as statements."""
+    """The lines of a program from index 0.
+
+    Plain moves are in ``columns``, and all other lines are statements.
+    """
 
     def __init__(self, columns: LineColumns, statements: dict[int, ExecutableLine]) -> None:
         self.columns = columns
@@ -220,7 +238,7 @@ class ExecutableLines(Sequence[ExecutableLine]):
         self._pages: dict[int, list[ExecutableLine]] = {}
 
     def copy(self) -> ExecutableLines:
-        """Return a copy with its own lines; the arrays of numbers are shared."""
+        """Return a copy with independent lines and shared arrays of numbers."""
         return ExecutableLines(
             self.columns._replace(is_plain_move=self.columns.is_plain_move.copy()), self._others.copy()
         )
@@ -239,7 +257,7 @@ class ExecutableLines(Sequence[ExecutableLine]):
         return page[at % _PAGE]
 
     def __setitem__(self, at: int, line: ExecutableLine) -> None:
-        """Replace a line, which is then no longer in the columns."""
+        """Replace a line, which is then no longer stored in the columns."""
         self._others[at] = self._page(at // _PAGE)[at % _PAGE] = line
         self.columns.is_plain_move[at] = False
 
@@ -248,7 +266,7 @@ class ExecutableLines(Sequence[ExecutableLine]):
             yield from self._page(number)
 
     def find_next_statement(self, index: int) -> int:
-        """Return the index of the next line that is not a plain move, at most MOST lines away."""
+        """Return the index of the next line that is not a plain move, at most MAX_RUN_LENGTH lines away."""
         known = self.columns.is_plain_move[index : index + MAX_RUN_LENGTH]
         first = int(known.argmin()) if len(known) else 0
         return index + (len(known) if len(known) and known[first] else first)
@@ -279,9 +297,8 @@ def parse_lines(
 ) -> ExecutableLines:
     """Return the lines ready for execution.
 
-    ``read`` (number from 1, text) is called for lines not read as arrays.
-
-    With ``in_order``, ``read`` is called for each line, because the meaning depends on earlier lines.
+    ``read`` is called with the number (from 1) and the text of each line that is not parsed as an array.
+    With ``in_order``, it is called for every line, because the meaning of a line depends on earlier lines.
     """
     columns = LineColumns.empty(len(lines))
     others: dict[int, ExecutableLine] = {}

@@ -1,4 +1,4 @@
-"""Plane switching: X and C, or Z and C, as the axes of a virtual mill with its own frame."""
+"""Plane switching, in which X and C, or Z and C, act as the axes of a virtual mill with its own frame."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _ENDS = np.array([0.0, 1.0])
 
 
 def move_virtual_mill(state: State, statement: Statement, virtual_mill: VirtualMill) -> Iterator[Block]:
-    """Yield the blocks of a line that moves the mill. Raises ProgramError."""
+    """Yield the blocks of a line that moves the virtual mill. Raises ProgramError for an invalid move."""
     assert statement.plane_line is not None
     warn_about_short_dwell(state)
     target = _target(state, statement, virtual_mill)
@@ -94,7 +94,7 @@ def _arc(state: State, statement: Statement, line: PlaneMove) -> PlaneMove:
 
 
 def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) -> list[PlaneMove]:
-    """Return the move, or its two parts if it passes through the centerline.
+    """Return the move, or its two parts if the move passes through the centerline.
 
     Raises ProgramError if the tool cannot reach the path.
     """
@@ -117,7 +117,7 @@ def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) ->
 
 
 def _turn_at_centerline(state: State, statement: Statement, leg: PlaneMove) -> Iterator[Block]:
-    """Yield a turn of C if the tool is on the centerline, until the path leads out along X."""
+    """Yield a rotation of C if the tool is on the centerline, until the path leads outward along X."""
     mill = state.modal.mill
     assert mill is not None
     turn = replace(leg, start_angle=mill.polar_angle_rad).find_start_rotation()
@@ -150,14 +150,16 @@ def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
 
 
 def read_plane_length_mm(state: State, statement: Statement, letter: str, default: float) -> float:
-    """Return a word in mm as written: a length, or the diameter of D or of Z on the side."""
+    """Return a word in mm as written, which is a length, or the diameter for D or for Z on the side."""
     assert statement.plane_line is not None
     word = statement.plane_line.words.get(letter)
     return default if word is None else round_mill_length(state, statement.line, word)
 
 
 def make_plane_error(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
-    """Return an error for a line of plane switching, at the word ``letter`` if the line has it."""
+    """Return an error for a line of plane switching, located at the word ``letter`` if the line has this
+    word.
+    """
     assert statement.plane_line is not None
     word = statement.plane_line.words.get(letter)
     return statement.make_error(word.column if word else 1, code, text, hint)

@@ -1,4 +1,4 @@
-"""Straight moves, and the meaning of X and Z, resolution and checks that all moves share."""
+"""Straight moves, and the meaning of X and Z, the resolution and the checks that all moves share."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ ROUNDING_TOLERANCE = 1e-6  # of a step; tolerance for the rounding of decimal fr
 
 
 def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -> Block | None:
-    """Return the block of a line with only G00 or G01, X, Z and F; None if the full statement is needed.
+    """Return the block of a line with only G00 or G01, X, Z and F, or None if the full statement is needed.
 
-    Raises ProgramError as ``make_straight_move`` does.
+    Raises the same errors as ``make_straight_move``.
     """
     x, z, f, g, fine = move
     same = (g < 0 and f is None) or is_already_active(state, g, f)
@@ -38,7 +38,10 @@ def make_plain_move_block(state: State, line: int, text: str, move: PlainMove) -
 
 
 def is_already_active(state: State, g: int, f: float | None) -> bool:
-    """Return whether G00 or G01 (negative for none) and F (None for none) are already active."""
+    """Return whether G00 or G01 and F are already active.
+
+    ``g`` is negative without a G code, and ``f`` is None without F.
+    """
     if g == 0:
         return f is None and state.modal.rapid and not state.title_rapid
     if state.steady_feed is None:
@@ -47,7 +50,7 @@ def is_already_active(state: State, g: int, f: float | None) -> bool:
 
 
 def make_statement_move(state: State, statement: Statement) -> Block:
-    """Return the straight move of a line after all checks. Raises ProgramError."""
+    """Return the straight move of a line after all checks. Raises ProgramError if a check fails."""
     x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
     state.fast = False
     return make_straight_move(state, statement.line, statement.get_block_text("move"), x, z)
@@ -56,8 +59,8 @@ def make_statement_move(state: State, statement: Statement) -> Block:
 def make_straight_move(state: State, line: int, text: str, x: float | None, z: float | None) -> Block:
     """Return the straight move to X and Z in mm, with None for a word that is not programmed.
 
-    If ``state.fast`` is True, an earlier move with this state passed all checks, and only the length is
-    checked. Raises ProgramError.
+    If ``state.fast`` is True, an earlier move with this state passed all checks, so only the length is
+    checked. Raises ProgramError if a check fails.
     """
     x0, z0 = state.x, state.z
     if state.absolute:  # This is the same as ``set_position`` but avoids the call.
@@ -91,7 +94,7 @@ def make_straight_move(state: State, line: int, text: str, x: float | None, z: f
 
 
 def set_position(state: State, x: float | None, z: float | None) -> None:
-    """Set the position to X and Z (mm) by G90 or G91, including the secondary offset."""
+    """Set the position to X and Z in mm under G90 or G91, including the secondary offset."""
     if state.absolute:
         state.px = state.px if x is None else x
         state.pz = state.pz if z is None else z
@@ -102,7 +105,7 @@ def set_position(state: State, x: float | None, z: float | None) -> None:
 
 
 def check_tool_first_move(state: State, line: int, x: float | None, z: float | None) -> None:
-    """Check that the first motion after a T has X and Z. Raises ProgramError (tool-first-move)."""
+    """Raise ProgramError (``tool-first-move``) unless the first motion after a T word has X and Z."""
     tool_line, state.tool_line = state.tool_line, 0
     if tool_line and (x is None or z is None):
         where = Message("the T word on line {tool_line}", tool_line=tool_line) if tool_line > 0 else "the T"
@@ -115,7 +118,7 @@ def check_tool_first_move(state: State, line: int, x: float | None, z: float | N
 
 
 def warn_about_title_rapid(state: State, line: int) -> None:
-    """Warn of a rapid that ``G00 (TITLE)`` turned on before a move that would have cut."""
+    """Log a warning if a move is a rapid only because of a line such as ``G00 (TITLE)``."""
     if state.title_rapid and state.modal.rapid:
         text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
         hint = "Write G01 if the move is meant to cut."
@@ -124,9 +127,9 @@ def warn_about_title_rapid(state: State, line: int) -> None:
 
 
 def round_to_resolution(state: State, statement: Statement, letter: str) -> float | None:
-    """Return a length word in mm (X as a radius by G72/G73), rounded to the resolution with a warning.
+    """Return a length word in mm, rounded to the resolution, or None without the word.
 
-    Returns None without the word.
+    X is a radius according to G72 or G73. A warning is logged if the number was rounded.
     """
     word = statement.words.get(letter)
     if word is None or word.value is None or not isfinite(word.value):
@@ -138,7 +141,10 @@ def round_to_resolution(state: State, statement: Statement, letter: str) -> floa
 
 
 def round_mill_length(state: State, line: int, word: Word) -> float:
-    """Return a length of plane switching in mm, never halved, rounded to the resolution with a warning."""
+    """Return a length of plane switching in mm, rounded to the resolution.
+
+    The length is never halved. A warning is logged if the number was rounded.
+    """
     step = units.METRIC_STEP_MM if state.modal.metric else _COARSE[state.modal.coarse]
     value, finer = _nearest(step, word.value or 0.0)
     if finer:
@@ -151,7 +157,7 @@ def round_mill_length(state: State, line: int, word: Word) -> float:
 def round_coordinates(
     state: State, line: int, text: str, x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
-    """Return X and Z of a line rounded to the resolution, with a warning for each rounded word."""
+    """Return X and Z of a line rounded to the resolution, and log a warning for each rounded word."""
     new_x, x_finer = (None, False) if x is None else _nearest_step(state, "X", x)
     new_z, z_finer = (None, False) if z is None else _nearest_step(state, "Z", z)
     if x_finer or z_finer:
@@ -173,7 +179,7 @@ def get_resolution(state: State, letter: str) -> float:
 
 
 def _nearest_step(state: State, letter: str, value: float) -> tuple[float, bool]:
-    """Return the number rounded to the resolution, and whether it changed."""
+    """Return the number rounded to the resolution, and whether the number changed."""
     return _nearest(get_resolution(state, letter), value)
 
 
@@ -204,7 +210,7 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
 
 
 def execute_geometry_modes(state: State, statement: Statement) -> None:
-    """Execute the modes for distance, units and X words of a line."""
+    """Execute the modes of a line for distances, units and X words."""
     if not statement.modal_codes:
         return
     modal = state.modal

@@ -1,4 +1,4 @@
-"""Settings that one program leaves for the next: units, rapid rate, and the modal state after its end."""
+"""Settings that a program inherits from the previous program: units, rapid rate and modal state."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ _PER_REV = re.compile(r"G95(?![0-9])")
 
 
 def find_inherited_settings(source: ProgramSource) -> frozenset[str]:
-    """Return which of ``units`` and ``rapid`` the program inherits.
+    """Return the settings among ``units`` and ``rapid`` that the program inherits.
 
-    Programs of other dialects do not inherit settings.
+    Programs in other dialects do not inherit settings.
     """
     if source.dialect is not Dialect.OMNITURN:
         return frozenset()
@@ -38,8 +38,9 @@ def _words(line: str) -> str:
 def compute_modal_after_end(previous: ModalState, rpm: float, *, reset: bool) -> ModalState:
     """Return the modal state after the program end.
 
-    It is the power-up state except for units, tool offset, preset, and, without ``reset``, the M functions.
-    ``rpm`` is the unsigned commanded speed at the end. M30 resets the M functions, and M02 does not.
+    This is the power-up state, except that units, tool offset and preset remain. Without ``reset``, the M
+    functions also remain. ``rpm`` is the unsigned commanded speed at the end. M30 resets the M functions,
+    and M02 does not.
     """
     return ModalState(
         metric=previous.metric,

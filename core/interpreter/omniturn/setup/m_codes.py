@@ -1,4 +1,4 @@
-"""Blocks of the M codes, before or after the motion of their line."""
+"""Execution of M codes, before or after the motion of their line."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def execute_before_motion(state: State, statement: Statement) -> Iterator[Block]
 
 
 def execute_after_motion(state: State, statement: Statement) -> Iterator[Block]:
-    """The block of an M code that acts after the motion."""
+    """Yield the block of an M code that acts after the motion."""
     code = statement.m_code_entry
     if code is None:
         yield from _machine_output(state, statement, on=False)
@@ -43,7 +43,10 @@ def coolant(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def switch_collet(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M12 (clamp) or M13 (unclamp). Raises ProgramError if the spindle must be stopped."""
+    """Yield the block of M12 (clamp) or M13 (unclamp).
+
+    Raises ProgramError if the spindle must be stopped first.
+    """
     opens = statement.m_number == 13
     assert statement.m_code_entry is not None
     check_conditions(state, statement, statement.m_code_entry)
@@ -52,13 +55,13 @@ def switch_collet(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def wait_for_input(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M91 to M94, which wait until a terminal is open or closed."""
+    """Yield the block of M91 to M94, which waits until a terminal is open or closed."""
     assert statement.m_code_entry is not None
     yield _done(state, statement, actions.InputWait(*statement.m_code_entry.required_input))
 
 
 def stop_program(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M00 or M01, with the comment for the operator."""
+    """Yield the block of M00 or M01, which shows the comment to the operator."""
     yield _done(
         state,
         statement,
@@ -72,7 +75,7 @@ def cancel_repeat(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def end_program(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of M30, which resets the M functions, or of M02, which does not."""
+    """Yield the block of M30, which resets the M functions, or of M02, which does not reset them."""
     reset = statement.m_number == 30
     warn_about_short_dwell(state)
     state.stay(compute_modal_after_end(state.modal, abs(state.compute_rpm_at(state.x)), reset=reset))
@@ -112,7 +115,10 @@ def _done(state: State, statement: Statement, action: actions.Action) -> Block:
 
 
 def _machine_output(state: State, statement: Statement, *, on: bool) -> Iterator[Block]:
-    """Yield the block of an M code of the machine file: output on before the motion, or off after it."""
+    """Yield the block of an M code from the machine file.
+
+    The output turns on before the motion or turns off after the motion.
+    """
     output = state.setup.limits.m_outputs.get(statement.m_number or 0)
     if statement.m_number in state.setup.limits.ignored_m_codes:
         return

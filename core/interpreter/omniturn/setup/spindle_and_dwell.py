@@ -1,4 +1,7 @@
-"""Spindle words (M03, M04, M05, S, constant surface speed), and G04, which also waits for the C axis."""
+"""Execution of spindle words (M03, M04, M05, S, constant surface speed) and of the dwell G04.
+
+G04 also waits for the C axis.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from core.message import Message
 
 
 def execute_spindle_modes(state: State, statement: Statement) -> None:
-    """Execute G96, G97, G76 and G77 of a line; with G76 or G77, S is their limit."""
+    """Execute G96, G97, G76 and G77 of a line; with G76 or G77, S is the speed limit."""
     if not statement.modal_codes:
         return
     modal = state.modal
@@ -46,7 +49,7 @@ def _limit(state: State, statement: Statement, code: int) -> float:
 
 
 def execute_speed_word(state: State, statement: Statement) -> None:
-    """Execute S of a line: rpm under G97, surface speed under G96."""
+    """Execute S of a line, which is in rpm under G97 and a surface speed under G96."""
     word = statement.words.get("S")
     if word is None or word.value is None or statement.s_is_limit:
         return
@@ -109,7 +112,9 @@ def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) -> None:
-    """Record the time of a turn of C by ``turn_deg`` degrees, if its drive does not report the position."""
+    """Record the time that C needs to turn by ``turn_deg`` degrees, if its drive does not report the
+    position.
+    """
     limits = state.setup.limits
     if limits.has_c_feedback or turn_deg <= _ARRIVAL_TOLERANCE:
         return
@@ -120,7 +125,7 @@ def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) ->
 
 
 def warn_about_short_dwell(state: State) -> None:
-    """Log a warning if a move or the end occurs before C is in position."""
+    """Log a warning if a move or the program end occurs before C is in position."""
     if state.turning is None:
         return
     (line, column, left), state.turning = state.turning, None
@@ -135,7 +140,7 @@ def warn_about_short_dwell(state: State) -> None:
 
 
 def _shorten_arrival(state: State, dwell_s: float) -> None:
-    """Subtract a dwell from the time that C needs to reach its position."""
+    """Subtract a dwell from the remaining time that C needs to reach its position."""
     if state.turning is not None:
         line, column, left = state.turning
         state.turning = (line, column, left - dwell_s)

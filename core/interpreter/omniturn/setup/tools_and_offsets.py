@@ -1,4 +1,4 @@
-"""Tools and offsets (T, D, G10 and G92), which relate program coordinates to machine positions."""
+"""Tools and offsets (T, D, G10 and G92), which determine the machine positions of program coordinates."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from core.message import Message
 
 
 def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset:
-    """Return the offset of a T word; 0 with a warning if it was never set."""
+    """Return the offset of a T word, or 0 with a warning if the offset was never set."""
     number = int(word.value or 0)
     offset = usage.use_tool_offset(number, state.setup.tools) if number else ToolOffset()
     if offset is None:
@@ -27,7 +27,7 @@ def _offset(state: State, line: int, word: Word, usage: ToolUsage) -> ToolOffset
 
 
 def make_missing_offset_warning(tools: Sequence[int], line: int, column: int) -> Diagnostic:
-    """Return the warning for tools whose offset was never set."""
+    """Return the warning for tools whose offsets were never set."""
     names, hint = ", ".join(f"T{number}" for number in tools), "Set the tool offsets."
     text = Message("{names} have no offset, so 0 is used and the machine will not start.", names=names)
     if len(tools) == 1:
@@ -39,7 +39,10 @@ def make_missing_offset_warning(tools: Sequence[int], line: int, column: int) ->
 
 
 def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage) -> Block:
-    """Return the block of T: a new tool offset and the sum of G10; T cancels G92, D and compensation."""
+    """Return the block of T, which activates a tool offset and the sum of the G10 shifts.
+
+    T cancels G92, D and compensation.
+    """
     modal = state.modal
     number = int(word.value or 0)
     if modal.css and number:
@@ -64,7 +67,7 @@ def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage
 
 
 def select_secondary_offset(state: State, statement: Statement) -> None:
-    """Execute D: its offset applies to the end point of this line's move and of all later moves."""
+    """Execute D, whose offset applies to the end points of this line's move and of all later moves."""
     number = statement.get_value("D")
     if number is None:
         return
@@ -74,7 +77,10 @@ def select_secondary_offset(state: State, statement: Statement) -> None:
 
 
 def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of G10, which adds to the shift at the next T. Raises ProgramError without X and Z."""
+    """Yield the block of G10, which adds to the work shift that the next T activates.
+
+    Raises ProgramError without X and Z.
+    """
     check_word_groups(statement, statement.code_entry)
     x, z = (
         round_to_resolution(state, statement, "X") or 0.0,
@@ -89,7 +95,10 @@ def add_work_shift(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def set_preset(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of G92, which sets the present coordinates. Raises ProgramError without X and Z."""
+    """Yield the block of G92, which assigns program coordinates to the present position.
+
+    Raises ProgramError without X and Z.
+    """
     check_word_groups(statement, statement.code_entry)
     if {"X", "Z", "F"} <= statement.words.keys():
         text = (
@@ -106,7 +115,7 @@ def set_preset(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def warn_about_idle_shifts(state: State) -> None:
-    """Log a warning at the end for each G10 that no T followed."""
+    """Log a warning at the end of the program for each G10 that is not followed by a T."""
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."

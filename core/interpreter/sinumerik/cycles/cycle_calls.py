@@ -1,4 +1,4 @@
-"""Calls of standard cycles: selection of the cycle, and the contour of CYCLE95."""
+"""Calls of standard cycles, with the selection of the cycle and the contour of CYCLE95."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ _CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
 
 
 def generate_cycle_blocks(state: State, line: LexedBlock, flow: Flow) -> Iterator[Block]:
-    """Return an iterator of the blocks of a standard cycle. Raises ProgramError before the first block."""
+    """Return an iterator over the blocks of a standard cycle. Raises ProgramError before the first block."""
     cycle = CycleCall(state, line)
     if line.called_name == "CYCLE95":
         return run_stock_removal(cycle, _contour(cycle, flow))
@@ -94,7 +94,7 @@ def _contour(cycle: CycleCall, flow: Flow) -> list[Element]:
 
 
 def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> Diagnostic:
-    """Return an error in the contour's file as a finding at the line of the cycle."""
+    """Return an error in the contour's file as a finding at the line of the cycle call."""
     message = Message(
         "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
     )

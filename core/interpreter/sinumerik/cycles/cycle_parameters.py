@@ -1,4 +1,4 @@
-"""Parameters of a standard cycle by name, with range checks, and the motions of the cycle as blocks."""
+"""Named parameters of a standard cycle with range checks, and conversion of the cycle's motions to blocks."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ _SAME = 1e-9  # mm
 class CycleStep(NamedTuple):
     """One motion of a cycle in the program frame, in mm with X as a radius.
 
-    ``feed`` is in the unit of ``modal.feed``, or the lead of a thread, or None for a rapid. A step with
-    ``action`` does not move. ``c_travel_deg`` is the simultaneous turn of C in degrees; ``feed`` is then in
-    mm/s. A ``is_tapping`` step follows the spindle, and ``in_hole`` means that the tap is in the hole at its
-    end.
+    ``feed`` is in the unit of ``modal.feed``, or is the lead of a thread, or None for a rapid. A step with
+    ``action`` does not move. ``c_travel_deg`` is the simultaneous rotation of C in degrees; ``feed`` is
+    then in mm/s. A step with ``is_tapping`` follows the spindle. ``ends_in_hole`` means that the tap is in
+    the hole at the end of the step.
     """
 
     x: float
@@ -70,7 +70,7 @@ _LIVE_TOOL_CYCLES = frozenset(("CYCLE81", "CYCLE82", "CYCLE83", "CYCLE85", "CYCL
 class CycleCall:
     """One call of a standard cycle.
 
-    ``x z`` is the position of the tip in the program frame, in mm with X as a radius.
+    ``x`` and ``z`` are the position of the tip in the program frame, in mm with X as a radius.
     """
 
     def __init__(self, state: State, line: LexedBlock) -> None:
@@ -100,8 +100,8 @@ class CycleCall:
     def _check(self) -> None:
         """Raise ProgramError if the cycle is not allowed in the present state.
 
-        It is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With TRANSMIT,
-        only drilling cycles are allowed.
+        A cycle is not allowed in a rotated, scaled or mirrored frame, or with nose compensation. With
+        TRANSMIT, only drilling cycles are allowed.
         """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
@@ -124,12 +124,15 @@ class CycleCall:
         return name in self._arguments
 
     def read_text(self, name: str) -> str:
-        """Return a string parameter in capitals; empty without it."""
+        """Return a string parameter in capitals, or an empty string if the call omits the parameter."""
         argument = self._arguments.get(name)
         return "" if argument is None or argument.text is None else argument.text.upper()
 
     def read_number(self, name: str, default: float = 0.0) -> float:
-        """Return a number as written. Raises ProgramError for a string."""
+        """Return a number as programmed, or ``default`` if it is omitted.
+
+        Raises ProgramError for a string.
+        """
         argument = self._arguments.get(name)
         if argument is None:
             return default
@@ -141,13 +144,13 @@ class CycleCall:
         )
 
     def read_length_mm(self, name: str, default: float = 0.0) -> float:
-        """Return a length in mm, converted from inches under G70."""
+        """Return a length in mm, converted from inches under G70, or ``default`` if it is omitted."""
         if not self.has_argument(name):
             return default
         return self.read_number(name) * (1.0 if self.state.modal.metric else 25.4)
 
     def read_size_mm(self, name: str, default: float = 0.0) -> float:
-        """Return a length without a sign, in mm. Raises ProgramError if it is negative."""
+        """Return an unsigned length in mm. Raises ProgramError if the length is negative."""
         value = self.read_length_mm(name, default)
         self.check_parameter(
             value >= 0.0, name, "{name} is a size and cannot be negative", "Remove the sign."
@@ -155,7 +158,7 @@ class CycleCall:
         return value
 
     def read_required_mm(self, name: str) -> float:
-        """Return a required length in mm. Raises ProgramError if it is missing."""
+        """Return a required length in mm. Raises ProgramError if the parameter is missing."""
         if not self.has_argument(name):
             raise self.make_parameter_error(
                 name, "{name} is missing", "Add this parameter to {call}.", call=self.line.called_name
@@ -163,7 +166,10 @@ class CycleCall:
         return self.read_length_mm(name)
 
     def read_positive_mm(self, name: str, alarm: _Alarm = _PARAMETER_CODE) -> float:
-        """Return a required length above 0, in mm. Raises ProgramError if it is missing or not above 0."""
+        """Return a required length above 0, in mm.
+
+        Raises ProgramError if the length is missing or not above 0.
+        """
         value = self.read_required_mm(name)
         self.check_parameter(value > 0.0, name, "{name} must be greater than 0", "Correct the value.", alarm)
         return value
@@ -196,7 +202,7 @@ class CycleCall:
             )
 
     def read_feed(self, name: str) -> float | None:
-        """Return a feed in the unit of ``modal.feed``; without the parameter, the active feed."""
+        """Return a feed in the unit of ``modal.feed``, or the active feed if the parameter is omitted."""
         if not self.has_argument(name) or not self.read_number(name):
             return self.state.modal.feed
         value = self.read_number(name)
@@ -205,7 +211,10 @@ class CycleCall:
         return value if self.state.modal.per_rev else value / 60.0
 
     def read_machining_type(self, name: str, allowed_types: range) -> int:
-        """Return VARI. Raises ProgramError with the alarm of the control for an invalid type."""
+        """Return the machining type VARI.
+
+        Raises ProgramError with the alarm of the control for an invalid type.
+        """
         value = self.read_number(name)
         self._demand_whole(name, value)
         if round(value) not in allowed_types:
@@ -218,7 +227,7 @@ class CycleCall:
         return round(value)
 
     def read_angle_deg(self, name: str, text: str) -> float:
-        """Return an angle from 0 to less than 360 degrees. Raises ProgramError for any other value."""
+        """Return an angle in degrees from 0 to less than 360. Raises ProgramError for any other value."""
         value = self.read_number(name)
         self.check_parameter(0.0 <= value < 360.0, name, text)
         return value
@@ -232,9 +241,10 @@ class CycleCall:
         hint: str = _POINT,
         maximum: int = MAX_PASSES,
     ) -> int:
-        """Return the number of passes of ``depth_per_pass`` mm for a depth in mm.
+        """Return the number of passes for a total depth, with at most ``depth_per_pass`` per pass, both in
+        mm.
 
-        Raises ProgramError if there are too many.
+        Raises ProgramError if the number is too high.
         """
         count = count_passes(total_depth, depth_per_pass)
         self.check_parameter(count <= min(maximum, MAX_PASSES), name, text, hint, count=f"{count:,}")
@@ -243,13 +253,13 @@ class CycleCall:
     def check_feed_known(
         self, feed: float | None, alarm: int = NO_F, hint: str = "Program F before this block."
     ) -> float:
-        """Return the feed. Raises ProgramError if it is None."""
+        """Return the feed. Raises ProgramError if the feed is None."""
         if feed is None:
             raise self.make_call_error(alarm, "no feedrate is programmed.", hint)
         return feed
 
     def make_clearance_steps(self, clearance_x: float, outward_sign: float = 1.0) -> list[CycleStep]:
-        """Return a step to X ``clearance_x`` if the tool is closer to the part.
+        """Return a step to X ``clearance_x`` if the tool is closer to the part, or an empty list otherwise.
 
         ``outward_sign`` is the sign of X away from the part.
         """
@@ -263,7 +273,10 @@ class CycleCall:
     def make_parameter_error(
         self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _PARAMETER_CODE, /, **values: object
     ) -> ProgramError:
-        """Return an error about one parameter; ``values`` fill the placeholders of ``what`` and ``hint``."""
+        """Return an error about one parameter.
+
+        ``values`` are the values for the placeholders of ``what`` and ``hint``.
+        """
         argument = self._arguments.get(name)
         column = self.line.call_column if argument is None else argument.column
         values = {"name": name, "call": self.line.called_name, **values}
@@ -280,19 +293,22 @@ class CycleCall:
         /,
         **values: object,
     ) -> None:
-        """Raise the error of ``make_parameter_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_parameter_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_parameter_error(name, message, hint, code, **values)
 
     def make_call_error(self, code: _Alarm, text: str, hint: str, /, **values: object) -> ProgramError:
-        """Return an error about the whole call; ``values`` fill the placeholders of ``text`` and ``hint``."""
+        """Return an error about the whole call.
+
+        ``values`` are the values for the placeholders of ``text`` and ``hint``.
+        """
         values = {"call": self.line.called_name, **values}
         return self._fault(
             self.line.call_column, code, fill_template(text, values), fill_template(hint, values)
         )
 
     def require(self, condition: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
-        """Raise the error of ``make_call_error`` unless the condition ``condition`` is true."""
+        """Raise the error of ``make_call_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_call_error(code, text, hint, **values)
 
@@ -305,7 +321,10 @@ class CycleCall:
         self.state.log.add(replace(found, severity=Severity.WARNING))
 
     def make_blocks(self, steps: Sequence[CycleStep]) -> Iterator[Block]:
-        """Yield the motions as blocks. All feeds are checked before the first block. Raises ProgramError."""
+        """Yield the motions as blocks.
+
+        All feeds are checked before the first block. Raises ProgramError for an invalid feed.
+        """
         at, kept = (self.x, self.z), list[tuple[CycleStep, float]]()
         for step in steps:
             still = step.action is None and step.center is None and not step.c_travel_deg
@@ -320,7 +339,7 @@ class CycleCall:
             yield self._block(step, feed)
 
     def _check_feed(self, step: CycleStep, x0: float) -> float:
-        """Return the feed of a step in the unit of its block. Raises ProgramError if it is invalid."""
+        """Return the feed of a step in the unit of its block. Raises ProgramError if the feed is invalid."""
         state, modal = self.state, self.state.modal
         state.set_modal(modal._replace(feed=step.feed))
         try:
@@ -381,12 +400,15 @@ class CycleCall:
 
 
 def make_action_step(action: Action, spindle_direction: int | None = None) -> CycleStep:
-    """Return a step with an action at the present position; ``spindle`` is as in ``CycleStep``."""
+    """Return a step that executes an action at the present position.
+
+    ``spindle_direction`` has the same meaning as in ``CycleStep``.
+    """
     return CycleStep(0.0, 0.0, action=action, spindle_direction=spindle_direction)
 
 
 def make_dwell_steps(seconds: float) -> list[CycleStep]:
-    """Return a dwell step, or an empty list for 0 s."""
+    """Return a list with one dwell step, or an empty list for 0 s."""
     return [make_action_step(Dwell(seconds))] if seconds > 0.0 else []
 
 

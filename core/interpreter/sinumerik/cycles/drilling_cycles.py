@@ -1,6 +1,6 @@
 """Drilling cycles CYCLE81 to 83 and 85 to 89 along Z under G17, and the hole patterns HOLES1 and HOLES2.
 
-CYCLE86, CYCLE87 and CYCLE88 are boring cycles that orient or stop the spindle at the bottom.
+CYCLE86, CYCLE87 and CYCLE88 are boring cycles that orient or stop the spindle at the bottom of the hole.
 """
 
 from __future__ import annotations
@@ -41,9 +41,10 @@ _SAME = 1e-6  # mm
 
 
 class HolePositions(NamedTuple):
-    """Z positions of one hole: retract plane, reference plane, safety clearance and bottom.
+    """The Z positions of one hole: retract plane, reference plane, safety clearance and bottom.
 
-    ``drilling_sign`` is the drilling direction, -1 or +1. ``x`` is the present X position of the tool.
+    ``drilling_sign`` is the sign of the drilling direction along Z. ``x`` is the present X position of the
+    tool.
     """
 
     x: float
@@ -54,12 +55,12 @@ class HolePositions(NamedTuple):
     drilling_sign: float
 
     def step_to(self, z: float, feed: float | None = None) -> CycleStep:
-        """Return a step to ``z``, in rapid without a feed."""
+        """Return a step to ``z``, which is a rapid if ``feed`` is None."""
         return CycleStep(self.x, z, feed)
 
 
 def read_hole(cycle: CycleCall) -> HolePositions:
-    """Return the hole of a call. Raises ProgramError with the name of an invalid parameter."""
+    """Return the hole of a cycle call. Raises ProgramError with the name of an invalid parameter."""
     if cycle.state.plane != 17:
         text = "{call} drills perpendicular to plane G{plane}; drilling along Z needs G17."
         hint = "Write G17 before this block and G18 after it."
@@ -97,7 +98,10 @@ def read_hole(cycle: CycleCall) -> HolePositions:
 
 
 def read_dwell_s(cycle: CycleCall, name: str) -> float:
-    """Return a dwell in seconds; a negative value is in spindle revolutions."""
+    """Return a dwell in seconds.
+
+    A negative parameter value specifies spindle revolutions, which are converted to seconds.
+    """
     value = cycle.read_number(name)
     if value >= 0.0:
         return value
@@ -112,7 +116,10 @@ def _feed(cycle: CycleCall) -> float:
 
 
 def run_drilling(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE81 and CYCLE82: feed to the depth, dwell, rapid out."""
+    """Return the blocks of CYCLE81 and CYCLE82.
+
+    The tool feeds to the depth, dwells, and retracts at rapid.
+    """
     hole, feed = read_hole(cycle), _feed(cycle)
     dwells = make_dwell_steps(read_dwell_s(cycle, "DTB"))
     return cycle.make_blocks(
@@ -126,7 +133,10 @@ def run_drilling(cycle: CycleCall) -> Iterator[Block]:
 
 
 def run_boring(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE85 and CYCLE89: feed to the depth, dwell, feed out."""
+    """Return the blocks of CYCLE85 and CYCLE89.
+
+    The tool feeds to the depth, dwells, and retracts at a feed.
+    """
     hole = read_hole(cycle)
     into, out = cycle.check_feed_known(cycle.read_feed("FFR")), cycle.check_feed_known(cycle.read_feed("RFF"))
     steps = [
@@ -138,7 +148,7 @@ def run_boring(cycle: CycleCall) -> Iterator[Block]:
 
 
 def run_pecking(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE83: pecks that decrease by DAM.
+    """Return the blocks of CYCLE83, whose pecks decrease by DAM.
 
     After each peck, the drill retracts fully (VARI 1) or by a short distance (VARI 0).
     """
@@ -166,9 +176,10 @@ def run_pecking(cycle: CycleCall) -> Iterator[Block]:
 
 
 def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
-    """Return Z of each peck: the first at FDEP or FDPR, each following peck reduced by DAM.
+    """Return the Z position of each peck in mm.
 
-    A negative DAM is a factor. The last two pecks are equal.
+    The first peck ends at FDEP or FDPR, and DAM reduces each following peck. A negative DAM is a factor.
+    The last two pecks are equal.
     """
     whole = abs(hole.bottom_z - hole.reference_z)
     first = (
@@ -205,7 +216,10 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
 
 
 def _turning(cycle: CycleCall) -> list[CycleStep]:
-    """Return a spindle start in the direction SDIR, if necessary. Raises ProgramError without a speed."""
+    """Return the step that starts the spindle in the direction SDIR, if necessary.
+
+    Raises ProgramError without a speed.
+    """
     direction = cycle.read_number("SDIR")
     if direction not in {3.0, 4.0}:
         raise cycle.make_parameter_error(
@@ -220,8 +234,8 @@ def _turning(cycle: CycleCall) -> list[CycleStep]:
 def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE86.
 
-    At the bottom, the spindle is oriented to POSS, and the edge is lifted by RPA and RPAP. The retract is a
-    rapid.
+    At the bottom, the spindle is oriented to POSS, and the edge is lifted off the wall by RPA and RPAP. The
+    tool retracts at rapid.
     """
     hole, state = read_hole(cycle), cycle.state
     check_can_position(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
@@ -241,27 +255,35 @@ def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _steps_to_bottom(cycle: CycleCall, hole: HolePositions) -> list[CycleStep]:
-    """Return the steps to the bottom with the spindle turning by SDIR, and the dwell there."""
+    """Return the steps to the bottom, including the dwell there.
+
+    The spindle runs in the direction SDIR.
+    """
     steps = [hole.step_to(hole.clearance_z), *_turning(cycle), hole.step_to(hole.bottom_z, _feed(cycle))]
     return [*steps, *make_dwell_steps(read_dwell_s(cycle, "DTB"))]
 
 
 def _steps_to_spindle_angle(cycle: CycleCall, hole: HolePositions, angle: float) -> list[CycleStep]:
-    """Return the steps that bring the spindle to an angle, by its drive or as the C axis."""
+    """Return the steps that orient the spindle to an angle, by its drive or as the C axis."""
     if is_oriented_by_drive(cycle.state):
         return [make_action_step(SpindlePositioning(angle), 0)]
     return make_spindle_lock_steps(cycle, hole.step_to(hole.bottom_z), angle)
 
 
 def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float) -> list[CycleStep]:
-    """Return the steps that lock the spindle as C at the present position and turn it to an angle."""
+    """Return the steps that lock the spindle as the C axis at the present position and rotate it to an
+    angle.
+    """
     turn, speed = compute_shortest_turn(cycle.state, angle), cycle.state.setup.limits.max_axis_speeds[2]
     turned = [position._replace(feed=speed, c_travel_deg=turn)] if turn else []
     return [make_action_step(SpindleLock(orient=False), 0), *turned]
 
 
 def stop(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE87 and CYCLE88: stop the spindle at the bottom, M0, rapid out."""
+    """Return the blocks of CYCLE87 and CYCLE88.
+
+    At the bottom, the spindle stops and the program stops with M0. The tool then retracts at rapid.
+    """
     hole = read_hole(cycle)
     rest = [make_action_step(SpindleStop(stands=True), 0), make_action_step(ProgramStop(optional=False))]
     return cycle.make_blocks([*_steps_to_bottom(cycle, hole), *rest, hole.step_to(hole.retract_z)])
@@ -272,14 +294,17 @@ _MAX_HOLES = 1000
 
 
 def make_missing_cycle_error(line: LexedBlock) -> ProgramError:
-    """Return the error for a hole pattern without a drilling cycle."""
+    """Return the error for a hole pattern without an active drilling cycle."""
     text = Message("{call} uses the cycle called with MCALL, but no MCALL is active.", call=line.called_name)
     hint = "Write MCALL CYCLE81( ) or another cycle before this block."
     return line.make_error(line.call_column, "pattern-cycle", text, hint)
 
 
 def generate_pattern_moves(state: State, line: LexedBlock) -> Iterator[Block]:
-    """Yield a rapid to each hole of a pattern in X and Y of the face. Raises ProgramError."""
+    """Yield a rapid to each hole of a pattern in X and Y of the face.
+
+    Raises ProgramError for invalid parameters.
+    """
     cycle = CycleCall(state, line)
     plane = state.transformation
     if plane is None or not plane.has_z_depth:
@@ -300,7 +325,11 @@ def generate_pattern_moves(state: State, line: LexedBlock) -> Iterator[Block]:
 
 
 def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
-    """Return the holes of HOLES1: along the angle STA1 from SPCA, SPCO, the first at FDIS, spaced by DBH."""
+    """Return the hole positions of HOLES1.
+
+    The holes are on a line through (SPCA, SPCO) at the angle STA1. The first hole is at the distance FDIS,
+    and the spacing is DBH.
+    """
     x, y, angle = (
         cycle.read_length_mm("SPCA"),
         cycle.read_length_mm("SPCO"),
@@ -318,9 +347,10 @@ def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
 
 
 def _circle(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
-    """Return the holes of HOLES2: on radius RAD about CPA, CPO from the angle STA1, spaced by INDA.
+    """Return the hole positions of HOLES2.
 
-    Without INDA, the holes are spaced equally on the full circle.
+    The holes are on a circle with the radius RAD about (CPA, CPO), starting at the angle STA1 with the
+    spacing INDA. Without INDA, the holes are spaced equally on the full circle.
     """
     x, y, radius = cycle.read_length_mm("CPA"), cycle.read_length_mm("CPO"), cycle.read_positive_mm("RAD")
     first, apart = cycle.read_number("STA1"), cycle.read_number("INDA") or 360.0 / number

@@ -1,12 +1,13 @@
 """Grooving with CYCLE93, with straight or tapered flanks, outside or inside, and part-off with CYCLE92.
 
 WIDG is the width of the bottom, and SPL is the corner of the surface at which the groove begins. Tapered
-flanks make the groove wider toward the surface. The tool width is the distance between its two cutting edges,
-D and _DN in the tool table, or D+1 without _DN, as on the original control.
+flanks make the groove wider toward the surface. The tool width is the distance between the two cutting
+edges of the tool. These edges are D and _DN in the tool table, or D+1 without _DN, as on the original
+control.
 
-Part-off is slower near the axis. The active edge moves down at SPL. The meaning of the parameters of CYCLE92
-follows the manufacturer's operating manuals, and their names and order follow published lists. The digits of
-``_DMODE`` and ``_AMODE`` are not documented, so that only depths as diameters are accepted.
+Part-off is slower near the axis. The active edge moves down at SPL. The meaning of the parameters of
+CYCLE92 follows the manufacturer's operating manuals, and their names and order follow published lists. The
+digits of ``_DMODE`` and ``_AMODE`` are not documented, so only depths as diameters are accepted.
 """
 
 from __future__ import annotations
@@ -40,12 +41,11 @@ _OVERLAP = 0.95  # of the tool width; the maximum offset between adjacent cuts
 
 
 class GrooveGeometry(NamedTuple):
-    """Geometry of a groove in mm, with X as a radius.
+    """The geometry of a groove in mm, with X as a radius.
 
-    ``outward_sign`` is the sign of X from the bottom to the opening.
-
-    The bottom extends from ``bottom_min_z`` to ``bottom_max_z`` along Z. The flanks extend
-    ``low_flank_z_extent`` and ``high_flank_z_extent`` farther at the ``surface_radius``.
+    ``outward_sign`` is the sign of X from the bottom to the opening. The bottom extends from
+    ``bottom_min_z`` to ``bottom_max_z``. At ``surface_radius``, the groove is wider by
+    ``low_flank_z_extent`` and ``high_flank_z_extent`` at its two ends.
     """
 
     outward_sign: float
@@ -58,7 +58,7 @@ class GrooveGeometry(NamedTuple):
 
 
 def read_groove(cycle: CycleCall) -> GrooveGeometry:
-    """Return the groove of a call. Raises ProgramError with the name of an invalid parameter."""
+    """Return the groove of a cycle call. Raises ProgramError with the name of an invalid parameter."""
     kind = (cycle.read_machining_type("VARI", range(1, 19)) - 1) % 10 + 1
     cycle.check_parameter(kind <= 8, "VARI", "{name} must be 1 to 8 or 11 to 18", "Correct the value.", 61002)
     cycle.check_zero("STA1", "program a groove on a taper as a CYCLE95 contour")
@@ -80,7 +80,10 @@ def read_groove(cycle: CycleCall) -> GrooveGeometry:
 
 
 def _flank_extent(cycle: CycleCall, name: str, depth: float) -> float:
-    """Return the Z extent of a flank from the bottom to the surface, in mm. Raises ProgramError."""
+    """Return the Z extent of a flank from the bottom to the surface, in mm.
+
+    Raises ProgramError for an invalid flank angle.
+    """
     angle = cycle.read_number(name)
     text = "{name} must be a flank angle from 0 to less than 90 degrees"
     cycle.check_parameter(0.0 <= angle <= _STEEPEST, name, text)
@@ -90,8 +93,9 @@ def _flank_extent(cycle: CycleCall, name: str, depth: float) -> float:
 def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     """Return the width of the tool in mm, and whether the active edge is its lower corner.
 
-    A tool that is not in the table gets at most the width ``max_width``, with a warning; such a program
-    cannot start. Raises ProgramError if the table has only one of the two edges.
+    For a tool that is not in the table, the width is at most ``max_width`` and a warning is logged; a
+    program with this warning cannot start. Raises ProgramError if the table contains only one of the two
+    edges.
     """
     state = cycle.state
     key, tools = state.modal.tool, state.setup.tools
@@ -126,9 +130,10 @@ def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
 
 
 def run_grooving(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE93: adjacent cuts in steps of IDEP, then flanks and bottom.
+    """Return the blocks of CYCLE93.
 
-    Raises ProgramError for invalid parameters.
+    The cycle makes adjacent cuts in steps of IDEP and then finishes the flanks and the bottom. Raises
+    ProgramError for invalid parameters.
     """
     shape = read_groove(cycle)
     bottom_left, flank_left = cycle.read_size_mm("FAL1"), cycle.read_size_mm("FAL2")
@@ -168,7 +173,7 @@ def run_grooving(cycle: CycleCall) -> Iterator[Block]:
 
 
 class _Plan:
-    """Motions by depth and Z position of the lower tool corner."""
+    """Planner of grooving motions, in terms of depth and of the Z position of the lower tool corner."""
 
     def __init__(
         self, cycle: CycleCall, shape: GrooveGeometry, feed: float, clearance: float, corner: float
@@ -200,8 +205,9 @@ class _Plan:
     def plunge_under_flank(
         self, z_position: float, flank_extent: float, width: float, bottom: float
     ) -> list[CycleStep]:
-        """Return plunges from ``place`` outward under a flank with the extent ``flank_extent``, each less
-        deep.
+        """Return plunges of decreasing depth from ``z_position`` outward under a flank.
+
+        ``flank_extent`` is the Z extent of the flank in mm.
         """
         count = self._cycle.compute_pass_count(
             abs(flank_extent), width * _OVERLAP, "ANG1", _CUTS, "Check the angles."
@@ -213,7 +219,7 @@ class _Plan:
         return steps
 
     def finish(self, width: float) -> list[CycleStep]:
-        """Return the finishing moves down each flank and along the bottom to the middle."""
+        """Return the finishing moves down each flank and along the bottom to its middle."""
         shape, feed = self._shape, self._feed
         high, middle = shape.bottom_max_z - width, (shape.bottom_min_z + shape.bottom_max_z - width) / 2.0
         steps: list[CycleStep] = []
@@ -241,11 +247,12 @@ _DIRECTION = {3: 1, 4: -1}  # spindle direction by _SDAC
 
 
 def run_part_off(cycle: CycleCall) -> Iterator[Block]:
-    """Yield the blocks of CYCLE92: down to _DIAG1 at _FF1, then to _DIAG2 at _FF2 and _SS2 rpm.
+    """Yield the blocks of CYCLE92 (part-off).
 
-    With the limit _SV2, _SV1 is a surface speed as for G96; otherwise it is in rpm. After the cycle, the
-    previous speed is active again, or the last speed of the cycle if there was none. Raises ProgramError
-    before the first block.
+    The tool feeds to _DIAG1 at _FF1, and then to _DIAG2 at _FF2 and _SS2 rpm. With the limit _SV2, _SV1 is
+    a surface speed as for G96. Otherwise, it is in rpm. After the cycle, the previous speed is active
+    again, or the last speed of the cycle if no speed was active before. Raises ProgramError before the
+    first block.
     """
     cycle.check_zero("_RC", "cut the chamfer or the radius with G1 before the cycle")
     cycle.check_zero("_VARI", "the tool only retracts, because this machine has no parts catcher")
@@ -272,7 +279,10 @@ def run_part_off(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _depths(cycle: CycleCall) -> tuple[float, float]:
-    """Return the radii at which the tool slows down and stops. Raises ProgramError."""
+    """Return the radii at which the tool slows down and stops, in mm.
+
+    Raises ProgramError if the parameters contradict each other.
+    """
     surface, last = cycle.read_positive_mm("SPD"), cycle.read_required_mm("_DIAG2")
     slow = cycle.read_length_mm("_DIAG1", last) if cycle.has_argument("_DIAG1") else last
     if not last <= slow <= surface:
@@ -293,7 +303,7 @@ def _feeds(cycle: CycleCall) -> tuple[float, float]:
 def _speed(cycle: CycleCall, initial_modal: ModalState) -> ModalState:
     """Return the modal state with the speed that applies down to _DIAG1.
 
-    Raises ProgramError if the spindle does not run.
+    Raises ProgramError if the spindle is stopped.
     """
     value, most = cycle.read_number("_SV1"), cycle.read_number("_SV2")
     direction = cycle.read_whole_number("_SDAC", 0, 0, 4)
@@ -323,7 +333,10 @@ def _blocks(
     first_steps: list[CycleStep],
     last_steps: list[CycleStep],
 ) -> Iterator[Block]:
-    """Yield the blocks of both sections, each at its speed. All checks are in the first section."""
+    """Yield the blocks of both sections, each at its own speed.
+
+    All checks are made before the first block of the first section.
+    """
     fast, before, rpm = speeds
     state = cycle.state
     slow = fast._replace(css=False, rpm=rpm) if rpm else fast

@@ -1,8 +1,8 @@
-"""Stock removal with CYCLE95: roughing and finishing of a contour, along Z or X, outside or inside.
+"""Stock removal with CYCLE95, which roughs and finishes a contour along Z or X, outside or inside.
 
-``contour_passes`` calculates the passes. The cycle calculates its start point from the contour, independent
-of the tool position. It is calculated for the nose center, so that tapers and arcs are accurate, and its
-output is the path of the tip. The contour is a subprogram, or the lines between two labels.
+``contour_passes`` calculates the passes. The cycle calculates its start point from the contour and not from
+the tool position. The passes are calculated for the nose center, so that tapers and arcs are accurate, and
+are output as the path of the tip. The contour is a subprogram, or the lines between two labels.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ _END = frozenset({2, 17, 30})
 def find_contour_lines(
     contour_name: str, active_routine: Routine, routine: Routine | None
 ) -> list[SourceLine] | None:
-    """Return the lines of a contour by its name, or None if the name does not exist."""
+    """Return the lines of a contour with this name, or None if the name does not exist."""
     if ":" in contour_name:
         first, last = (part.strip() for part in contour_name.split(":", 1))
         start = find_label_index(
@@ -79,9 +79,10 @@ def find_contour_lines(
 
 
 def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
-    """Return the lines and arcs of a contour in the program frame, in mm; the first move is its first point.
+    """Return the lines and arcs of a contour in the program frame, in mm.
 
-    The active state does not change. Raises ProgramError for a line that is not allowed in a contour.
+    The first move leads to the first point of the contour. The active state does not change. Raises
+    ProgramError for a line that is not allowed in a contour.
     """
     reader = _Reader(state)
     for line in lines:
@@ -107,7 +108,10 @@ class _Reader:
         self._blocks: list[Block] = []
 
     def read_line(self, line: SourceLine) -> bool:
-        """Read one line, and return whether it ends the contour. Raises ProgramError."""
+        """Read one line, and return whether this line ends the contour.
+
+        Raises ProgramError for a line that is not allowed in a contour.
+        """
         for found in line.errors:
             raise ProgramError(found)
         if (
@@ -174,8 +178,9 @@ _ROUNDING = 200
 
 
 class MachiningType(NamedTuple):
-    """Machining type of VARI: ``is_transverse`` (along X instead of Z), ``is_inside``, roughing and
-    finishing.
+    """The machining type that VARI specifies.
+
+    ``is_transverse`` means that the passes are along X instead of Z.
     """
 
     is_transverse: bool
@@ -185,7 +190,7 @@ class MachiningType(NamedTuple):
 
 
 def read_machining_type(cycle: CycleCall) -> MachiningType:
-    """Return the type of VARI 1 to 12 or 201 to 212. Raises ProgramError for any other value."""
+    """Return the machining type for VARI 1 to 12 or 201 to 212. Raises ProgramError for any other value."""
     value = cycle.read_number("VARI", -1.0)
     number = round(value) % _ROUNDING
     if value != round(value) or value < 1 or number not in range(1, 13) or value > _ROUNDING + 12:
@@ -199,7 +204,7 @@ def read_machining_type(cycle: CycleCall) -> MachiningType:
 
 
 def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Block]:
-    """Return the blocks of the cycle. Raises ProgramError before the first block."""
+    """Return the blocks of CYCLE95. Raises ProgramError before the first block."""
     kind = read_machining_type(cycle)
     text = "{name} refers to a contour without lines or arcs"
     cycle.check_parameter(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR_DEFINITION)
@@ -219,7 +224,7 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
 
 
 class _Plan:
-    """Motions in depth and length, which are X and Z, or Z and X for passes along X."""
+    """Planner of the motions in depth and length, which are X and Z, or Z and X for passes along X."""
 
     def __init__(self, cycle: CycleCall, kind: MachiningType, contour: list[Element]) -> None:
         self._cycle, self._kind = cycle, kind
@@ -236,7 +241,7 @@ class _Plan:
         self._start = self._start_point()
 
     def _free_side(self) -> tuple[float, float]:
-        """Return the signs of depth and length from the part to the open side of the contour."""
+        """Return the signs of the directions in depth and length toward the open side of the contour."""
         if self._kind.is_transverse:  # The face is on the right side.
             return 1.0, (-1.0 if self._kind.is_inside else 1.0)
         first, last = self._contour[0].start, self._contour[-1].end
@@ -245,7 +250,7 @@ class _Plan:
         return out, (1.0 if deep[1] >= other[1] else -1.0)
 
     def _extend_contour(self) -> list[Element]:
-        """Return the contour, extended by the nose radius at ends that lead straight out.
+        """Return the contour with its ends extended by the nose radius where they lead straight outward.
 
         The tip then reaches the programmed end.
         """
@@ -263,7 +268,8 @@ class _Plan:
     def _start_point(self) -> Point:
         """Return the start point of the cycle, outside both ends of the contour.
 
-        It is at the outermost depth of the contour, and in front of it by the allowance and _VRT.
+        The start point is at the outermost depth of the contour, at a distance of the allowance plus _VRT
+        in front of it.
         """
         out, front = self._signs
         boxes = [each.bounding_box for each in self._contour]
@@ -283,7 +289,7 @@ class _Plan:
             raise self._cycle.make_parameter_error("FAL", text, hint, 61606) from None
 
     def plan_approach(self) -> list[CycleStep]:
-        """Return the steps to the start point: first away from the part in depth, then in length."""
+        """Return the steps to the start point, first in depth away from the part and then in length."""
         out, _ = self._signs
         depth, way = self._start
         x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
@@ -297,7 +303,7 @@ class _Plan:
     def plan_roughing(self) -> list[CycleStep]:
         """Return the roughing steps.
 
-        These are equal passes of at most MID, and a pass along the contour that leaves the allowance.
+        The steps are equal passes of at most MID, and a pass along the contour that leaves the allowance.
         """
         cycle = self._cycle
         infeed = cycle.read_size_mm("MID")
@@ -340,7 +346,7 @@ class _Plan:
     def _with_allowance(self) -> tuple[list[Element], float]:
         """Return the contour shifted by FALX and FALZ, and the remaining allowance.
 
-        For a contour with a recess, the contour is not shifted, and the larger value is the allowance.
+        A contour with a recess is not shifted. Its allowance is the larger of the two values.
         """
         depth, way = self._allow
         out, front = self._signs
@@ -376,7 +382,7 @@ class _Plan:
         return steps
 
     def _break_chips(self, position: Point, move: CycleMove, feed: float) -> list[CycleStep]:
-        """Return a cut with a dwell DT after each distance DAM to break chips."""
+        """Return a cut that is interrupted by a dwell DT after each distance DAM to break chips."""
         length, seconds = self._cycle.read_size_mm("DAM"), self._cycle.read_number("DT")
         way = move.z - position[1]
         if (
@@ -398,7 +404,7 @@ class _Plan:
         return steps
 
     def _step(self, move: CycleMove, feed: float | None = None) -> CycleStep:
-        """Return a motion of the nose center, in depth and length, as a step of the tip in X and Z."""
+        """Convert a motion of the nose center in depth and length to a step of the tip in X and Z."""
         dx, dz = self._tip
         at, centre, clockwise = (move.x, move.z), move.center, move.is_clockwise
         if self._kind.is_transverse:
@@ -413,8 +419,8 @@ class _Plan:
 def _tool_nose(cycle: CycleCall) -> tuple[float, Point]:
     """Return the nose radius, and the position of the tip relative to the nose center in mm (X, Z).
 
-    Without a tip quadrant, the position of the center is unknown. The tip then follows the contour, with a
-    warning.
+    Without a tip quadrant, the position of the center is unknown. The tip then follows the contour, and a
+    warning is logged.
     """
     edge = cycle.state.edge
     if not cycle.state.modal.edge or not edge.nose_radius:

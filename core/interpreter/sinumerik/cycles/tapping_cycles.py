@@ -1,7 +1,7 @@
-"""Tapping with CYCLE84, CYCLE840, G331 and G332: rigid with the C axis, or with a compensating chuck.
+"""Tapping with CYCLE84, CYCLE840, G331 and G332, either rigid with the C axis or with a compensating chuck.
 
-In rigid tapping, C turns in proportion to the travel along Z, one revolution per lead. With a compensating
-chuck, Z moves at a feed per revolution, and the spindle reverses at the bottom.
+In rigid tapping, C rotates in proportion to the travel along Z, one revolution per lead. With a
+compensating chuck, Z moves at a feed per revolution, and the spindle reverses at the bottom.
 """
 
 from __future__ import annotations
@@ -39,7 +39,10 @@ _INCH = 25.4
 
 
 def read_tap_lead(cycle: CycleCall) -> float:
-    """Return the lead (PIT or MPIT) in mm/rev, negative for a left-hand thread; 0 if neither is given."""
+    """Return the lead (PIT or MPIT) in mm/rev, or 0 if both parameters are omitted.
+
+    The lead of a left-hand thread is negative.
+    """
     unit = cycle.read_whole_number("_PITA", 0, 0, 4)
     text = "{name} is 4, which specifies the lead as a module"
     cycle.check_parameter(unit != 4, "_PITA", text, "Enter PIT in mm.", WRONG_THREAD_LEAD)
@@ -58,8 +61,9 @@ def read_tap_lead(cycle: CycleCall) -> float:
 
 
 def run_rigid_tapping(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE84: orient the spindle to POSS, tap in at SST and out at SST1.
+    """Return the blocks of CYCLE84.
 
+    The spindle is oriented to POSS, and the tool then taps in at the speed SST and out at the speed SST1.
     Raises ProgramError for invalid parameters.
     """
     hole, state = read_hole(cycle), cycle.state
@@ -85,13 +89,19 @@ def run_rigid_tapping(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _final_spindle_steps(cycle: CycleCall, direction: int) -> list[CycleStep]:
-    """Return the spindle start after the cycle: 3 and 4 as M3 and M4, nothing for 5."""
+    """Return the steps that start the spindle after the cycle.
+
+    The direction is 3 as for M3, 4 as for M4, or 5 for a stopped spindle, for which the list is empty.
+    """
     sign = 1 if direction == 3 else -1
     return [] if direction == 5 else [make_action_step(SpindleRun(sign * cycle.state.modal.rpm), sign)]
 
 
 def _speed(cycle: CycleCall, name: str, default: float) -> float:
-    """Return a tapping speed in rpm, limited to the maximum speed of C, with a warning."""
+    """Return a tapping speed in rpm, limited to the maximum speed of C.
+
+    A warning is logged if the speed is limited.
+    """
     value = cycle.read_number(name, default) or default
     most = cycle.state.setup.limits.c_max_rpm
     text = "{name} does not define a speed"
@@ -109,7 +119,7 @@ def _speed(cycle: CycleCall, name: str, default: float) -> float:
 def _tapping_steps(
     cycle: CycleCall, hole: HolePositions, lead: float, speeds: tuple[float, float]
 ) -> list[CycleStep]:
-    """Return the tapping steps in one pass or in steps of _DAM.
+    """Return the tapping steps, in one pass or in steps of _DAM.
 
     After each step, the tap retracts by _VRT (_VARI 1) or out of the hole (_VARI 2).
     """
@@ -141,9 +151,10 @@ def _tapping_steps(
 
 
 def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE840: feed in by the lead, reverse, feed out, then SDAC.
+    """Return the blocks of CYCLE840.
 
-    Raises ProgramError for invalid parameters.
+    The tool feeds in by the lead, the spindle reverses, the tool feeds out, and the spindle continues in
+    the direction SDAC. Raises ProgramError for invalid parameters.
     """
     hole, state = read_hole(cycle), cycle.state
     modal, sign = state.modal, state.modal.spindle
@@ -182,7 +193,10 @@ def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _uses_active_feed(cycle: CycleCall) -> bool:
-    """Return whether ENC uses the active feed (1) instead of the lead (0, 11, 20). Raises ProgramError."""
+    """Return whether ENC selects the active feed (1) instead of the lead (0, 11, 20).
+
+    Raises ProgramError for any other value.
+    """
     value = cycle.read_whole_number("ENC", 0, 0, 20)
     text = "{name} is {value} but must be 0, 1, 11 or 20"
     cycle.check_parameter(value in {0, 1, 11, 20}, "ENC", text, "Correct the value.", value=value)
@@ -193,7 +207,8 @@ def _uses_active_feed(cycle: CycleCall) -> bool:
 
 
 def make_tap_block(state: State, statement: Statement) -> Block:
-    """Return the block of G331 (into the hole) or G332 (out), with C locked, lead K and speed S.
+    """Return the block of G331 (into the hole) or G332 (out of the hole), with C locked, lead K and speed
+    S.
 
     Raises ProgramError for invalid words.
     """

@@ -1,7 +1,8 @@
-"""Thread cycles CYCLE97, 98 and 99: straight or tapered, single- or multi-start, in equal depths or chips.
+"""Thread cycles CYCLE97, 98 and 99 for straight or tapered threads with one or more starts.
 
-CYCLE98 cuts a chain of three threads in one pass, each with its lead and taper. The passes are those of G33.
-A start angle is equivalent to a start point that is farther away by a fraction of the lead.
+The passes have equal depths or equal chips, and are those of G33. CYCLE98 cuts a chain of three threads in
+one pass, each with its own lead and taper. A start angle is equivalent to a start point that is farther
+away by a fraction of the lead.
 """
 
 from __future__ import annotations
@@ -33,7 +34,10 @@ COARSE_THREAD_LEADS_MM = {
 
 
 def get_coarse_lead(nominal_size: float) -> float:
-    """Return the lead of a coarse thread in mm; 0 if the size has none. Left-hand sizes are negative."""
+    """Return the lead of a coarse metric thread in mm, or 0 if the size does not exist.
+
+    Negative sizes specify left-hand threads.
+    """
     return (
         COARSE_THREAD_LEADS_MM.get(round(abs(nominal_size)), 0.0)
         if nominal_size == round(nominal_size)
@@ -48,7 +52,7 @@ def check_lead_nonzero(cycle: CycleCall, lead: float, name: str) -> None:
 
 
 def _read_lead(cycle: CycleCall) -> float:
-    """Return the lead from PIT or MPIT in mm. Raises ProgramError."""
+    """Return the lead from PIT or MPIT in mm. Raises ProgramError if the lead is not defined."""
     for name in ("_PIT1", "_GST", "_MID", "_FDEP"):
         if cycle.line.called_name == "CYCLE99":
             cycle.check_zero(name, "CYCLE99 supports only the functions of CYCLE97")
@@ -66,7 +70,10 @@ def _read_lead(cycle: CycleCall) -> float:
 
 
 def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
-    """Return the depths of the passes: NRC to TDEP minus FAL, one for FAL, then NID without infeed."""
+    """Return the depths of the passes.
+
+    NRC passes reach TDEP minus FAL, one pass removes FAL, and NID passes have no infeed.
+    """
     depth, left = cycle.read_positive_mm("TDEP"), cycle.read_size_mm("FAL")
     count, idle = (
         cycle.read_whole_number("NRC", 1, 0, MAX_PASSES),
@@ -82,7 +89,10 @@ def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
 
 
 def _shifts(cycle: CycleCall, depths: tuple[float, ...]) -> tuple[float, ...]:
-    """Return the shift of each pass along the flank by IANG; a negative IANG alternates the flanks."""
+    """Return the shift of each pass along the flank according to IANG.
+
+    A negative IANG alternates the flanks.
+    """
     angle = cycle.read_number("IANG")
     if cycle.line.called_name == "CYCLE99" and cycle.read_number("VARI") // 100 % 10 == 2:
         angle = -abs(angle)
@@ -94,9 +104,11 @@ def _shifts(cycle: CycleCall, depths: tuple[float, ...]) -> tuple[float, ...]:
 
 
 def _kind(cycle: CycleCall) -> int:
-    """Return the type from VARI: 1 outside, 2 inside in equal depths; 3 outside, 4 inside in equal chips.
+    """Return the type from VARI.
 
-    In CYCLE99, VARI has more digits: 300103 means 3, and 2 in the hundreds place alternates the flanks.
+    The type is 1 (outside) or 2 (inside) in equal depths, or 3 (outside) or 4 (inside) in equal chips. In
+    CYCLE99, VARI has more digits. For example, 300103 means 3, and 2 in the hundreds place alternates the
+    flanks.
     """
     if cycle.line.called_name != "CYCLE99":
         return cycle.read_machining_type("VARI", range(1, 5))
@@ -171,13 +183,13 @@ def run_thread_chain(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _passes(cycle: CycleCall, kind: int) -> list[tuple[float, float]]:
-    """Return the depth and the start shift of each pass. Raises ProgramError."""
+    """Return the depth and the start shift of each pass. Raises ProgramError for invalid parameters."""
     depths = _depths(cycle, equal_chip=kind in {3, 4})
     return list(zip(depths, _shifts(cycle, depths), strict=True))
 
 
 def _start_delays(cycle: CycleCall, leads: list[float]) -> list[float]:
-    """Return the delay of the thread of each start along Z, in mm. Raises ProgramError."""
+    """Return the delay along Z of each thread start, in mm. Raises ProgramError for invalid parameters."""
     first, starts = _starts(cycle)
     for lead in leads:
         check_thread_spindle(cycle.state, cycle.statement, lead)
@@ -194,11 +206,11 @@ def _cut(
     start: Callable[[float, float], Point],
     end_points: list[tuple[Point, float]],
 ) -> Iterator[Block]:
-    """Return the blocks of all passes: approach, infeed, thread to ``end_points`` by their leads, retract,
-    return.
+    """Return the blocks of all passes.
 
-    ``start`` returns the start point on the surface for a delay and a shift. ``clearance_x`` is X of the
-    retract.
+    Each pass consists of the approach, the infeed, the threads to ``end_points`` with their leads, the
+    retract and the return. ``start`` returns the start point on the surface for a delay and a shift.
+    ``clearance_x`` is X of the retract.
     """
     steps: list[CycleStep] = []
     for later in starts:
@@ -213,5 +225,7 @@ def _cut(
 
 
 def _extend_line(a: Point, b: Point, distance: float) -> Point:
-    """Return the point on the line from ``a`` through ``b`` that is ``distance`` along Z from ``b``."""
+    """Return the point beyond ``b`` on the line from ``a`` through ``b``, at the distance ``distance``
+    along Z.
+    """
     return b[0] + (b[0] - a[0]) / (b[1] - a[1]) * distance, b[1] + distance

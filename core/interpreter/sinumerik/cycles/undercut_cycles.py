@@ -1,7 +1,7 @@
 """Undercuts with CYCLE94, 96 and 940: forms E and F (DIN 509), and thread undercuts A to D (DIN 76).
 
-The sizes follow the standards, by diameter and by lead. The path is compensated for the nose radius, so that
-the undercut has these sizes with any nose radius.
+The sizes follow the standards and depend on the diameter or on the lead. The path is compensated for the
+nose radius, so that the undercut has these sizes with any nose radius.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ _SIGNS_BY_POSITION = {1: (-1.0, -1.0), 2: (-1.0, 1.0), 3: (1.0, 1.0), 4: (1.0, -
 
 
 class UndercutSize(NamedTuple):
-    """Dimensions of an undercut in mm and degrees.
+    """The dimensions of an undercut in mm and degrees.
 
-    ``depth`` is measured below the surface, ``width`` from the shoulder, and ``radius`` is that of both
-    corners. ``entry_angle_deg`` is the entry angle, and ``face_depth`` is the depth in the shoulder (0 for
-    none).
+    ``depth`` is measured from the surface, and ``width`` is measured from the shoulder. ``corner_radius``
+    is the radius of both corners. ``entry_angle_deg`` is the entry angle. ``face_depth`` is the depth in
+    the shoulder, or 0 without one.
     """
 
     depth: float
@@ -77,10 +77,11 @@ _MAX_NOMINAL_SIZE = 68
 
 
 class UndercutPosition(NamedTuple):
-    """Position of an undercut.
+    """The position of an undercut.
 
-    ``radius`` is the radius of the surface, ``shoulder_z`` is Z of the shoulder, and ``outward_sign`` and
-    ``side_sign`` are the signs of ``_SIGNS_BY_POSITION``.
+    ``surface_radius`` is the radius of the surface, and ``shoulder_z`` is Z of the shoulder.
+    ``outward_sign`` is the sign of X away from the part, and ``side_sign`` is the sign of Z away from the
+    shoulder.
     """
 
     surface_radius: float
@@ -108,7 +109,10 @@ def run_shoulder_undercut(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _shoulder_size(cycle: CycleCall, form: str) -> UndercutSize:
-    """Return the size of form E or F (DIN 509) by the diameter SPD. Raises ProgramError."""
+    """Return the size of form E or F (DIN 509) for the diameter SPD.
+
+    Raises ProgramError for an invalid diameter.
+    """
     diameter = cycle.read_positive_mm("SPD", DIAMETER_TOO_SMALL)
     if diameter <= 3.0:
         text = "{name} is {diameter}, but must be greater than 3 mm for an undercut"
@@ -166,7 +170,8 @@ _UNSUPPORTED_HINT = "program the undercut block by block"
 
 
 def run_undercut(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE940: E and F in one pass, A and B in passes of _MID.
+    """Return the blocks of CYCLE940, which cuts forms E and F in one pass, and forms A and B in passes of
+    _MID.
 
     The first seven parameters and the order of all parameters follow the manufacturer's programming manual.
     Raises ProgramError before the first block.
@@ -197,7 +202,7 @@ def run_undercut(cycle: CycleCall) -> Iterator[Block]:
 
 
 def _thread_size(cycle: CycleCall, form: str) -> UndercutSize:
-    """Return the size of form A or B (DIN 76) by _PITI, or by the coarse thread of SPD.
+    """Return the size of form A or B (DIN 76) for _PITI, or for the coarse thread of SPD.
 
     Raises ProgramError if no undercut is defined for the lead.
     """
@@ -216,7 +221,7 @@ def _thread_size(cycle: CycleCall, form: str) -> UndercutSize:
 def _in_passes(
     cycle: CycleCall, undercut_position: UndercutPosition, size: UndercutSize, feed: float, clearance: float
 ) -> list[CycleStep]:
-    """Return the steps of _VARI 1 (roughing), 2 (finishing) or 3 (both).
+    """Return the steps of roughing, finishing or both, for _VARI 1, 2 or 3.
 
     Roughing passes have depths of at most _MID and leave the allowances _FALX and _FALZ.
     """
@@ -246,10 +251,10 @@ _ROUGHS, _FINISHES = 1, 2
 
 
 def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, float]:
-    """Return the signs of the sides of part and shoulder, by ``position_number`` (1 to 4) or by the tip
-    quadrant (0).
+    """Return the sign of X away from the part, and the sign of Z away from the shoulder.
 
-    Raises ProgramError without an active tool or a valid quadrant.
+    ``position_number`` (1 to 4) determines the signs, or the tip quadrant if it is 0. Raises ProgramError
+    without an active tool or a valid quadrant.
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."
@@ -263,7 +268,7 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
 
 
 def make_profile(undercut_position: UndercutPosition, size: UndercutSize) -> list[Element]:
-    """Return the profile: down the slope from outside, along the bottom, and up the shoulder to outside."""
+    """Return the profile, which leads down the slope from outside, along the bottom, and up the shoulder."""
     slope = tan(radians(size.entry_angle_deg))
     begin = undercut_position.compute_point(-DEFAULT_RETRACT_MM, size.width + DEFAULT_RETRACT_MM / slope)
     foot = undercut_position.compute_point(size.depth, size.width - size.depth / slope)
@@ -282,7 +287,7 @@ def _cut(
 ) -> list[CycleStep]:
     """Return the steps of one pass along the profile.
 
-    ``clearance`` is the distance of its start from the surface, in mm.
+    ``clearance`` is the distance of the start point from the surface, in mm.
     """
     way = _tip_path(
         cycle,
@@ -306,7 +311,10 @@ def _cut(
 
 
 def _nose(cycle: CycleCall, size: UndercutSize) -> float:
-    """Return the nose radius of the tool. Raises ProgramError if it does not fit into the corners."""
+    """Return the nose radius of the tool in mm.
+
+    Raises ProgramError if the nose does not fit into the corners.
+    """
     nose = cycle.state.edge.nose_radius
     text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
     hint = "Use a tool with a smaller nose radius."
@@ -322,7 +330,10 @@ def _nose(cycle: CycleCall, size: UndercutSize) -> float:
 
 
 def _round_corners(lines: list[Element], radius: float, nose: float) -> list[Element]:
-    """Return the profile with rounded corners; a nose with the corner radius rounds them without arcs."""
+    """Return the profile with rounded corners.
+
+    If the nose radius equals the corner radius, the profile needs no arcs.
+    """
     if abs(nose - radius) <= _SAME:
         return lines
     slope, first, bottom = make_rounding(lines[0], lines[1], radius)
@@ -331,7 +342,10 @@ def _round_corners(lines: list[Element], radius: float, nose: float) -> list[Ele
 
 
 def _tip_path(cycle: CycleCall, undercut_position: UndercutPosition, contour: list[Element]) -> list[Element]:
-    """Return the path of the tip while the nose touches the contour. Raises ProgramError."""
+    """Return the path of the tip while the nose touches the contour.
+
+    Raises ProgramError if the path is not possible.
+    """
     edge = cycle.state.edge
     if not edge.nose_radius:
         return contour

@@ -1,6 +1,6 @@
-"""Start of a pass from a saved state: MDI (MDA), and block search with calculation.
+"""Start of a pass from a saved state, for MDI (MDA) and for block search with calculation.
 
-The modal state comes from the saved pass, and the axis positions are the present ones.
+The modal state comes from the saved pass. The axis positions are the present positions.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from core.tool_edges import format_edge_name
 
 
 class InterpreterParts(NamedTuple):
-    """State of an interpreter. ``pending_line`` is a block that was read but not yet executed."""
+    """The state of an interpreter; ``pending_line`` is a block that was read but not yet executed."""
 
     state: State
     corners: SinumerikCornerStage
@@ -33,7 +33,7 @@ class InterpreterParts(NamedTuple):
 
 
 def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks: int) -> Checkpoint:
-    """Return the state that the next block inherits, so that another pass can continue from it."""
+    """Return the state that the next block inherits, from which another pass can continue."""
     state, modal = parts.state, parts.state.modal
     x, z, c = state.x - modal.offset_x, state.z - modal.offset_z, state.c - modal.offset_c
     kept = SavedPass(parts, shared, tuple(_lines(state)))
@@ -41,7 +41,7 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...], blocks:
 
 
 def restore_state(state: State, pass_start: PassStart) -> None:
-    """Set the present axis positions, offsets and machine functions in the state."""
+    """Update the state with the present axis positions, offsets and machine functions."""
     was, now = state.modal, pass_start.checkpoint.modal
     state.x, state.z, state.c = state.setup.start
     if not pass_start.is_mdi_line:
@@ -67,7 +67,7 @@ def restore_state(state: State, pass_start: PassStart) -> None:
 
 
 def _lines(state: State) -> Iterator[StateLine]:
-    """Yield the modal state, one line for each group of functions."""
+    """Yield the modal state as text, with one line for each group of functions."""
     modal = state.modal
     yield StateLine("motion", format_motion(state.motion))
     yield StateLine("settable", f"G{modal.settable}" if modal.settable else "G500")
@@ -121,7 +121,7 @@ def check_single_block(source: ProgramSource, third_axis: str = INTERNAL_AXIS_NA
 
 
 def _check_words(line: LexedBlock) -> Diagnostic | None:
-    """Return the error for a word that needs later blocks, or None."""
+    """Return the error for a word that depends on later blocks, or None."""
     for word in line.words:
         if word.name in CORNER_WORDS:
             return _refuse(

@@ -39,7 +39,7 @@ _GOTO = frozenset(
 
 @dataclass(slots=True)
 class Routine:
-    """One program of a file. ``displayed_name`` is its name in findings if it is in another file."""
+    """One program in a file; ``displayed_name`` is its name in findings if it is in another file."""
 
     source: ProgramSource
     line_range: range
@@ -51,9 +51,9 @@ class Routine:
     _partners: dict[int, tuple[int, ...]] | None = None
 
     def map_structures(self) -> dict[int, tuple[int, ...]]:
-        """Return the line indices of each control structure, by the index of each of its lines.
+        """Return the line indices of each control structure, mapped from the index of each of its lines.
 
-        Raises ProgramError if a structure has no end or no start.
+        Raises ProgramError if a structure lacks its start or its end.
         """
         if self._partners is None:
             self._partners = match_structures(self.get_line(at) for at in self.line_range)
@@ -75,7 +75,10 @@ class Routine:
         return self._labelled[label]
 
     def _has_label(self, index: int, label: str) -> bool:
-        """Return whether a line has this label; only lines that contain its letters are read."""
+        """Return whether a line has this label.
+
+        Only lines whose text contains the label are parsed.
+        """
         if label not in self.source.lines[index].upper():
             return False
         line = self.get_line(index)
@@ -88,15 +91,15 @@ class Routine:
         return jump if jump is not None and jump.keyword is ControlKeyword.PROCEDURE else None
 
     def find_first_line(self) -> LexedBlock | None:
-        """Return the first line with more than a comment, or None."""
+        """Return the first line that contains more than a comment, or None."""
         lines = (self.get_line(at) for at in self.line_range)
         return next((line for line in lines if line.is_executable), None)
 
 
 def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
-    """Return the line indices of each structure, by each of these indices. Raises ProgramError.
+    """Return the line indices of each control structure, mapped from each of these indices.
 
-    A structure without a start or an end is an error.
+    Raises ProgramError if a structure lacks its start or its end.
     """
     found: dict[int, tuple[int, ...]] = {}
     opened: list[tuple[LexedBlock, ControlStatement, list[int]]] = []
@@ -127,9 +130,10 @@ def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
 def execute_control_line(
     line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int
 ) -> int | None:
-    """Execute a control statement, and return the index of the next line; None for the following line.
+    """Execute a control statement, and return the index of the next line to execute.
 
-    Raises ProgramError for an invalid statement.
+    Returns None if execution continues with the following line. Raises ProgramError for an invalid
+    statement.
     """
     steering = jump.keyword
     if steering in _GOTO:
@@ -158,10 +162,10 @@ def execute_control_line(
 def _structure(
     line: LexedBlock, jump: ControlStatement, state: State, program: Routine, structure_lines: tuple[int, ...]
 ) -> int | None:
-    """Return the index of the line that follows a line of IF, WHILE, FOR, LOOP or REPEAT in execution.
+    """Execute a line of IF, WHILE, FOR, LOOP or REPEAT, and return the index of the next line to execute.
 
-    The result is None if execution continues with the next line. ``structure_lines`` are the lines of the
-    structure. Raises ProgramError.
+    Returns None if execution continues with the following line. ``structure_lines`` are the lines of the
+    structure. Raises ProgramError for an invalid statement.
     """
     first, last, steering = structure_lines[0], structure_lines[-1], jump.keyword
     if steering is ControlKeyword.END_FOR:
@@ -183,7 +187,10 @@ def _structure(
 def _execute_for(
     line: LexedBlock, jump: ControlStatement, begin: ControlStatement, state: State, value: float
 ) -> bool:
-    """Set the variable of FOR, and return whether it is not above the end value. Raises ProgramError."""
+    """Set the variable of FOR, and return whether its value does not exceed the end value.
+
+    Raises ProgramError if the variable is not defined.
+    """
     if not state.variables.set_value(begin.identifier, value):
         text = Message("the name {jump} is not defined with DEF.", jump=begin.identifier)
         hint = Message("Write DEF INT {jump} before this block.", jump=begin.identifier)
@@ -192,7 +199,7 @@ def _execute_for(
 
 
 def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int) -> int | None:
-    """Return the target of the first branch with the value of CASE, or of DEFAULT."""
+    """Return the target of the first branch that matches the value of CASE, or the target of DEFAULT."""
     value = _worth(line, jump, state, jump.condition)
     for formula, steering, target in jump.case_branches:
         if formula is None or abs(_worth(line, jump, state, formula) - value) <= _SAME:
@@ -201,7 +208,7 @@ def _case(line: LexedBlock, jump: ControlStatement, state: State, program: Routi
 
 
 def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None:
-    """Execute DEF: numbers, arrays, and strings for MSG."""
+    """Execute DEF, which defines numbers, arrays, and strings for MSG."""
     scope = state.variables.variable_scope
     for each in jump.definitions:
         if each.type_name == "STRING":
@@ -242,7 +249,7 @@ def _sizes(
 
 
 def _format_message(line: LexedBlock, jump: ControlStatement, state: State) -> str:
-    """Return the text of MSG, with numbers without trailing zeros."""
+    """Return the text of MSG, in which numbers have no trailing zeros."""
     shown = []
     for piece in jump.message_parts:
         if isinstance(piece, str):
@@ -262,10 +269,10 @@ def _worth(line: LexedBlock, jump: ControlStatement, state: State, formula: Form
 
 
 def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: int) -> int:
-    """Return the index of the target label.
+    """Return the line index of the target label.
 
-    GOTOF searches after the line, GOTOB before it, and GOTO after and then before it. Raises ProgramError if
-    the label does not exist there.
+    GOTOF searches after the line, and GOTOB searches before the line. GOTO searches after the line and then
+    before it. Raises ProgramError if the label is not found.
     """
     if jump.keyword is ControlKeyword.GOTO_START:
         return program.line_range.start
@@ -285,7 +292,9 @@ def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: i
 def find_label_index(
     jump_keyword: ControlKeyword, target: str, program: Routine, start_index: int
 ) -> int | None:
-    """Return the index of the line with this label or number in the jump's search direction, or None."""
+    """Return the index of the line with this label or block number in the jump's search
+    direction, or None.
+    """
     places = program.find_label_lines(target)
     behind = next((place for place in places if place > start_index), None)
     before = next((place for place in reversed(places) if place <= start_index), None)

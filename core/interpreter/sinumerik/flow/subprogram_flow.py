@@ -1,6 +1,7 @@
-"""Program flow of SINUMERIK: calls of subprograms, M17, REPEAT and the program end.
+"""Program flow of SINUMERIK: subprogram calls, M17, REPEAT and the program end.
 
-A call passes values, VAR references and defaults to PROC. SAVE restores the modal state after the call.
+A call passes values, VAR references and defaults to the parameters of PROC. With SAVE, the modal state is
+restored after the call.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ _GROUPS = ("absolute", "metric", "diameter", "per_rev", "feed", "settable")
 
 @dataclass(frozen=True, slots=True)
 class SavedFunctions:
-    """Modal G functions and frame at the call of a program with SAVE."""
+    """The modal G functions and the frame that were active when a program with SAVE was called."""
 
     modal: ModalState
     motion: MotionKind
@@ -60,7 +61,10 @@ class SavedFunctions:
         return cls(state.modal, state.motion, state.plane, state.settable, state.programmed_frame)
 
     def restore(self, state: State) -> None:
-        """Restore the G functions and the frame; F, S and M remain as the program has set them."""
+        """Restore the G functions and the frame.
+
+        F, S and M functions remain as the called program has set them.
+        """
         state.motion, state.plane = self.motion, self.plane_code
         state.settable, state.programmed_frame = self.settable_offset, self.programmed_frame
         kept = {name: getattr(self.modal, name) for name in _GROUPS}
@@ -73,7 +77,8 @@ class SavedFunctions:
 def pass_arguments(
     state: State, line: LexedBlock, heading: ControlStatement | None
 ) -> tuple[VariableScope, list[tuple[str, str]]]:
-    """Return the variables of the called program, and its VAR parameters with the caller's variables.
+    """Return the variables of the called program, and pairs of its VAR parameters and the caller's
+    variables.
 
     Raises ProgramError if the arguments do not match the parameters.
     """
@@ -96,7 +101,7 @@ def pass_arguments(
 
 
 class _ArgumentTransfer:
-    """Transfer of the arguments of a call to the parameters."""
+    """Transfer of the arguments of a call to the parameters of the called program."""
 
     def __init__(self, state: State, line: LexedBlock) -> None:
         self._state, self._line = state, line
@@ -104,7 +109,10 @@ class _ArgumentTransfer:
         self.references: list[tuple[str, str]] = []
 
     def pass_value(self, parameter: ProcParameter, argument: CallArgument) -> None:
-        """Set a number or a string; an omitted argument is 0 or an empty string. Raises ProgramError."""
+        """Set a parameter to a number or a string; an omitted argument is 0 or an empty string.
+
+        Raises ProgramError if the argument does not match the parameter.
+        """
         given = argument if argument.is_specified else parameter.default
         name = parameter.name
         if parameter.is_by_reference:
@@ -122,7 +130,10 @@ class _ArgumentTransfer:
             self.scope.numbers[name] = value if whole else float(round(value))
 
     def pass_array(self, parameter: ProcParameter, argument: CallArgument) -> None:
-        """Copy a VAR array, whose elements are copied back after the call. Raises ProgramError."""
+        """Copy a VAR array, whose elements are copied back after the call.
+
+        Raises ProgramError if the argument does not match the parameter.
+        """
         line, outer, formula = self._line, self._state.variables.variable_scope, argument.formula
         name = formula.letters if isinstance(formula, Variable) and formula.number is None else ""
         sizes = outer.array_dimensions.get(name, ())
@@ -155,7 +166,10 @@ class _ArgumentTransfer:
             self.references.append((inside, outside))
 
     def _variable_name(self, parameter: ProcParameter, argument: CallArgument) -> str:
-        """Return the caller's variable to which VAR writes back. Raises ProgramError."""
+        """Return the name of the caller's variable that receives the value of a VAR parameter.
+
+        Raises ProgramError if the argument is not a variable.
+        """
         state, line, formula = self._state, self._line, argument.formula
         if not isinstance(formula, Variable):
             text = Message(
@@ -180,9 +194,9 @@ def _count(count: int) -> str:
 
 @dataclass(slots=True)
 class _Repeat:
-    """Lines that REPEAT executes again, from ``start`` to before ``end``.
+    """Lines that REPEAT executes again, from index ``start`` up to but not including ``end``.
 
-    ``remaining`` is the number of repeats that remain, and ``back`` is the line at which execution then
+    ``remaining`` is the number of remaining repeats, and ``back`` is the line at which execution then
     continues.
     """
 
@@ -204,7 +218,7 @@ class _Call(FlowFrame[Routine]):
 
     @property
     def comparison_key(self) -> tuple[object, ...]:
-        """The next line, and the remaining passes and repeats, for comparison."""
+        """Return the next line, the remaining passes and the remaining repeats for comparison."""
         return (
             self.file_name,
             self.next_index,
@@ -214,7 +228,7 @@ class _Call(FlowFrame[Routine]):
 
 
 class Flow(ControlFlow[_Call]):
-    """Position in a program and its subprograms."""
+    """The position in a program and its subprograms."""
 
     def __init__(self, source: ProgramSource, state: State) -> None:
         found, axis = split_sections(source), state.setup.limits.third_axis_name
@@ -233,17 +247,17 @@ class Flow(ControlFlow[_Call]):
 
     @property
     def routines(self) -> tuple[Routine, ...]:
-        """All known programs, the main program first."""
+        """Return all known programs, starting with the main program."""
         return self._main, *self._known.values()
 
     @property
     def is_in_modal_call(self) -> bool:
-        """Whether the position is in a program called by MCALL, in which MCALL has no effect."""
+        """Return whether the position is in a program that MCALL called, in which MCALL has no effect."""
         return self.active_frame.is_modal
 
     @property
     def active_routine(self) -> Routine:
-        """The program that is being executed."""
+        """Return the program that is being executed."""
         return self.active_frame.routine
 
     def read_next_line(self) -> LexedBlock | None:
@@ -261,7 +275,7 @@ class Flow(ControlFlow[_Call]):
                 return None
 
     def _repeat(self, repeats: list[_Repeat]) -> None:
-        """Continue at the end of a REPEAT section: repeat it, or continue after the REPEAT."""
+        """Repeat a REPEAT section at its end, or continue after the REPEAT."""
         part = repeats[-1]
         part.remaining -= 1
         if part.remaining > 0:
@@ -271,7 +285,7 @@ class Flow(ControlFlow[_Call]):
             self.next_index = part.return_index
 
     def end_subprogram(self) -> None:
-        """End a subprogram (M17, RET or its last line): repeat it, or return to the caller."""
+        """End a subprogram at M17, RET or its last line, and repeat it or return to the caller."""
         call = self.active_frame
         call.remaining_passes -= 1
         call.repeats.clear()
@@ -299,7 +313,7 @@ class Flow(ControlFlow[_Call]):
     def call_subprogram(self, line: LexedBlock, *, is_modal: bool = False) -> None:
         """Enter the subprogram that the line calls.
 
-        Raises ProgramError if it does not exist or if calls are nested too deeply.
+        Raises ProgramError if the subprogram does not exist or calls are nested too deeply.
         """
         routine = self._known.get(line.called_name)
         if routine is None:
@@ -329,7 +343,7 @@ class Flow(ControlFlow[_Call]):
         self._state.variables.variable_scope = scope
 
     def execute_control_line(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
-        """Execute a line with a control statement. Raises ProgramError."""
+        """Execute a line with a control statement. Raises ProgramError for an invalid statement."""
         if jump.keyword in _REPEAT_KEYWORDS and jump.target:
             self._begin_repeat(line, jump, state)
             return
@@ -353,9 +367,8 @@ class Flow(ControlFlow[_Call]):
                 raise line.make_error(jump.column, ENDLESS_LOOP_CODE, text, hint)
 
     def _is_repeated_state(self) -> bool:
-        """Return whether a jump back occurs in the same state as an earlier jump.
-
-        The loop is then endless.
+        """Return whether a backward jump occurs in the same state as an earlier jump, so that the loop is
+        endless.
         """
         if self._loops is None:
             return False
@@ -367,7 +380,8 @@ class Flow(ControlFlow[_Call]):
     def _begin_repeat(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
         """Start REPEAT or REPEATB.
 
-        The section extends from one label to another or to this line, or is the block of the label.
+        The section extends from one label to another label or to this line, or is only the block with the
+        label.
         """
         routine, repeats, here = self.active_routine, self.active_frame.repeats, self.next_index - 1
         start = find_label_index(ControlKeyword.GOTO, jump.target, routine, here)
@@ -412,7 +426,10 @@ _MAX_PASSES = 9999
 
 
 def _end_label(routine: Routine, start: int, repeat_index: int) -> int:
-    """Return the end of a REPEAT section with one label: ENDLABEL, the REPEAT, or the program end."""
+    """Return the end of a REPEAT section with one label.
+
+    The end is ENDLABEL, the line of REPEAT or the program end, whichever comes first.
+    """
     for at in range(start, routine.line_range.stop):
         if at == repeat_index:
             return repeat_index
@@ -422,12 +439,15 @@ def _end_label(routine: Routine, start: int, repeat_index: int) -> int:
 
 
 def _reads_positions(source: ProgramSource) -> bool:
-    """Return whether a program reads axis positions, on which its jumps may then depend."""
+    """Return whether a program reads axis positions, so that its jumps may depend on them."""
     return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 
 def ends_main_program(statement: Statement, *, is_in_subprogram: bool) -> bool:
-    """Return whether the block ends the whole program; in a subprogram, M2 and M30 act like M17."""
+    """Return whether the block ends the whole program.
+
+    In a subprogram, M2 and M30 act like M17.
+    """
     return statement.ends_program and not is_in_subprogram
 
 

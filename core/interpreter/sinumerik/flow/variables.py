@@ -1,4 +1,4 @@
-"""R parameters, the variables of DEF and PROC, and readable system variables."""
+"""R parameters, variables defined by DEF and PROC, and readable system variables."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ ErrorFactory = Callable[[int | str, str, str], ProgramError]
 
 @dataclass(slots=True)
 class VariableScope:
-    """Variables of one program: numbers by name, array elements as ``NAME[2,0]``, and strings."""
+    """The variables of one program: numbers by name, array elements such as ``NAME[2,0]``, and strings."""
 
     numbers: dict[str, float] = field(default_factory=dict)
     strings: dict[str, str] = field(default_factory=dict)
     array_dimensions: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
     def define(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
-        """Define a number, or with ``sizes`` an array whose elements all have this value."""
+        """Define a number, or with ``sizes`` an array in which all elements have this value."""
         if not sizes:
             self.numbers[name] = value
             return
@@ -42,13 +42,16 @@ class VariableScope:
         self.numbers.update(dict.fromkeys(self.list_elements(name), value))
 
     def list_elements(self, name: str) -> list[str]:
-        """Return the names of an array's elements in fill order; the last index changes first."""
+        """Return the names of an array's elements in the order in which they are filled.
+
+        The last index changes first.
+        """
         places = product(*(range(size) for size in self.array_dimensions[name]))
         return [f"{name}[{','.join(map(str, each))}]" for each in places]
 
 
 class Variables:
-    """All variables that a line can read."""
+    """All variables that a program line can read."""
 
     def __init__(self) -> None:
         self.r_parameters: dict[str, float] = {}
@@ -57,8 +60,9 @@ class Variables:
     def get_value(
         self, parameter: Parameter, compute_formula: Callable[[Formula], float], make_error: ErrorFactory
     ) -> float:
-        """Return the value of an R parameter or a variable. Raises the error of ``make_error`` if it has
-        none.
+        """Return the value of an R parameter or a variable.
+
+        Raises the error that ``make_error`` returns if the value is missing.
         """
         if parameter.letters.startswith("$"):
             text = Message(
@@ -74,8 +78,8 @@ class Variables:
     def assign_values(
         self, letters: str, first_element: str, values: ValueList, compute_formula: Callable[[Formula], float]
     ) -> int:
-        """Assign values to elements from ``first_element`` on; return the number of values without an
-        element.
+        """Assign values to elements, starting at ``first_element``, and return the number of surplus
+        values.
         """
         places = _r_places() if letters == "R" else self.variable_scope.list_elements(letters)
         places = places[places.index(first_element) :]
@@ -91,7 +95,7 @@ class Variables:
         return max(len(formulas) - len(places), 0)
 
     def set_value(self, name: str, value: float) -> bool:
-        """Set a value; return False if the variable is not defined."""
+        """Set a value, or return False if the variable is not defined."""
         if name[0] == "R" and name[1:].isdigit():
             self.r_parameters[f"R{int(name[1:])}"] = value
         elif name in self.variable_scope.numbers:
@@ -101,13 +105,13 @@ class Variables:
         return True
 
     def get_number(self, name: str) -> float:
-        """Return the value of a variable, or 0 if it has none."""
+        """Return the value of a variable, or 0 if it has no value."""
         if name[0] == "R" and name[1:].isdigit():
             return self.r_parameters.get(f"R{int(name[1:])}", 0.0)
         return self.variable_scope.numbers.get(name, 0.0)
 
     def describe_missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
-        """Return code, text and hint of the error for a variable without a number."""
+        """Return the code, text and hint of the error for a variable that does not contain a number."""
         if name in self.variable_scope.strings:
             return (
                 "text-variable",
@@ -155,7 +159,7 @@ def format_variable_name(
 ) -> str:
     """Return the name of a variable or element, such as R7, LENGTH or TABLE[2].
 
-    Raises the error of ``make_error`` if an index is not a whole number of 0 or more.
+    Raises the error that ``make_error`` returns if an index is negative or not a whole number.
     """
     if number is None or isinstance(number, int):
         return f"{letters}{'' if number is None else number}"
@@ -178,10 +182,10 @@ def _r_places() -> list[str]:
 
 
 def read_system_value(name: str, modal: ModalState, edge: ToolOffset) -> float | None:
-    """Return the value of a system variable; None if it is not supported or not known.
+    """Return the value of a system variable, or None if it is not supported or not known.
 
-    ``edge`` is the row of T and D. $P_TOOL is D, and $P_TOOLR is the nose radius in mm, or 0 with D0. The
-    radius is unknown under G70, and the tool number is unknown for a tool without a number.
+    ``edge`` is the offset of the active T and D. $P_TOOL is D, and $P_TOOLR is the nose radius in mm, or 0
+    with D0. The radius is unknown under G70. The tool number is unknown for a tool without a number.
     """
     if name == "$P_TOOL":
         return float(modal.edge or 0)
@@ -196,6 +200,6 @@ _POSITION = re.compile(r"\$(?:AA_IW|P_EP)\[([A-Z][0-9]?)\]")
 
 
 def get_position_axis(name: str) -> str:
-    """Return the axis whose position a system variable reads; empty for any other name."""
+    """Return the axis whose position a system variable contains, or an empty string for any other name."""
     match = _POSITION.fullmatch(name)
     return match[1] if match else ""

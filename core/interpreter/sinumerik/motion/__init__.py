@@ -1,1 +1,1 @@
-"""Motions of SINUMERIK: lines, arcs, threads, corners, compensation, TRANSMIT and TRACYL."""
+"""Motion of SINUMERIK: lines, arcs, threads, corners, compensation, TRANSMIT and TRACYL."""

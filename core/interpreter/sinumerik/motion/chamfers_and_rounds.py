@@ -1,6 +1,6 @@
 """Chamfers and roundings with CHF, CHR and RND between lines and arcs.
 
-C ends its move with the first element.
+If a move includes C, C reaches its end at the end of the first element.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _CUT = CONTOUR_KINDS - {BlockKind.RAPID}
 
 @dataclass(slots=True)
 class Corner:
-    """Corner at the end of a block. ``size_mm`` in mm is the chamfer (CHF), its leg (CHR) or the radius
-    (RND).
+    """A corner at the end of a block.
 
-    At an arc, the leg is a chord.
+    ``size_mm`` is the chamfer length (CHF), the chamfer leg (CHR) or the radius (RND). At an arc, the leg
+    is a chord.
     """
 
     statement: Statement
@@ -51,7 +51,7 @@ class Corner:
 
 
 def make_corner(state: State, statement: Statement, block: Block) -> Corner | None:
-    """Return the corner of a block, or None. Raises ProgramError if it is invalid."""
+    """Return the corner of a block, or None. Raises ProgramError if the corner is invalid."""
     word = statement.corner_word
     if word is None:
         return _modal_corner(state, statement, block)
@@ -66,7 +66,7 @@ def make_corner(state: State, statement: Statement, block: Block) -> Corner | No
 
 
 def _modal_corner(state: State, statement: Statement, block: Block) -> Corner | None:
-    """Return the rounding of RNDM; None if the block is not a line or arc of the contour."""
+    """Return the rounding of RNDM, or None if the block is not a line or arc of the contour."""
     if not state.rounding or block.kind not in _CUT or not _moves(block) or state.plane != 18:
         return None
     word = Word("RND", state.rounding, 1, f"RNDM={state.rounding:g}")
@@ -82,14 +82,17 @@ _BufferedMove = BufferedMove[Corner, Never]
 
 
 class SinumerikCornerStage(CornerStage[Corner, Never]):
-    """Corner stage for corners between lines and arcs."""
+    """Stage that inserts corners between lines and arcs."""
 
     def __init__(self, state: State, log: DiagnosticLog) -> None:
         super().__init__(PlainMoveFactory(state))
         self._log = log
 
     def finish(self) -> Iterator[Block]:
-        """Yield the buffered blocks at the end of the program. Raises ProgramError if a corner remains."""
+        """Yield the buffered blocks at the end of the program.
+
+        Raises ProgramError if a corner has no following move.
+        """
         held, self._held = self._held, None
         if held is not None and held.corner.is_modal:
             yield from (held.block, *held.blocks_between)

@@ -1,4 +1,4 @@
-"""G74 and G75: rapid to machine home or to a fixed point of the machine, without offsets."""
+"""Rapids to machine home (G74) or to a fixed point of the machine (G75), without offsets."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ _AXES = frozenset({"X", "Z", "X1", "Z1"})
 
 
 def make_home_move(state: State, statement: Statement) -> Block:
-    """Return the rapid of G74 to home for the named axes, X1=0 Z1=0. Raises ProgramError."""
+    """Return the rapid of G74 that moves the named axes (X1=0 Z1=0) to home.
+
+    Raises ProgramError for other words and for values other than 0.
+    """
     named = _axis_words(state, statement, _AXES)
     for word in named:
         if state.number(statement, word) != 0.0:
@@ -27,7 +30,7 @@ def make_home_move(state: State, statement: Statement) -> Block:
 
 
 def make_fixed_point_move(state: State, statement: Statement) -> Block:
-    """Return the rapid of G75 to a fixed point (FP=1 to 4) for the named axes.
+    """Return the rapid of G75 that moves the named axes to a fixed point (FP=1 to 4).
 
     The values of the axis words have no effect. The machine file defines the points in machine coordinates.
     Raises ProgramError if a point is not defined.
@@ -47,7 +50,7 @@ def make_fixed_point_move(state: State, statement: Statement) -> Block:
 
 
 def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> list[Word]:
-    """Return the axis words of the block. Raises ProgramError if the block has other words."""
+    """Return the axis words of the block. Raises ProgramError if the block contains other words."""
     word = statement.g_words[NON_MODAL_GROUP]
     named = [each for name, each in statement.words.items() if name in _AXES]
     others = statement.words.keys() - words or statement.m_words or statement.assignments
@@ -62,7 +65,7 @@ def _axis_words(state: State, statement: Statement, words: frozenset[str]) -> li
 
 
 def _number(state: State, statement: Statement) -> int:
-    """Return the number of the fixed point (FP), 1 by default."""
+    """Return the number of the fixed point (FP), which is 1 by default."""
     word = statement.words.get("FP")
     if word is None:
         return 1
@@ -98,7 +101,7 @@ def _missing(statement: Statement, axis: str, number: int, known: int) -> Progra
 
 
 def _warn_ignored_value(state: State, statement: Statement, word: Word, end: float) -> None:
-    """Warn that the value of an axis word has no effect."""
+    """Log a warning that the value of an axis word has no effect."""
     text = Message(
         "{word} has no effect with G75: the axis moves to machine position {end} mm.",
         word=word.text,
@@ -110,7 +113,7 @@ def _warn_ignored_value(state: State, statement: Statement, word: Word, end: flo
 
 
 def _make_rapid(state: State, statement: Statement, targets: dict[str, float]) -> Block:
-    """Return the rapid to these machine coordinates, in which all axes end together."""
+    """Return the rapid to these machine coordinates, on which all axes arrive at the same time."""
     state.threads = ()
     x, z = targets.get("X", state.x), targets.get("Z", state.z)
     modal = state.modal

@@ -1,4 +1,4 @@
-"""Lines with G0 and G1, with or without C: end points, feeds and blocks, also for trimmed moves."""
+"""Straight moves with G0 and G1, with or without C: end points, feeds and blocks, also of trimmed moves."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ MIN_PATH_MM = 1e-6
 
 
 class AxisTravel(NamedTuple):
-    """Start and end of a move in machine coordinates: mm, X as a radius, C in continuous degrees.
+    """The start and end of a move in machine coordinates.
 
-    ``offset_x offset_z``, ``modal`` and ``frame`` are those of the block; under G53, only the offset of the
-    edge applies.
+    Positions are in mm with X as a radius, and C is in continuous degrees. ``offset_x``, ``offset_z``,
+    ``modal`` and ``frame`` are those of the block. Under G53, only the offset of the cutting edge applies.
     """
 
     x0: float
@@ -46,28 +46,28 @@ class AxisTravel(NamedTuple):
 
     @property
     def length_mm(self) -> float:
-        """Length of the straight path of X and Z, in mm."""
+        """Return the length of the straight path of X and Z, in mm."""
         return hypot(self.x - self.x0, self.z - self.z0)
 
     @property
     def c_travel(self) -> float:
-        """Signed travel of C, in degrees."""
+        """Return the signed travel of C in degrees."""
         return self.c - self.c0
 
     @property
     def program_start(self) -> tuple[float, float]:
-        """X (radius) and Z of the start in the program frame, in mm."""
+        """Return X (as a radius) and Z of the start in the program frame, in mm."""
         return self.frame.invert_distance(self.x0 - self.offset_x, self.z0 - self.offset_z)
 
     def to_machine(self, x: float, z: float) -> tuple[float, float]:
-        """Return machine X and Z of a point of the program."""
+        """Return machine X and Z of a program point."""
         x, z = self.frame.transform_distance(x, z)
         return x + self.offset_x, z + self.offset_z
 
     def compute_rapid_rate(self, speeds: tuple[float, float, float]) -> float:
-        """Return the rapid speed along the path in mm/s, or of C alone in degrees/s.
+        """Return the rapid rate along the path in mm/s, or in degrees/s if only C moves.
 
-        ``speeds`` are the limits of X, Z and C; the slowest axis moves at its limit.
+        ``speeds`` are the maximum speeds of X, Z and C. The slowest axis moves at its maximum speed.
         """
         ways = (self.x - self.x0, self.z - self.z0, self.c_travel)
         time = max(abs(way) / speed for way, speed in zip(ways, speeds, strict=True))
@@ -94,7 +94,7 @@ def compute_travel(state: State, statement: Statement) -> AxisTravel:
 
 
 def _ends(state: State, statement: Statement, start_travel: AxisTravel) -> tuple[float, float]:
-    """Return machine X and Z of the end."""
+    """Return machine X and Z of the end point."""
     words = statement.words
     if "RP" in words or "AP" in words:
         return start_travel.to_machine(*_polar_end(state, statement))
@@ -111,7 +111,7 @@ def _ends(state: State, statement: Statement, start_travel: AxisTravel) -> tuple
 
 
 def _linear_end(state: State, statement: Statement, name: str, start: float) -> float | None:
-    """Return the end of a linear axis in the program frame; None without its word."""
+    """Return the end position of a linear axis in the program frame, or None if its word is missing."""
     word = statement.words.get(name)
     if word is None:
         return None
@@ -140,7 +140,7 @@ def _linear_end(state: State, statement: Statement, name: str, start: float) -> 
 
 
 def _polar_end(state: State, statement: Statement) -> tuple[float, float]:
-    """Return the point of RP and AP about the pole; a missing value is unchanged."""
+    """Return the point that RP and AP define about the pole; a missing value remains unchanged."""
     last = state.last_polar_point or (0.0, 0.0)
     radius, angle = statement.words.get("RP"), statement.words.get("AP")
     for name in ("X", "Z", "ANG"):
@@ -170,7 +170,7 @@ _STEEP = 1e-9
 def _inclined(
     state: State, statement: Statement, start: tuple[float, float], x: float | None, z: float | None
 ) -> tuple[float | None, float | None]:
-    """Return the end of a line from its angle and one coordinate."""
+    """Return the end point of a line that is defined by its angle and one coordinate."""
     word = statement.words["ANG"]
     if state.motion is not MotionKind.LINE and state.motion is not MotionKind.RAPID:
         text = "{word} can be used only in a straight move."
@@ -208,7 +208,10 @@ def _turn(state: State, statement: Statement, modal: ModalState) -> float:
 def compute_c_travel(
     state: State, statement: Statement, word: Word, form: PositionForm, start_angle: float
 ) -> float:
-    """Return the signed travel of C from ``start_angle`` to the target of a word. Raises ProgramError."""
+    """Return the signed travel of C from ``start_angle`` to the target of a word.
+
+    Raises ProgramError if the target is not possible.
+    """
     value = state.third(statement, word)
     limits = state.setup.limits
     try:
@@ -231,7 +234,7 @@ def compute_c_travel(
 
 
 def _form(state: State, word: Word) -> PositionForm:
-    """Return the form of a word; G90 and G91 determine a plain word."""
+    """Return the position form of a word; G90 and G91 determine the form of a plain word."""
     if word.position_form is not PositionForm.PLAIN:
         return word.position_form
     return PositionForm.IC if state.modal.absolute is False else PositionForm.AC
@@ -274,7 +277,9 @@ def make_straight_block(state: State, statement: Statement) -> Block:
 
 
 def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> Block:
-    """Return a rapid in which all axes end together and the slowest axis moves at its limit."""
+    """Return a rapid on which all axes arrive at the same time and the slowest axis moves at its maximum
+    speed.
+    """
     return make_travel_block(
         state,
         statement,
@@ -287,7 +292,7 @@ def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> 
 def make_travel_block(
     state: State, statement: Statement, travel: AxisTravel, kind: BlockKind, feed: float
 ) -> Block:
-    """Return the block of a move, and set the state to its end."""
+    """Return the block of a move, and set the state to the end of the move."""
     state.x, state.z, state.c = travel.x, travel.z, travel.c
     modal = travel.modal
     dx, dz, dc = travel.offset_x, travel.offset_z, modal.offset_c
@@ -304,24 +309,24 @@ def make_travel_block(
 
 
 def store_end_direction(state: State, arc: Block) -> Block:
-    """Store the end direction of an arc for CT, and return the arc."""
+    """Store the end direction of an arc for a following CT, and return the arc."""
     state.direction = make_element(arc).end_direction
     return arc
 
 
 class PlainMoveFactory(AdjustedMoveFactory):
-    """Factory of adjusted moves that keep their text; a rapid takes the time of its slowest axis."""
+    """Factory of adjusted moves that retain their text; the slowest axis determines the time of a rapid."""
 
     def __init__(self, state: State) -> None:
         self._state = state
 
     @property
     def max_rpm(self) -> float:
-        """The speed limit of the spindle in rpm, including that of G26."""
+        """Return the speed limit of the spindle in rpm, including the limit of G26."""
         return self._state.highest
 
     def replace_element(self, block: Block, element: Element) -> Block:
-        """Return the block with its move along another element."""
+        """Return the block with its move changed to another element."""
         made = self._placed(block, element, block.text)
         if block.kind is not BlockKind.RAPID:
             return made
@@ -330,5 +335,5 @@ class PlainMoveFactory(AdjustedMoveFactory):
         return replace(made, feed=travel.compute_rapid_rate(self._state.setup.limits.max_axis_speeds))
 
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move of X and Z after a block; C has ended with that block."""
+        """Return a new move of X and Z after a block, at the end of which C has reached its target."""
         return replace(self.replace_element(block, element), c0=block.c, text=f"{block.text} ›")

@@ -1,7 +1,8 @@
 """Nose compensation with G41, G42 and G40, with NORM and KONT, and with G450 and G451 at outside corners.
 
-The contour is buffered until the move that leaves it is known. The output is the path of the tip: the nose
-center is one radius away from the contour, and the tip quadrant determines the position of the tip.
+The contour is buffered until the move that leaves the contour is known. The output is the path of the tip.
+The nose center is one radius away from the contour, and the tip quadrant determines the position of the
+tip.
 """
 
 from __future__ import annotations
@@ -43,7 +44,9 @@ _MAX_CORNER_TURN_RAD = 2.0 * pi / 3.0  # rad; largest turn at which G451 uses th
 
 
 class CompensationStage:
-    """Stage that accepts the blocks of a program in order and compensates them while G41 or G42 is active."""
+    """Stage that accepts the blocks of a program in order, and compensates them while G41 or G42
+    is active.
+    """
 
     def __init__(self, state: State, log: DiagnosticLog, *, is_in_transformed_plane: bool = False) -> None:
         self._state, self._log = state, log
@@ -54,7 +57,7 @@ class CompensationStage:
 
     @property
     def has_open_contour(self) -> bool:
-        """Whether a contour is active, so that no other pass can begin here."""
+        """Return whether a contour is active, so that no other pass can start here."""
         return self._contour is not None
 
     def discard(self) -> None:
@@ -62,7 +65,7 @@ class CompensationStage:
         self._contour = None
 
     def accept(self, block: Block) -> Iterator[Block]:
-        """Accept a block, and yield the blocks that no later block can change.
+        """Accept a block, and yield the blocks that later blocks cannot change.
 
         Raises ProgramError if compensation is not possible.
         """
@@ -82,7 +85,7 @@ class CompensationStage:
             self._add_move(contour, block)
 
     def finish(self) -> Iterator[Block]:
-        """Process the end of the program. Raises ProgramError if a contour is not finished."""
+        """Process the end of the program. Raises ProgramError if a contour is unfinished."""
         contour, self._contour = self._contour, None
         if contour is not None:
             raise _open(contour.last_move.block)
@@ -116,7 +119,7 @@ class CompensationStage:
         self._contour = _Contour(state, block, side * edge.nose_radius, tip)
 
     def _store_motionless(self, contour: _Contour, block: Block) -> None:
-        """Store a block without motion at the compensated end of the previous move."""
+        """Store a block without motion at the compensated end point of the previous move."""
         if isinstance(block.action, ProgramEnd):
             raise _open(block)
         if isinstance(block.action, ToolChange):
@@ -151,7 +154,10 @@ class CompensationStage:
             contour.moves.append(contour.last_move)
 
     def _close(self, contour: _Contour, block: Block) -> Iterator[Block]:
-        """Yield the contour and the departure move of G40; at the program end, the nose does not move."""
+        """Yield the contour and the departure move of G40.
+
+        At the program end, the nose does not move.
+        """
         code = contour.approach_move.block.modal.compensation_code
         if block.moves and (block.kind not in STRAIGHT_KINDS or self._turns(block)):
             text = "the first move with G40 is not a straight line."
@@ -175,11 +181,10 @@ class CompensationStage:
 
 
 class _ContourEnd(NamedTuple):
-    """One end of the contour at ``corner``.
+    """One end of the contour, at the point ``corner``.
 
-    The center moves from ``nose_start`` to ``to``, perpendicular to the contour.
-
-    ``contour`` begins with the element at this end.
+    The nose center moves from ``nose_start`` to ``nose_end``, which is perpendicular to the contour.
+    ``contour`` starts with the element at this end.
     """
 
     name: str  # approach or departure
@@ -200,7 +205,10 @@ class _Contour(ContourStage):
         self._elements: list[Element] = []
 
     def close(self, departure: Block) -> Iterator[Block]:
-        """Yield the contour and the move that leaves it. Raises ProgramError."""
+        """Yield the contour and the move that leaves the contour.
+
+        Raises ProgramError if compensation is not possible.
+        """
         self._elements = [make_element(move.block) for move in self.moves]
         both = zip(self.moves, self._elements, strict=True)
         pieces = [piece for move, element in both for piece in self._add_move(move, element)]
@@ -213,10 +221,10 @@ class _Contour(ContourStage):
             yield from self._standing(ContourMove(departure, [departure]))
 
     def _corner(self, block: Block, element: Element) -> Sequence[Element]:
-        """Return the path around an outside corner: an arc, or under G451 the tangents to their intersection.
+        """Return the path around an outside corner.
 
-        A rapid also uses tangents; if their intersection is too far away, each half of the corner has its
-        own.
+        The path is an arc, or under G451 the tangents up to their intersection. A rapid also uses tangents.
+        If their intersection is too far away, each half of the corner has its own tangents.
         """
         if not isinstance(element, Arc):
             return [element]
@@ -242,14 +250,15 @@ class _Contour(ContourStage):
         return self._path_to_end(_ContourEnd("approach", block, at, to, first.start, self._elements))
 
     def _departure_path(self, block: Block, start: Point) -> Sequence[Element]:
-        """Return the departure path, which is calculated like an approach and reversed."""
+        """Return the departure path, which is calculated like an approach and then reversed."""
         last = self._elements[-1]
         at = self._centre((block.x, block.z))
         back = self._path_to_end(_ContourEnd("departure", block, at, start, last.end, self._elements[::-1]))
         return [element.reversed() for element in reversed(back)]
 
     def _path_to_end(self, end: _ContourEnd) -> list[Element]:
-        """Return a straight path, or with KONT a path around the end of the contour if necessary.
+        """Return a straight path to the contour, or with KONT a path around the end of the contour if
+        necessary.
 
         Raises ProgramError if the path cuts the contour.
         """

@@ -1,4 +1,7 @@
-"""Arcs with G2, G3, CIP and CT in the XZ plane: by center, radius, angle, intermediate point or tangent."""
+"""Arcs with G2, G3, CIP and CT in the XZ plane.
+
+An arc is defined by its center, radius, angle, intermediate point or start tangent.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +55,7 @@ _CIP_WORDS = frozenset({"I1", "K1"})
 
 
 def _check_words(state: State, statement: Statement) -> None:
-    """Raise ProgramError for a word of another kind of arc."""
+    """Raise ProgramError for a word that belongs to another kind of arc."""
     own = {MotionKind.ARC_BY_POINT: _CIP_WORDS, MotionKind.TANGENTIAL_ARC: frozenset[str]()}.get(
         state.motion, ARC_WORDS - _CIP_WORDS
     )
@@ -69,7 +72,7 @@ def _check_words(state: State, statement: Statement) -> None:
 def _compute_arc(
     state: State, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """Return the direction, center and travel of the arc."""
+    """Return whether the arc is clockwise, and its center and travel."""
     if state.motion is MotionKind.ARC_BY_POINT:
         return _arc_by_point(state, statement, travel)
     if state.motion is MotionKind.TANGENTIAL_ARC:
@@ -82,7 +85,7 @@ def _compute_arc(
 def _arc_by_point(
     state: State, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """Return the arc of CIP through the start, the point of I1 and K1, and the end."""
+    """Return the arc of CIP through the start point, the point (I1, K1) and the end point."""
     begun, words = travel.program_start, statement.words
     if not _CIP_WORDS & words.keys():
         text = "CIP needs I1 and K1 to define a point on the arc."
@@ -110,14 +113,14 @@ def _arc_by_point(
 
 
 def _clockwise(across: float) -> bool:
-    """Return whether a turn is clockwise in the view with X down, by the sign of the cross product."""
+    """Return whether the sign of a cross product means clockwise rotation in the view with X down."""
     return across < 0.0
 
 
 def _circumcenter(a: Point, b: Point, c: Point) -> Point:
     """Return the center of the circle through three points.
 
-    It is calculated relative to the first point for precision.
+    The calculation is relative to the first point for better precision.
     """
     bx, bz, cx, cz = b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1]
     twice = 2.0 * (bx * cz - bz * cx)
@@ -128,7 +131,7 @@ def _circumcenter(a: Point, b: Point, c: Point) -> Point:
 def _tangential_arc(
     state: State, statement: Statement, travel: AxisTravel
 ) -> tuple[bool, tuple[Point, AxisTravel]]:
-    """Return the arc of CT, which begins in the end direction of the previous path."""
+    """Return the arc of CT, which starts in the end direction of the previous path."""
     word = statement.g_words.get("motion")
     if state.direction is None:
         text = "CT continues a path, but no move precedes it."
@@ -148,7 +151,10 @@ def _tangential_arc(
 def _compute_center(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
-    """Return the center in machine coordinates, and the travel with an end point if it was not programmed."""
+    """Return the center in machine coordinates, and the travel.
+
+    The travel includes the calculated end point if no end point is programmed.
+    """
     words, by_centre = statement.words, {"I", "K"} & statement.words.keys()
     if "CR" in words and ("AR" in words or by_centre):
         text = "the arc has CR and another definition of its center."
@@ -169,7 +175,7 @@ def _compute_center(
 
 
 def _center_by_words(state: State, statement: Statement, travel: AxisTravel) -> Point:
-    """Return the center from I and K: distances from the start, or coordinates with AC( )."""
+    """Return the center from I and K, which are distances from the start point, or coordinates with AC( )."""
     begun = travel.program_start
     i, k = _component(state, statement, "I", begun[0]), _component(state, statement, "K", begun[1])
     x, z = travel.frame.transform_distance(i, k)
@@ -187,7 +193,10 @@ def _component(state: State, statement: Statement, name: str, start: float) -> f
 
 
 def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
-    """Return the center from CR: positive for arcs of up to half a circle, negative for larger arcs."""
+    """Return the center from CR.
+
+    CR is positive for arcs of up to half a circle, and negative for larger arcs.
+    """
     word = statement.words["CR"]
     radius, chord = state.length(statement, word) * travel.frame.scale_factor, travel.length_mm
     _demand_ends(statement, word, chord)
@@ -203,7 +212,7 @@ def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, cl
 
 
 def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:
-    """Return the center from AR and the end point; r = chord / (2 sin(angle / 2))."""
+    """Return the center from AR and the end point, with the radius r = chord / (2 sin(angle / 2))."""
     word, chord = statement.words["AR"], travel.length_mm
     _demand_ends(statement, word, chord)
     half = radians(_angle(state, statement, word)) / 2
@@ -221,7 +230,10 @@ def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clo
 def _end_by_angle(
     state: State, statement: Statement, travel: AxisTravel, clockwise: bool
 ) -> tuple[Point, AxisTravel]:
-    """Return the center, and the travel whose end is the start rotated about it by AR."""
+    """Return the center, and the travel to the calculated end point.
+
+    The end point is the start point rotated about the center by AR.
+    """
     word = statement.words["AR"]
     if not {"I", "K"} & statement.words.keys():
         text = "AR is programmed without an end point and without I and K."

@@ -1,4 +1,4 @@
-"""Feed words F, FB and OVR, and the G codes of the group G94 to G97 as far as they define F."""
+"""Feed words F, FB and OVR, and the G codes G94 to G97 as far as they define the meaning of F."""
 
 from __future__ import annotations
 
@@ -45,7 +45,10 @@ def execute_feed_words(state: State, statement: Statement) -> None:
 
 
 def convert_feed(state: State, statement: Statement, word: Word) -> float:
-    """Return a feed in mm (degrees) per second or revolution. Raises ProgramError if it is not above 0."""
+    """Return a feed in mm (or degrees) per second or per revolution.
+
+    Raises ProgramError if the feed is not above 0.
+    """
     value = check_positive(statement, word, state.number(statement, word), "the feed")
     value *= MM_PER_INCH if state.feed_in_inches else 1.0
     # The unit is mm/min and degrees/min, or mm and degrees per revolution, depending on the kind of block.
@@ -55,10 +58,12 @@ def convert_feed(state: State, statement: Statement, word: Word) -> float:
 def check_block_feed(
     state: State, statement: Statement, x0: float, x1: float, *, in_degrees: bool = False
 ) -> float:
-    """Return the feed of a block from radius ``x0`` to ``x1``, in mm (degrees) per second or revolution.
+    """Return the feed of a block from radius ``x0`` to ``x1``, in mm (or degrees) per second or per
+    revolution.
 
-    A feed per revolution of the live tool is converted to a feed per second, because its speed is constant.
-    Raises ProgramError with alarm 10860 without a feed, and with a TurnDesk code if G95 has no spindle speed.
+    A feed per revolution of the live tool is converted to a feed per second, because the live tool has a
+    constant speed. Raises ProgramError with alarm 10860 without a feed, or with a TurnDesk code if the
+    spindle has no speed under G95.
     """
     modal = state.modal
     word = statement.words.get("FB")

@@ -1,7 +1,7 @@
-"""Travel and direction of the C axis to a target from its present position, in degrees.
+"""Travel and direction of the C axis from its present position to a target, in degrees.
 
-The rules cover a modulo axis (0 to below 360), a rotary axis without modulo (-360 to +360), and a linear axis
-in mm. This module is independent of words, offsets and machines.
+The rules cover a modulo axis (0 to less than 360), a rotary axis without modulo (-360 to +360), and a
+linear axis in mm. This module does not depend on words, offsets and machines.
 """
 
 from __future__ import annotations
@@ -25,7 +25,10 @@ MODULO_ONLY_ALARMS = {PositionForm.DC: 16800, PositionForm.ACP: 16810, PositionF
 
 
 class TargetError(CodedError):
-    """The target is not possible; ``number`` is the alarm, and ``str()`` is the message."""
+    """Error for a target that is not possible.
+
+    ``alarm_number`` is the number of the alarm, and ``str()`` returns the message.
+    """
 
     def __init__(self, number: int, text: str) -> None:
         super().__init__(text, str(number))
@@ -33,16 +36,19 @@ class TargetError(CodedError):
 
 
 def wrap_angle(angle: float) -> float:
-    """Return the angle from 0 to below 360; an angle within rounding of 360 is 0."""
+    """Return the angle in the range from 0 to less than 360 degrees.
+
+    An angle that differs from 360 only by rounding becomes 0.
+    """
     rest = angle % FULL_TURN_DEG
     return 0.0 if FULL_TURN_DEG - rest <= ROUNDING_TOLERANCE else rest
 
 
 def compute_modulo_travel(form: PositionForm, value: float, position: float) -> float:
-    """Return the signed travel of a modulo axis to ``value``, or by ``value`` (IC), in degrees.
+    """Return the signed travel of a modulo axis in degrees, to ``value`` or, with IC, by ``value``.
 
-    ``position`` may include any number of revolutions. Raises TargetError for a target that is not from 0 to
-    below 360.
+    ``position`` may include any number of revolutions. Raises TargetError for a target outside the range
+    from 0 to less than 360.
     """
     if form is PositionForm.IC:
         return value
@@ -69,9 +75,9 @@ def compute_modulo_travel(form: PositionForm, value: float, position: float) -> 
 
 
 def compute_linear_travel(form: PositionForm, value: float, position: float) -> float:
-    """Return the signed travel of an axis without modulo to ``value``, or by ``value`` (IC).
+    """Return the signed travel of an axis without modulo, to ``value`` or, with IC, by ``value``.
 
-    Raises TargetError for DC, ACP and ACN, which need a modulo rotary axis.
+    Raises TargetError for DC, ACP and ACN, which require a modulo rotary axis.
     """
     if form in MODULO_ONLY_ALARMS:
         raise TargetError(MODULO_ONLY_ALARMS[form], Message("{form} needs a modulo rotary axis", form=form))
@@ -79,7 +85,7 @@ def compute_linear_travel(form: PositionForm, value: float, position: float) -> 
 
 
 def check_axis_range(end: float, ends: tuple[float, float] | None = NON_MODULO_RANGE) -> None:
-    """Raise TargetError if the end is outside the range of the axis in machine coordinates."""
+    """Raise TargetError if the end position is outside the range of the axis in machine coordinates."""
     low, high = ends or (-inf, inf)
     if not low - ROUNDING_TOLERANCE <= end <= high + ROUNDING_TOLERANCE:
         text = Message(

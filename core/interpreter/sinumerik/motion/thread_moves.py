@@ -1,7 +1,8 @@
-"""Threads with G33, G34 and G35 with constant or variable lead, alone or in a chain, and their pull-out.
+"""Threads with G33, G34 and G35 with constant or variable lead, as single threads or chains with pull-out.
 
-The executor cuts a whole chain in one pass by the measured spindle angle. For SF, the tool first moves back
-by that fraction of the lead, so that the same spindle index cuts the thread rotated by SF.
+The executor cuts a complete chain in one pass, synchronized with the measured spindle angle. For SF, the
+tool first moves back by the corresponding fraction of the lead. The same spindle index then cuts a thread
+that is rotated by SF.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ _MIN_LEAD = 0.01  # mm
 
 
 def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the block of G33, G34 or G35, after the move back for SF. Raises ProgramError."""
+    """Yield the block of G33, G34 or G35, after the backward move for SF.
+
+    Raises ProgramError for an invalid thread.
+    """
     for name in ("CR", "AR", "I1", "K1"):
         if word := statement.words.get(name):
             text = "{word} cannot be used with G{motion}."
@@ -60,7 +64,10 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
 
 
 def _growth(state: State, statement: Statement) -> float:
-    """Return the lead change per revolution in mm/rev: F of G34, negative with G35, 0 with G33."""
+    """Return the lead change per revolution in mm/rev.
+
+    The change is F with G34, minus F with G35, and 0 with G33.
+    """
     if state.motion is MotionKind.THREAD:
         return 0.0
     if word := statement.words.get("F"):
@@ -77,7 +84,10 @@ def _growth(state: State, statement: Statement) -> float:
 
 
 def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: float) -> tuple[float, float]:
-    """Return the mean lead and the lead at the end, in mm/rev. Raises ProgramError if the lead reaches 0."""
+    """Return the mean lead and the lead at the end, in mm/rev.
+
+    Raises ProgramError if the lead decreases to 0.
+    """
     way = abs(travel.z - travel.z0)
     if not growth:
         return lead, lead
@@ -100,7 +110,10 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 def _start_angle(
     state: State, statement: Statement, travel: AxisTravel, lead: float, growth: float
 ) -> Block | None:
-    """Return the move back for SF, which delays the start by a fraction of a revolution, or None."""
+    """Return the backward move for SF, or None without SF.
+
+    The move delays the start of the thread by a fraction of a revolution.
+    """
     word = statement.words.get("SF")
     angle = 0.0 if word is None else state.number(statement, word) % 360.0
     if word is None or not angle:
@@ -147,7 +160,7 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
 
 
 def check_thread_spindle(state: State, statement: Statement, lead: float) -> None:
-    """Raise ProgramError if the spindle is stopped, under G96, or too fast for this lead in mm."""
+    """Raise ProgramError if the spindle is stopped, is under G96, or is too fast for this lead in mm/rev."""
     modal = state.modal
     if not modal.spindle or not state.rpm:
         text = "a thread needs the spindle running, but the spindle is stopped."
@@ -171,9 +184,9 @@ def check_thread_spindle(state: State, statement: Statement, lead: float) -> Non
 
 
 def _continues(state: State, statement: Statement, travel: AxisTravel, lead: float) -> bool:
-    """Return whether the block continues the previous thread instead of leading out of it.
+    """Return whether the block continues the previous thread instead of leading out of the thread.
 
-    Raises ProgramError if it reverses along Z, or follows a block that led out of the thread.
+    Raises ProgramError if the block reverses along Z or follows a block that led out of the thread.
     """
     if not state.threads:
         return False

@@ -1,4 +1,4 @@
-"""Switching of TRANSMIT, TRACYL and TRAFOOF, and the conditions under which they are allowed."""
+"""Activation and cancellation of TRANSMIT and TRACYL, and the conditions under which they are allowed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _SAME = 1e-9
 
 
 def switch_transformation(state: State, log: DiagnosticLog, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks of TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError if it is not allowed."""
+    """Yield the blocks of TRANSMIT, TRACYL or TRAFOOF. Raises ProgramError if the function is not allowed."""
     word = statement.g_words[TRANSFORMATION_GROUP]
     if (POSITION_WORDS & statement.words.keys()) or statement.assignments or statement.m_words:
         text: str = Message("{word} must be in a separate block.", word=word.text)
@@ -53,9 +53,9 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
 
 
 def _end_transformation(state: State) -> None:
-    """Turn the transformation off and reset the programmed frame.
+    """Cancel the transformation and reset the programmed frame.
 
-    This also applies before a new transformation.
+    This is also done before a new transformation is activated.
     """
     state.transformation = None
     state.programmed_frame = IDENTITY_FRAME
@@ -105,7 +105,9 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
 
 
 def _frame(state: State, statement: Statement, word: Word) -> FacePlane | SidePlane:
-    """Return the frame of the word for the present side of the tool, relative to the spindle axis."""
+    """Return the frame of the transformation for the present side of the tool, relative to the spindle
+    axis.
+    """
     refuse = partial(statement.make_error, word)
     values = [
         0.0 if each.formula is None else state.evaluate_formula(each.formula, refuse)

@@ -1,8 +1,8 @@
-"""Milling on the face (TRANSMIT) and on the side (TRACYL) with X, Y and Z, executed by X, Z and C.
+"""Milling on the face (TRANSMIT) and on the side (TRACYL) with X, Y and Z, executed by the axes X, Z and C.
 
-The words of the program have a plane (abscissa and ordinate) and a depth perpendicular to it. Lines, arcs,
-corners and compensation are calculated in the plane like X and Z on the lathe. The output are moves of the
-virtual mill (``core.geometry.virtual_mill``), as in plane switching.
+The program words define positions in a plane (abscissa and ordinate) and a depth perpendicular to the
+plane. Lines, arcs, corners and compensation are calculated in the plane as they are in X and Z on the
+lathe. The results are moves of the virtual mill (``core.geometry.virtual_mill``), as in plane switching.
 """
 
 from __future__ import annotations
@@ -56,7 +56,10 @@ class _Zero(TypedDict):
 
 
 class _LetterMap(NamedTuple):
-    """Mapping of the letters to the lathe's code, in which Z is the abscissa and X the ordinate."""
+    """Mapping of the program letters to the letters of the lathe code.
+
+    In the lathe code, Z is the abscissa and X is the ordinate.
+    """
 
     transformation_word: str
     plane: int
@@ -69,9 +72,10 @@ _SIDE = _LetterMap("TRACYL", 19, {"Y": "Z", "Z": "X", "X": "C"}, {"J": "K", "K":
 
 
 class ActiveTransformation:
-    """An active transformation: state, corners and compensation of its plane, and the position of the mill.
+    """An active transformation, with its plane and the position of the virtual mill.
 
-    The plane is in mm: X, Y and lathe Z on the face; Y, lathe Z and X as a radius on the side.
+    The plane has its own state, corners and compensation. Positions in the plane are in mm. On the face,
+    they are X, Y and lathe Z. On the side, they are Y, lathe Z, and X as a radius.
     """
 
     def __init__(self, state: State, log: DiagnosticLog, frame: FacePlane | SidePlane) -> None:
@@ -96,31 +100,33 @@ class ActiveTransformation:
 
     @property
     def name(self) -> str:
-        """Word that started the transformation."""
+        """Return the word that activated the transformation."""
         return self._names.transformation_word
 
     @property
     def has_z_depth(self) -> bool:
-        """Whether the depth is along Z, so that drilling cycles are allowed."""
+        """Return whether the depth is along Z, so that drilling cycles are allowed."""
         return isinstance(self._frame, FacePlane)
 
     @property
     def plane_code(self) -> int:
-        """Plane of its arcs and compensation: 17 or 19, for G17 or G19."""
+        """Return the G code of the plane for arcs and compensation, which is 17 or 19."""
         return self._names.plane
 
     @property
     def has_open_contour(self) -> bool:
-        """Whether a corner or a contour is unfinished."""
+        """Return whether a corner or a contour is unfinished."""
         return self._corners.has_buffered_move or self._compensation.has_open_contour
 
     @property
     def depth(self) -> float:
-        """Position of the tool perpendicular to the plane in the program frame, in mm."""
+        """Return the tool position perpendicular to the plane in the program frame, in mm."""
         return self._depth - self._plane.programmed_frame.shift_c
 
     def update_position(self) -> None:
-        """Set the position of the mill from the axes, at the start and after a change of tool or zero."""
+        """Set the position of the mill from the axis positions, at the start and after a change of tool or
+        zero.
+        """
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
         x, z, c = state.x - modal.drawing_zero_x, state.z - modal.drawing_zero_z, state.c - modal.offset_c
@@ -132,7 +138,7 @@ class ActiveTransformation:
     # --- words
 
     def convert_statement(self, statement: Statement) -> Statement:
-        """Return the statement with its words converted to the ZX plane of the lathe, as numbers.
+        """Return the statement with its words converted to numbers in the ZX plane of the lathe.
 
         Raises ProgramError for a word that is not allowed in the plane.
         """
@@ -216,7 +222,7 @@ class ActiveTransformation:
     # --- frames and moves
 
     def execute_frame(self, statement: Statement) -> None:
-        """Execute TRANS, ROT, SCALE and MIRROR in the plane. Raises ProgramError."""
+        """Execute TRANS, ROT, SCALE and MIRROR in the plane. Raises ProgramError for invalid words."""
         self._follow_state()
         if key := statement.frame_word:
             turned = {name: word for name, word in statement.words.items() if name in AXIS_NAMES}
@@ -234,7 +240,10 @@ class ActiveTransformation:
             self._derive()
 
     def make_moves(self, statement: Statement) -> Iterator[Block]:
-        """Yield the move of a statement in the plane, before its corners. Raises ProgramError."""
+        """Yield the move of a statement in the plane, before corners are inserted.
+
+        Raises ProgramError for an invalid move.
+        """
         self._check(statement)
         if word := statement.words.get("OFFN"):
             self._set_allowance(statement, word)
@@ -264,7 +273,7 @@ class ActiveTransformation:
         yield made
 
     def move_to_depth(self, statement: Statement, depth: float, feed: float | None, text: str) -> Block:
-        """Return a move to a depth in the program frame, in mm; without a feed, it is a rapid."""
+        """Return a move to a depth in the program frame, in mm, which is a rapid if ``feed`` is None."""
         self._follow_state()
         state, goal = self._plane, depth + self._plane.programmed_frame.shift_c
         kind = BlockKind.RAPID if feed is None else BlockKind.FEED
@@ -275,7 +284,7 @@ class ActiveTransformation:
         return made
 
     def move_above(self, statement: Statement, x: float, y: float, text: str) -> Block:
-        """Return a rapid to a point of the plane, in mm, for a hole pattern."""
+        """Return a rapid to a point of the plane for a hole pattern, in mm."""
         self._follow_state()
         state = self._plane
         z, ordinate = (y, x) if not self.has_z_depth else (x, y)
@@ -287,7 +296,7 @@ class ActiveTransformation:
         return made
 
     def _set_allowance(self, statement: Statement, word: Word) -> None:
-        """Set OFFN, the allowance of the contour. Raises ProgramError while a contour is active."""
+        """Set OFFN, the allowance of the contour. Raises ProgramError if a contour is active."""
         value = self._state.length(statement, word)
         if self._compensation.has_open_contour or (value and not self.has_z_depth):
             text = Message("{word} cannot change a contour that is not finished yet.", word=word.text)
@@ -342,7 +351,7 @@ class ActiveTransformation:
             )
 
     def _target_depth(self, statement: Statement) -> float:
-        """Return the target depth of a statement, in mm from the zero of the frame."""
+        """Return the target depth of a statement in mm, relative to the zero of the frame."""
         word = statement.words.get("C")
         if word is None:
             return self._depth
@@ -353,7 +362,7 @@ class ActiveTransformation:
         return value + (self._depth if relative else self._plane.programmed_frame.shift_c)
 
     def _plunge(self, statement: Statement) -> Block:
-        """Return a move only in depth."""
+        """Return a move that changes only the depth."""
         state = self._plane
         if state.motion is MotionKind.RAPID:
             return make_travel_block(state, statement, self._still(), BlockKind.RAPID, 0.0)
@@ -369,7 +378,7 @@ class ActiveTransformation:
         )  # fmt: skip
 
     def _set_end_position(self, block: Block) -> None:
-        """Set the lathe's state to the programmed end point, before compensation."""
+        """Set the lathe's state to the programmed end point without compensation."""
         state, frame = self._state, self._frame
         end = _spot(frame, block.x + block.offset_x, block.z + block.offset_z, block.c)
         if isinstance(frame, FacePlane):
@@ -382,25 +391,37 @@ class ActiveTransformation:
     # --- output
 
     def make_corner(self, block: Block) -> Corner | None:
-        """Return the corner of the statement of this block, or None. Raises ProgramError."""
+        """Return the corner that the statement of this block programs, or None.
+
+        Raises ProgramError if the corner is invalid.
+        """
         if self._statement is None or not block.moves:
             return None
         return make_corner(self._plane, self._statement, block)
 
     def accept(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """Accept a block, and yield the lathe blocks that no later block can change. Raises ProgramError."""
+        """Accept a block, and yield the lathe blocks that later blocks cannot change.
+
+        Raises ProgramError if a corner or the compensation is not possible.
+        """
         for cut in self._corners.accept(block, corner):
             for beside in self._compensation.accept(cut):
                 yield from self._to_lathe_blocks(beside)
 
     def flush(self) -> Iterator[Block]:
-        """Yield the buffered blocks, because no move follows for their corner. Raises ProgramError."""
+        """Yield the buffered blocks if no move follows their corner.
+
+        Raises ProgramError if the corner needs a following move.
+        """
         for cut in self._corners.finish():
             for beside in self._compensation.accept(cut):
                 yield from self._to_lathe_blocks(beside)
 
     def finish(self) -> Iterator[Block]:
-        """Yield the last blocks. Raises ProgramError if a corner or a contour is unfinished."""
+        """Yield the remaining blocks at the end.
+
+        Raises ProgramError if a corner or a contour is unfinished.
+        """
         yield from self.flush()
         for beside in self._compensation.finish():
             yield from self._to_lathe_blocks(beside)
@@ -430,7 +451,7 @@ class ActiveTransformation:
             yield self._made(block, part)
 
     def _turn_at_axis(self, block: Block, part: PlaneMove) -> Iterator[Block]:
-        """Yield a turn of C if the tool is on the axis, until the path leads out along X."""
+        """Yield a rotation of C if the tool is on the axis, until the path leads outward along X."""
         state, turn = self._state, replace(part, start_angle=self._theta).find_start_rotation()
         if not check_centerline_turn(self._log, block.line, turn):
             return
@@ -464,7 +485,7 @@ class ActiveTransformation:
         return made
 
     def _to_lathe(self, point: MillPoint) -> MillPoint:
-        """Return lathe X, Z and continuous C of a point of the mill, without offsets."""
+        """Convert a point of the mill to lathe X, Z and continuous C, without offsets."""
         frame = self._frame
         c = frame.c_start_deg - degrees(self._theta)
         if isinstance(frame, FacePlane):
@@ -473,9 +494,9 @@ class ActiveTransformation:
         return (point[2] if frame.is_far_side else -point[2]), -point[0], c
 
     def _zero(self, block: Block) -> _Zero:
-        """Return offsets and modal state of the lathe for a block.
+        """Return the offsets and the modal state of the lathe for a block.
 
-        The end of the program ends the transformation.
+        The end of the program also ends the transformation.
         """
         own = self._state.modal
         ends = isinstance(block.action, ProgramEnd)
@@ -488,10 +509,10 @@ class ActiveTransformation:
 
 
 def _spot(frame: FacePlane | SidePlane, ordinate: float, abscissa: float, depth: float) -> MillPoint:
-    """Return a point of the plane in the frame of the mill."""
+    """Convert a point of the plane to the frame of the mill."""
     return (abscissa, ordinate, depth) if isinstance(frame, FacePlane) else (-ordinate, abscissa, depth)
 
 
 def _to_plane(frame: FacePlane | SidePlane, point: MillPoint) -> MillPoint:
-    """Return abscissa, ordinate and depth of a point in the frame of the mill."""
+    """Return the abscissa, the ordinate and the depth of a point in the frame of the mill."""
     return (point[0], point[1], point[2]) if isinstance(frame, FacePlane) else (point[1], -point[0], point[2])

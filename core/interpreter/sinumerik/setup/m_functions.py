@@ -1,4 +1,4 @@
-"""M functions other than spindle and program end: coolant, tool change, gears and machine outputs."""
+"""M functions for coolant, tool change, gears and machine outputs, but not for spindle and program end."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ _ISO_CODES = frozenset({98, 99})  # M98 and M99 of the ISO dialect, which call a
 def check_m_functions(
     state: State, statement: Statement, missing_functions: list[MachineRequirement]
 ) -> None:
-    """Check the M functions of a block, and add builder functions that this machine lacks to
-    ``missing_functions``.
+    """Check the M functions of a block.
 
-    The original control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for
-    a code that the machine file does not enable.
+    Machine-builder functions that this machine lacks are added to ``missing_functions``. The original
+    control passes an unknown code to the builder's PLC without an alarm. Raises ProgramError for a code
+    that the machine file does not enable.
     """
     limits = state.setup.limits
     for code, word in statement.m_words.items():
@@ -80,7 +80,9 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
 
 
 def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
-    """Warn once that this machine lacks a builder function, so that it does not start."""
+    """Log a warning, once, that this machine lacks a machine-builder function and therefore does
+    not start.
+    """
     if f"M{code}" in state.told:
         return
     state.told.add(f"M{code}")
@@ -95,13 +97,13 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
 
 
 def execute_before_motion(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks that switch coolant and outputs on, before the motion."""
+    """Yield the blocks that turn coolant and outputs on before the motion."""
     yield from _outputs(state, statement, on=True)
     yield from _coolant(state, statement, {7, 8})
 
 
 def execute_after_motion(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks that switch coolant and outputs off, after the motion."""
+    """Yield the blocks that turn coolant and outputs off after the motion."""
     yield from _coolant(state, statement, {9})
     yield from _outputs(state, statement, on=False)
 

@@ -1,4 +1,4 @@
-"""Modal G functions: motion, plane, units, G90 and G91, and the offsets of program zero."""
+"""Modal G functions (motion, plane, units, G90 and G91) and the offsets of program zero."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _FIFTH = {505: 58, 506: 59}  # the settable offsets that these codes select
 
 
 def activate_settable_offset(state: State, statement: Statement) -> None:
-    """Activate the settable offset of G54 to G59, G505 or G506; G500 turns it off."""
+    """Activate the settable offset of G54 to G59, G505 or G506, or cancel it with G500."""
     code = statement.get_g_code(table.SETTABLE_OFFSET_GROUP)
     if code is None:
         return
@@ -27,9 +27,10 @@ def activate_settable_offset(state: State, statement: Statement) -> None:
 
 
 def execute_frame(state: State, statement: Statement) -> None:
-    """Execute TRANS, ROT, SCALE and MIRROR, which replace the frame, or their A forms, which add to it.
+    """Execute TRANS, ROT, SCALE and MIRROR, which replace the frame, or their A forms, which add to the
+    frame.
 
-    Without axes, they reset the frame. Raises ProgramError for invalid words.
+    A block without axis words resets the frame. Raises ProgramError for invalid words.
     """
     key = statement.frame_word
     if key is None:
@@ -64,9 +65,9 @@ def execute_frame(state: State, statement: Statement) -> None:
 
 
 def reset_offsets(state: State) -> None:
-    """Reset the offsets at the end of a program, so that later programs in any language do not use them.
+    """Reset the offsets at the end of a program, so that later programs in any dialect do not use them.
 
-    G71 and DIAMON become active, as the next line of MDI expects.
+    G71 and DIAMON become active, as the next MDI line expects.
     """
     state.settable, state.programmed_frame = ZERO_SETTABLE_OFFSET, IDENTITY_FRAME
     state.set_modal(state.modal._replace(settable=0, metric=True, diameter=True))
@@ -107,7 +108,10 @@ def _refuse_axes(statement: Statement, key: Word) -> None:
 
 
 def _shift(state: State, statement: Statement, name: str) -> float:
-    """Return one axis of TRANS or ATRANS, in mm or degrees; X is a radius, independent of DIAMON."""
+    """Return the shift of one axis in TRANS or ATRANS, in mm or degrees.
+
+    X is a radius, independent of DIAMON.
+    """
     word = _plain(statement, name)
     if word is None:
         return 0.0
@@ -136,7 +140,7 @@ def _plain(statement: Statement, name: str) -> Word | None:
 
 
 def execute_modes(state: State, statement: Statement) -> None:
-    """Set the modal functions of a block. Raises ProgramError."""
+    """Set the modal functions of a block. Raises ProgramError for an invalid function."""
     modal = state.modal
     _motion_and_plane(state, statement)
     metric, absolute = statement.get_g_code(table.UNIT_GROUP), statement.get_g_code(table.DISTANCE_MODE_GROUP)
@@ -174,7 +178,7 @@ def _motion_and_plane(state: State, statement: Statement) -> None:
 
 
 def _path_modes(state: State, statement: Statement) -> None:
-    """Set the modes of exact stop, outside corners, approach and working area."""
+    """Set the modes for exact stop, outside corners, approach and working area."""
     exact, corner = statement.get_g_code(table.EXACT_STOP_GROUP), statement.get_g_code(table.CORNER_GROUP)
     if exact is not None:
         state.exact = exact == 60
@@ -199,7 +203,7 @@ def _path_modes(state: State, statement: Statement) -> None:
 
 
 def note_ineffective_words(state: State, statement: Statement) -> None:
-    """Note once each word without effect."""
+    """Log a note, once, for each word that has no effect."""
     for word in statement.g_words.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
         note_ineffective(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
@@ -208,7 +212,7 @@ def note_ineffective_words(state: State, statement: Statement) -> None:
 
 
 def note_ineffective(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
-    """Note once that a function has no effect, with the reason ``reason``."""
+    """Log a note, once, that a function has no effect because of ``reason``."""
     if reason and name not in state.told:
         state.told.add(name)
         found = statement.make_warning(
@@ -218,7 +222,10 @@ def note_ineffective(state: State, statement: Statement, word: Word, name: str, 
 
 
 def execute_frame_block(state: State, statement: Statement) -> bool:
-    """Execute G110 to G112, G25 and G26; return whether the block is one of them. Raises ProgramError."""
+    """Execute G110 to G112, G25 or G26, and return whether the block contains one of these codes.
+
+    Raises ProgramError for invalid words.
+    """
     word = statement.g_words.get(table.NON_MODAL_GROUP)
     code = statement.get_g_code(table.NON_MODAL_GROUP)
     if word is None or code not in {110, 111, 112, 25, 26}:
@@ -251,14 +258,20 @@ def _place(state: State, statement: Statement, name: str) -> float:
 
 
 def _limits(state: State, statement: Statement, *, upper: bool) -> None:
-    """Set the working area; the spindle speeds of G25 and G26 are set with the spindle words."""
+    """Set the working area of G25 and G26.
+
+    Their spindle speeds are set together with the spindle words.
+    """
     for name in ("X", "Z"):
         if name in statement.words:
             state.area[name, upper] = _place(state, statement, name)
 
 
 def check_working_area(state: State, statement: Statement, x: float, z: float) -> None:
-    """Raise ProgramError if the tip leaves the working area of G25 and G26; ``x z`` are machine mm."""
+    """Raise ProgramError if the tip leaves the working area of G25 and G26.
+
+    ``x`` and ``z`` are machine positions in mm.
+    """
     if not state.is_working_area_active or not state.area:
         return
     modal = state.modal

@@ -1,4 +1,4 @@
-"""Programmed frame of TRANS, ROT, SCALE and MIRROR in the ZX plane, and the shift of C."""
+"""Programmed frame of TRANS, ROT, SCALE and MIRROR in the ZX plane, with the shift of C."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 
 class ProgrammedFrame(NamedTuple):
-    """Frame that maps a program point ``p`` to M p + (x, z), in mm with X as a radius.
+    """Frame that maps a program point ``p`` to M p + (shift_x, shift_z), in mm with X as a radius.
 
-    M has the rows ``xx xz`` and ``zx zz``. ``c`` shifts C in degrees. Rotation and scaling do not affect
-    other offsets.
+    The matrix M has the rows (xx, xz) and (zx, zz). ``shift_c`` shifts C in degrees. Rotation and scaling
+    do not affect other offsets.
     """
 
     shift_x: float = 0.0
@@ -23,47 +23,47 @@ class ProgrammedFrame(NamedTuple):
 
     @property
     def is_shift_only(self) -> bool:
-        """Whether the frame only shifts."""
+        """Return whether the frame consists only of a shift."""
         return (self.xx, self.xz, self.zx, self.zz) == (1.0, 0.0, 0.0, 1.0)
 
     @property
     def is_mirrored(self) -> bool:
-        """Whether the frame reverses the direction of arcs."""
+        """Return whether the frame reverses the direction of arcs."""
         return self.xx * self.zz - self.xz * self.zx < 0.0
 
     @property
     def is_uniform(self) -> bool:
-        """Whether both axes have the same factor, so that circles remain circles."""
+        """Return whether both axes have the same scale factor, so that circles remain circles."""
         across = self.xx * self.xx + self.zx * self.zx
         along = self.xz * self.xz + self.zz * self.zz
         return abs(across - along) < 1e-9 * along
 
     def transform_distance(self, x: float, z: float) -> tuple[float, float]:
-        """Return a distance of the program as a machine distance."""
+        """Convert a distance in the program frame to a machine distance."""
         return self.xx * x + self.xz * z, self.zx * x + self.zz * z
 
     def invert_distance(self, x: float, z: float) -> tuple[float, float]:
-        """Return a machine distance as a distance of the program."""
+        """Convert a machine distance to a distance in the program frame."""
         whole = self.xx * self.zz - self.xz * self.zx
         return (self.zz * x - self.xz * z) / whole, (self.xx * z - self.zx * x) / whole
 
     @property
     def scale_factor(self) -> float:
-        """Scale factor of lengths in a uniform frame."""
+        """Return the scale factor of lengths in a uniform frame."""
         return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
 
     def shift(self, x: float, z: float, c: float) -> ProgrammedFrame:
-        """Return the frame with its zero shifted by a distance of the program."""
+        """Return the frame with its zero shifted by a distance in the program frame."""
         dx, dz = self.transform_distance(x, z)
         return self._replace(shift_x=self.shift_x + dx, shift_z=self.shift_z + dz, shift_c=self.shift_c + c)
 
     def rotate(self, degrees: float) -> ProgrammedFrame:
-        """Return the frame rotated further, from Z toward X."""
+        """Return the frame with an additional rotation from Z toward X."""
         a = radians(degrees)
         return self._by(cos(a), sin(a), -sin(a), cos(a))
 
     def scale(self, x: float, z: float) -> ProgrammedFrame:
-        """Return the frame with further factors; negative factors mirror."""
+        """Return the frame with additional scale factors; negative factors mirror an axis."""
         return self._by(x, 0.0, 0.0, z)
 
     def _by(self, xx: float, xz: float, zx: float, zz: float) -> ProgrammedFrame:

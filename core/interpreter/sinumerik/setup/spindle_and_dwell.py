@@ -33,7 +33,7 @@ _FEET = 12.0 * MM_PER_INCH / 60.0  # mm/s per ft/min
 
 
 def has_spindle_words(statement: Statement) -> bool:
-    """Return whether a block has words for the spindle."""
+    """Return whether a block contains spindle words."""
     return bool(statement.m_words or _WORDS & statement.words.keys() or FEED_TYPE_GROUP in statement.g_words)
 
 
@@ -41,7 +41,10 @@ _WORDS = frozenset({"S", "LIMS", "SPOS", "SPOSA", "SETMS"})
 
 
 def execute_spindle_words(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the spindle blocks of a block, which precede its motion. Raises ProgramError."""
+    """Yield the spindle actions of a program block, which precede its motion.
+
+    Raises ProgramError for invalid words.
+    """
     before = (state.modal.spindle, state.rpm, state.css)
     _modes(state, statement)
     _limit(state, statement)
@@ -84,7 +87,10 @@ def _positions(statement: Statement) -> Word | None:
 
 
 def _position_spindle(state: State, statement: Statement, word: Word) -> Iterator[Block]:
-    """Yield the blocks that stop the spindle and orient it, by its drive or as C. Raises ProgramError."""
+    """Yield the blocks that stop the spindle and orient it, by its drive or as the C axis.
+
+    Raises ProgramError if the spindle cannot be positioned.
+    """
 
     def refuse(text: str, hint: str) -> ProgramError:
         return statement.make_error(
@@ -121,13 +127,19 @@ def is_oriented_by_drive(state: State) -> bool:
 
 
 def check_can_position(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
-    """Raise the error of ``make_error`` (text and hint) if the spindle cannot be positioned at an angle."""
+    """Raise the error that ``make_error`` returns if the spindle cannot be positioned at an angle.
+
+    ``make_error`` is called with a text and a hint.
+    """
     if not is_oriented_by_drive(state):
         check_spindle_is_c(state, make_error)
 
 
 def check_spindle_is_c(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
-    """Raise the error of ``make_error`` (text and hint) if the spindle is not the C axis."""
+    """Raise the error that ``make_error`` returns if the spindle is not the C axis.
+
+    ``make_error`` is called with a text and a hint.
+    """
     limits = state.setup.limits
     if limits.c_enabled and limits.is_spindle_c_axis:
         return
@@ -155,7 +167,7 @@ def check_spindle_is_c(state: State, make_error: Callable[[str, str], ProgramErr
 
 
 def _orient(state: State, statement: Statement, word: Word) -> SpindlePositioning:
-    """Return angle and direction of M19 and SPOS; the angle is from 0 to below 360 degrees."""
+    """Return the angle and direction of M19 or SPOS, with an angle from 0 to less than 360 degrees."""
     if word.name == "M":
         return SpindlePositioning(0.0)
     form, at = word.position_form, state.modal.oriented
@@ -183,7 +195,7 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindlePositionin
 
 
 def compute_shortest_turn(state: State, angle: float) -> float:
-    """Return the signed travel of C to an angle of the program by the shorter distance, in degrees."""
+    """Return the shortest signed travel of C to a program angle, in degrees."""
     at = state.c - state.modal.offset_c
     if not state.setup.limits.is_c_modulo:
         return angle - at
@@ -191,7 +203,9 @@ def compute_shortest_turn(state: State, angle: float) -> float:
 
 
 def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
-    """Return the signed travel of C; without a form, by the shorter distance."""
+    """Return the signed travel of C in degrees, which is the shorter distance if the word has no position
+    form.
+    """
     if word.name == "M":
         word = word._replace(value=0.0, formula=None)
     at = state.c - state.modal.offset_c
@@ -250,7 +264,7 @@ def _limit(state: State, statement: Statement) -> None:
 
 
 def _speed(state: State, statement: Statement) -> None:
-    """Set S: rpm under G97, m/min under G96."""
+    """Set S, which is in rpm under G97 and in m/min under G96."""
     word = statement.words.get("S")
     if word is None or statement.get_g_code("dwell") is not None:
         return
@@ -291,9 +305,9 @@ def _check_start(state: State, statement: Statement, word: Word) -> None:
 
 
 def make_dwell_block(state: State, statement: Statement) -> Block:
-    """Return the block of G4 with F in seconds or S in revolutions; the active F and S do not change.
+    """Return the block of G4 with F in seconds or S in revolutions.
 
-    Raises ProgramError for an invalid time or a stopped spindle.
+    The active F and S do not change. Raises ProgramError for an invalid time or a stopped spindle.
     """
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
@@ -314,7 +328,10 @@ def make_dwell_block(state: State, statement: Statement) -> Block:
 
 
 def _turning(state: State, statement: Statement, word: Word) -> float:
-    """Return the spindle speed in rpm for a dwell in revolutions. Raises ProgramError if it is stopped."""
+    """Return the spindle speed in rpm for a dwell in revolutions.
+
+    Raises ProgramError if the spindle is stopped.
+    """
     _demand_controlled(state, statement, word)
     rpm = abs(state.rpm)
     text = "G4 {word} waits for spindle revolutions, but the spindle is stopped."
@@ -328,8 +345,9 @@ _TURNS = frozenset({3, 4, 5})
 
 
 def separate_live_words(state: State, statement: Statement) -> None:
-    """Move the words of the live tool to ``statement.live_tool_words``. Raises ProgramError without a live
-    tool.
+    """Move the words of the live tool to ``statement.live_tool_words``.
+
+    Raises ProgramError if the machine has no live tool.
     """
     for word in statement.live_tool_words:
         _demand(state, statement, word)
@@ -356,7 +374,10 @@ def _demand(state: State, statement: Statement, word: Word) -> None:
 
 
 def switch_live_tool(state: State, statement: Statement) -> Iterator[Block]:
-    """Yield the blocks that set the speed and start or stop the live tool. Raises ProgramError."""
+    """Yield the blocks that set the speed of the live tool and start or stop it.
+
+    Raises ProgramError for invalid words.
+    """
     for word in statement.live_tool_words:
         if word.name == "S":
             _live_speed(state, statement, word)

@@ -28,7 +28,10 @@ WRONG_EDGE_NUMBER = 17180
 
 
 def execute_tool_words(state: State, statement: Statement, usage: ToolUsage) -> Iterator[Block]:
-    """Yield the blocks of T and D: T selects the tool with D1, and D0 has no offset. Raises ProgramError."""
+    """Yield the blocks of T and D.
+
+    T selects the tool with D1, and D0 cancels the offset. Raises ProgramError for an unknown tool or edge.
+    """
     tool, edge = statement.words.get("T"), statement.words.get("D")
     if tool is None and edge is None:
         return
@@ -80,7 +83,7 @@ def _edge(state: State, statement: Statement, word: Word) -> int:
 
 
 def _activate_edge(state: State, statement: Statement, number: int, edge: int, usage: ToolUsage) -> None:
-    """Activate the edge with this number; 0 for D0 and T0."""
+    """Activate the cutting edge with this number, which is 0 for D0 and T0."""
     key = make_edge_key(
         number,
         edge or get_edge_number(state.modal.tool) if number == get_tool_number(state.modal.tool) else edge,
@@ -97,7 +100,7 @@ def _activate_edge(state: State, statement: Statement, number: int, edge: int, u
 
 
 def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> ToolOffset:
-    """Return the offset of an edge. Raises ProgramError if the tool has no such edge."""
+    """Return the offset of a cutting edge. Raises ProgramError if the tool does not have this edge."""
     tools = state.setup.tools
     if key not in tools and get_tool_number(key) in tools:
         name, word = format_edge_name(key), statement.words.get("D")
@@ -125,7 +128,10 @@ def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> T
 
 
 def _hint(word: Word | None) -> str:
-    """Return the remedy for a tool without an offset; T0101 is tool 1 with its offset on other controls."""
+    """Return the remedy for a tool without an offset.
+
+    On other controls, T0101 is tool 1 with its offset.
+    """
     if word is not None and word.quoted_name:
         return "Enter this name as the remark of a tool (F8)."
     if word is not None and (iso := _TOOL_AND_OFFSET.fullmatch(word.text)):
