@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from core.block_ports import BlockOperation, BlockState, ThreadOperation
 from core.faults import get_fault_code
-from core.ports import BlockOperation, BlockState, DriverError, ThreadOperation
+from core.ports import DriverError
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_codes import format_block, get_ticket_line_number
 from drivers.grblhal.grblhal_config import GrblAxis

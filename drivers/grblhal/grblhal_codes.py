@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+from core.block_ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
 from core.message import Message
-from core.ports import ArcOperation, BlockOperation, FaultCode, LineOperation, RapidOperation, ThreadOperation
+from core.ports import FaultCode
 
 # The equivalent characters ? ~ ! would be plain text inside comments and $ lines.
 STATUS, START, HOLD, TELL_MODES, JOG_CANCEL, FULL = 0x80, 0x81, 0x82, 0x83, 0x85, 0x87

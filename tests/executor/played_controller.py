@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
+from core.block_ports import BlockOperation, BlockState
 from core.executor.machine_context import MachineContext
 from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import LogEvent
 from core.executor.spindle_control import SpindleControl
 from core.machine.machine_model import Machine
-from core.ports import BlockOperation, BlockState
 from drivers.wakeups import ManualClock
 
 

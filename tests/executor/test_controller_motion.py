@@ -7,6 +7,7 @@ import math
 
 import pytest
 
+from core.block_ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
 from core.executor.job import ProgramPass, ReadAhead
 from core.executor.program_motion.controller_motion import (
     MAX_PART_S,
@@ -19,7 +20,6 @@ from core.executor.raised_alarm import AlarmError
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.machine_requirements import find_requirements, remove_repeated_requirements
 from core.interpreter.shared.modal_state import ModalState
-from core.ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
 from tests.coded import raises_code
 from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot
 from tests.texts import text

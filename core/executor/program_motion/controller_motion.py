@@ -12,6 +12,15 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from core.block_ports import (
+    ArcOperation,
+    BlockController,
+    BlockOperation,
+    BlockState,
+    LineOperation,
+    RapidOperation,
+    ThreadOperation,
+)
 from core.executor.job import ReadAhead, nominal_duration_s
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import OverrideFactors, SectionProgress
@@ -22,15 +31,6 @@ from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
 from core.motion.axis_limits import CENTRIPETAL_SHARE, MotionLimits
-from core.ports import (
-    ArcOperation,
-    BlockController,
-    BlockOperation,
-    BlockState,
-    LineOperation,
-    RapidOperation,
-    ThreadOperation,
-)
 
 # --- elementary blocks in parts -------------------------------------------------------------------------
 

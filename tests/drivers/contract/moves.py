@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.ports import AxisSink, BlockController, LineOperation, Segments
+from core.block_ports import BlockController, LineOperation
+from core.ports import AxisSink, Segments
 
 ACCEL = 3000.0  # mm/s²
 _PIECE = 0.1  # s of one block

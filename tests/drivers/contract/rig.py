@@ -8,9 +8,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+from core.block_ports import BlockController
 from core.faults import FaultCode
 from core.machine.machine_model import Machine
-from core.ports import BlockController, MachinePorts, UnknownPart
+from core.ports import MachinePorts, UnknownPart
 from drivers.simulators.plant_controls import PlantControls
 from drivers.wakeups import ManualClock
 from tests.drivers.contract.moves import hand_over, start

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, LineOperation, Segments
+from core.block_ports import LineOperation
+from core.ports import DriverError, Segments
 from tests.coded import raises_code
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.moves import start

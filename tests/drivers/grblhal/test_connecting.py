@@ -8,9 +8,10 @@ import threading
 import pytest
 
 from app.compose.backends.grblhal_backend import create_grblhal_config
+from core.block_ports import LineOperation
 from core.executor.commands import EnableDrives, Reset
 from core.executor.snapshot import MachineState
-from core.ports import DriverError, LineOperation
+from core.ports import DriverError
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_transport import GrblTcpTransport
 from drivers.simulators.grblhal_firmware import GrblFirmware

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, LineOperation, Segments, StopMode
+from core.block_ports import LineOperation
+from core.ports import DriverError, Segments, StopMode
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.texts import text

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from app.compose.backends.grblhal_backend import create_grblhal_config
-from core.ports import ArcOperation, DriverError, LineOperation, RapidOperation, ThreadOperation
+from core.block_ports import ArcOperation, LineOperation, RapidOperation, ThreadOperation
+from core.ports import DriverError
 from drivers.grblhal.grblhal_codes import format_block, format_jog, number
 from drivers.grblhal.grblhal_machine import GrblMachine
 from drivers.grblhal.grblhal_operator import encode_override_steps

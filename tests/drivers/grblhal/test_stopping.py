@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from core.block_ports import LineOperation, ThreadOperation
 from core.faults import get_fault_code
-from core.ports import LineOperation, StopMode, ThreadOperation
+from core.ports import StopMode
 from tests.drivers.grblhal.bench import GrblBench, quirky
 
 HOLD, CANCEL, RESET, STOP, PAUSE = 0x82, 0x85, 0x18, 0x19, 0x9E

@@ -6,9 +6,9 @@ import math
 
 import pytest
 
+from core.block_ports import ArcOperation
 from core.executor.commands import FeedHold, Reset, SetFeedOverride
 from core.executor.snapshot import MachineState
-from core.ports import ArcOperation
 from drivers.grblhal.grblhal_codes import format_block
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.drivers.grblhal.test_faults import THREAD, clear

@@ -6,9 +6,10 @@ import re
 
 import pytest
 
+from core.block_ports import LineOperation
 from core.executor.commands import HomeAxes
 from core.executor.snapshot import MachineState
-from core.ports import DriverError, LineOperation
+from core.ports import DriverError
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, grbl_machine, quirky
 from tests.drivers.grblhal.test_faults import UNHOMED
