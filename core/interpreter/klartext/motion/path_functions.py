@@ -13,21 +13,18 @@ from dataclasses import dataclass, replace
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, make_rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
 from core.geometry.rotation_frames import Vector
-from core.geometry.working_plane import HelixMove, to_plane_order
+from core.geometry.working_plane import to_plane_order
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import LINEAR_AXES, POINT_TOLERANCE, State
-from core.interpreter.klartext.motion.feed_rates import (
-    compute_rotary_feed,
-    convert_to_feed_per_minute,
-    reduce_plunging_feed,
-)
+from core.interpreter.klartext.motion.feed_rates import convert_to_feed_per_minute, reduce_plunging_feed
+from core.interpreter.klartext.motion.path_checks import check_axes, check_surface_normal, warn_before_cut
+from core.interpreter.klartext.motion.path_element_blocks import make_element_block
 from core.interpreter.klartext.motion.path_elements import (
     PathElement,
     compute_end_point,
     find_pole_plane,
     make_elements,
 )
-from core.interpreter.klartext.motion.plane_functions import move_with_rotary_axes
 from core.interpreter.klartext.motion.radius_compensation import (
     CompensatedContour,
     ContourEntry,
@@ -40,13 +37,10 @@ from core.language.klartext.klartext_faults import (
     COMPENSATION_NOT_PERMITTED,
     PATH_FUNCTION_NOT_POSSIBLE,
     ROUNDING_NOT_POSSIBLE,
-    WRONG_AXIS,
     make_unsupported_error,
 )
 from core.language.klartext.klartext_nodes import AxisWord, CornerBlock, PathFunction, Pole
 from core.message import Message
-
-TABLE_TOLERANCE_DEG = 0.001  # degrees; position error of the table above which a cut causes a warning
 
 BlockGenerator = Callable[[], Iterator[Block]]
 
@@ -155,9 +149,9 @@ class PathRunner:
                 self._set_block_feed(node)
             yield from self._switch_compensation(node)
             return
-        self._demand_axes(node)
+        check_axes(self._state, node)
         if node.function_name == "LN":
-            self._check_uncompensated(node)
+            check_surface_normal(self._state, node, is_compensated=bool(self._side))
         if datum is not None:
             yield from self.flush_before(node.column, "M91")
             yield from self._move_in_machine_frame(node, datum)
@@ -180,7 +174,7 @@ class PathRunner:
     def _elements(self, node: PathFunction) -> Iterator[PathElement]:
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
-            _warn(state, node)
+            warn_before_cut(state, node)
         rotary = _rotary(state, node, state.kinematics.zero_angles)
         if rotary and self._side:
             text = "A rotary axis cannot move while radius compensation is active."
@@ -250,23 +244,6 @@ class PathRunner:
         yield from self._emit_all(
             plan_departure_path(self._state, node, here, direction, "", 0.0, self._set_block_feed(node))
         )
-
-    def _check_uncompensated(self, node: PathFunction) -> None:
-        """Raise ProgramError for LN with a tool vector or with compensation along the normal."""
-        state = self._state
-        if any(word.axis[0] == "T" for word in node.words):
-            raise make_unsupported_error(
-                state.line_number, node.column, "LN with a tool direction vector (TX TY TZ)"
-            )
-        row = state.setup.mill_tools.get(state.modal.tool)
-        off = (
-            *state.tool_deltas_mm,
-            *((row.delta_length, row.delta_radius, row.delta_corner_radius) if row is not None else ()),
-        )
-        if any(off) or node.compensation in {"L", "R"} or self._side:
-            raise make_unsupported_error(
-                state.line_number, node.column, "LN with 3D compensation (DL, DR, DR2, RL, RR)"
-            )
 
     def _demand_same_side(self, node: PathFunction) -> None:
         if not self._side or node.compensation in {"", "0", self._side}:
@@ -408,55 +385,14 @@ class PathRunner:
         state = self._state
         line, text = state.line_number, state.text
         state.line_number, state.text = each.line_number, each.block_text
-        yield self._block(each)
+        yield make_element_block(state, each)
         state.line_number, state.text = line, text
-
-    def _block(self, each: PathElement) -> Block:
-        state = self._state
-        if each.arc is not None:
-            return self._arc(each, each.arc)
-        if state.is_tcpm_active and each.rotary:
-            return move_with_rotary_axes(state, each)
-        goals: Mapping[str, float] = dict(zip(LINEAR_AXES, state.to_machine_position(each.end), strict=True))
-        if not any(abs(goals[name] - state.position_by_axis[name]) > POINT_TOLERANCE for name in LINEAR_AXES):
-            goals = {}
-        rate = None if each.feed is None else state.convert_feed_to_mm_s(each.feed)
-        if rate is not None and each.feed is not None and not goals:
-            rate = compute_rotary_feed(state, each.feed, each.rotary)
-        return state.make_move_block(
-            BlockKind.RAPID if rate is None else BlockKind.FEED, {**goals, **each.rotary}, rate
-        )
-
-    def _arc(self, each: PathElement, arc: Arc) -> Block:
-        state = self._state
-        names = state.axis_names
-        columns = names.index("X"), names.index("Y"), names.index("Z")
-        if each.is_vertical_arc:
-            arc, frame = state.transformation.transform_upright_arc(arc, each.axis_order)
-            w0, w1 = (
-                to_plane_order(each.axis_order, at)[2] * state.transformation.scale_factor
-                for at in (each.start, each.end)
-            )
-            way = HelixMove(state.plane_transform, arc, w0, w1, state.axis_positions, columns, frame)
-        else:
-            z0, z1 = (state.transformation.to_plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2]))
-            way = HelixMove(
-                state.plane_transform,
-                state.transformation.transform_arc(arc),
-                z0,
-                z1,
-                state.axis_positions,
-                columns,
-            )
-        goals = dict(zip(LINEAR_AXES, state.to_machine_position(each.end), strict=True))
-        rate = None if each.feed is None else state.convert_feed_to_mm_s(each.feed)
-        return state.make_move_block(BlockKind.PLANE_ARC, goals, rate, way)
 
     def _move_in_machine_frame(self, node: PathFunction, datum: Mapping[str, float]) -> Iterator[Block]:
         """Yield the move with M91 or M92, whose words refer to machine zero or the second machine datum."""
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
-            _warn(state, node)
+            warn_before_cut(state, node)
         goals = _rotary(state, node, dict.fromkeys(state.rotary_axis_names, 0.0))
         for axis, now in zip(LINEAR_AXES, state.linear_position, strict=True):
             if (word := node.find_word(axis)) is not None:
@@ -472,14 +408,6 @@ class PathRunner:
         yield state.make_move_block(BlockKind.RAPID if rate is None else BlockKind.FEED, goals, rate)
 
     # --- words --------------------------------------------------------------------------------------------
-
-    def _demand_axes(self, node: PathFunction) -> None:
-        for word in node.axes:
-            if word.axis not in self._state.position_by_axis:
-                text = "This machine has no {axis} axis."
-                raise self._state.make_error(
-                    word.column, WRONG_AXIS, text, "Remove the word.", axis=word.axis
-                )
 
     def _set_block_feed(self, node: PathFunction) -> float | None:
         """Set the feed of the block and return it; None for a rapid, which applies only to this block."""
@@ -533,32 +461,3 @@ def _rotary(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict
             )
             found[axis.name] = now + (value if word.is_incremental else way)
     return found
-
-
-def _warn(state: State, node: PathFunction) -> None:
-    """Warn once of a cut with the table in another position than the plane, or with the spindle stopped."""
-    if all(word.axis not in LINEAR_AXES for word in node.axes) and not node.words:
-        return
-    if not state.modal.spindle and "spindle" not in state.reported_findings:
-        state.reported_findings.add("spindle")
-        text, hint = "The spindle is stopped during this feed move.", ("Start the spindle with M3 or M4.")
-        state.log.warn(state.line_number, 0, "spindle-stopped", text, hint)
-    plane = state.active_plane
-    if plane is None or ("table", plane.line) in state.reported_findings:
-        return
-    off = [
-        axis.name
-        for axis in state.kinematics.rotary_axes
-        if abs(axis.find_travel(plane.target_angles[axis.name], state.position_by_axis[axis.name]))
-        > TABLE_TOLERANCE_DEG
-    ]
-    if off:
-        state.reported_findings.add(("table", plane.line))
-        text = "The position of {off} does not match the plane programmed on line {line}."
-        hint = (
-            "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the "
-            "PLANE block."
-        )
-        state.log.warn(
-            state.line_number, 0, "table-elsewhere", text, hint, off=" and ".join(off), line=plane.line
-        )
