@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import replace
-from functools import cached_property, partial
+from functools import cached_property
 
 from core.interpreter.shared.actions import Dwell, ProgramEnd, ProgramStop
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
@@ -29,7 +29,7 @@ from core.interpreter.sinumerik.flow.block_search import (
     restore_state,
 )
 from core.interpreter.sinumerik.flow.subprogram_flow import Flow, ends_main_program
-from core.interpreter.sinumerik.flow.variables import format_variable_name
+from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
 from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corner, SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.fixed_points import make_fixed_point_move, make_home_move
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
@@ -66,7 +66,7 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 from core.language.sinumerik.control_differences import find_missing_function
 from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES, SWIVEL_CYCLE
 from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED
-from core.language.sinumerik.sinumerik_words import ARC_WORDS, LexedBlock, Word
+from core.language.sinumerik.sinumerik_words import ARC_WORDS, LexedBlock
 from core.language.sinumerik.subprogram_files import HEADER_PATTERN
 from core.language.sinumerik.word_table import (
     BLOCK_EXACT_STOP_GROUP,
@@ -345,7 +345,7 @@ class Interpreter(LinePass[LexedBlock]):
     def _blocks(self, statement: Statement) -> Iterator[Block]:
         """Yield the blocks of a statement in the order of execution: modes, tool, spindle, motion, stops."""
         state = self._state
-        _set_parameters(state, statement)
+        set_parameters(state, statement)
         check_y_word(state, statement)
         if statement.frame_word is not None:
             if self._active_transformation is not None:
@@ -484,53 +484,3 @@ class Interpreter(LinePass[LexedBlock]):
         )
         hint = "Check the loops, and reduce the repeat counts of the calls."
         self._log_error(line.make_error(0, "too-many-blocks", text, hint).diagnostic)
-
-
-def _set_parameters(state: State, statement: Statement) -> None:
-    """Set the R parameters and variables of a block. Raises ProgramError for an undefined name."""
-    for word in statement.assignments:
-        name = _variable_name(state, statement, word)
-        if word.values is not None:
-            _execute_set(state, statement, word, name)
-        elif not state.variables.set_value(name, state.number(statement, word)):
-            raise _no_place(state, statement, word, name)
-
-
-def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
-    if word.name in state.variables.variable_scope.array_dimensions:
-        return statement.make_error(word, *state.variables.describe_missing(word.name, name))
-    text = Message(
-        "the name {name} is not defined: it is neither a word nor a variable of this program.", name=name
-    )
-    return statement.make_error(
-        word, NAME_NOT_DEFINED, text, Message("Write DEF REAL {word} before this block.", word=word.name)
-    )
-
-
-def _execute_set(state: State, statement: Statement, word: Word, name: str) -> None:
-    """Execute SET and REP from an element on. Raises ProgramError if the array is too short."""
-    letters = "R" if word.name == "R0" else word.name
-    if name not in state.variables.variable_scope.numbers and letters != "R":
-        raise _no_place(state, statement, word, name)
-
-    assert word.values is not None
-    refuse = partial(statement.make_error, word)
-    left = state.variables.assign_values(
-        letters, name, word.values, lambda asked: state.evaluate_formula(asked, refuse)
-    )
-    if left:
-        text = Message(
-            "{word}: the array needs {left} more elements for this list.", word=word.text, left=left
-        )
-        raise refuse("array-values", text, "Shorten the list.")
-
-
-def _variable_name(state: State, statement: Statement, word: Word) -> str:
-    """Return the name that the word assigns: R7, LENGTH, or an element of an array."""
-    if word.element_index is None:
-        return word.name
-    refuse = partial(statement.make_error, word)
-    letters = "R" if word.name == "R0" else word.name
-    return format_variable_name(
-        letters, word.element_index, lambda index: state.evaluate_formula(index, refuse), refuse
-    )
