@@ -28,7 +28,7 @@ from core.interpreter.restart.restart_approach import (
     plan_retract_from_part,
 )
 from core.interpreter.restart.restart_point import ActiveCall, Interruption, LoopPass, RestartPoint
-from core.interpreter.restart.restart_retract import Retract, ToolSituation
+from core.interpreter.restart.tool_retract import Retract, ToolSituation
 from core.interpreter.shared.actions import (
     CoolantSwitch,
     OutputSwitch,

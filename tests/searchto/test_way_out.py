@@ -11,8 +11,8 @@ from core.executor.job import make_job
 from core.executor.snapshot import POWER_LOST_REASON, InterruptedJob, Snapshot
 from core.interpreter.restart.restart_approach import OperatorChoices, PresentState, plan_retract_from_part
 from core.interpreter.restart.restart_point import Interruption
-from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, setup

@@ -15,9 +15,10 @@ from math import inf, isclose
 
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.restart.cut_record import CutRecord, record_all_cuts
+from core.interpreter.restart.path_distances import ON_PATH_MM
 from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
-from core.interpreter.restart.restart_retract import ON_PATH_MM, Retract, ToolSituation
 from core.interpreter.restart.state_rebuild import make_lathe_restart, make_skipped_cuts_message
+from core.interpreter.restart.tool_retract import Retract, ToolSituation
 from core.interpreter.shared.actions import ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.elementary_blocks import Block

@@ -16,18 +16,15 @@ from typing import TYPE_CHECKING
 
 from core.geometry.rotation_frames import Vector, add_vectors, scale_vector
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_point import Interruption, RestartPoint
-from core.interpreter.restart.restart_retract import (
+from core.interpreter.restart.path_distances import (
     ON_PATH_MM,
-    Retract,
-    RetractLeg,
-    ToolPosition,
-    ToolSituation,
     distance_from_row,
     distance_from_segment,
     find_nearest_point,
-    plan_retract,
 )
+from core.interpreter.restart.restart_point import Interruption, RestartPoint
+from core.interpreter.restart.restart_retract import plan_retract
+from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolPosition, ToolSituation
 from core.interpreter.shared.actions import (
     CoolantSwitch,
     OutputSwitch,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_retract import Retract, ToolSituation
+from core.interpreter.restart.tool_retract import Retract, ToolSituation
 from core.interpreter.shared.checkpoint import Checkpoint
 
 

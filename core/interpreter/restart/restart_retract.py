@@ -8,8 +8,6 @@ are in docs/decisions/0021-restart.md.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from enum import Enum
 from math import hypot, inf, isnan
 from typing import NamedTuple
 
@@ -27,8 +25,9 @@ from core.interpreter.restart.cut_record import (
     CutRecord,
     FloatArray,
 )
+from core.interpreter.restart.path_distances import ON_PATH_MM, distance_from_row, remove_detours
+from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolPosition, ToolSituation
 
-ON_PATH_MM = 0.1  # mm; a tool within this distance of a path is on the path
 _END = 0.005  # mm; a row is complete within this distance of its end
 _PARALLEL_TOLERANCE_MM = 0.01  # mm; a cut within this distance of a radius or Z counts as parallel to it
 _MIN_TOOL_WIDTH_MM = 1.1  # mm; minimum tool width, so that closer passes leave no material between them
@@ -39,52 +38,6 @@ _CENTERLINE_TOLERANCE_MM = 0.05  # mm of radius; a tool within it drills or taps
 _AHEAD, _BACK, _LEGS = 400, 400, 60
 _MAX_SEARCH_ROWS = 100_000  # maximum rows in which the next retract is searched
 _MAX_ROWS_BACK = 24  # maximum rows back from which the retract of the program is tried
-
-
-class ToolSituation(Enum):
-    """Situation of a tool: clear of the part, or in the part, and how it can leave."""
-
-    CLEAR = "clear"
-    IN_PART = "work"
-    IN_THREAD = "thread"
-    IN_TAPPED_HOLE = "tap"
-    MILLING = "mill"  # C is locked
-    PART_TURNED = "turned"  # a mill in a part that has turned since
-    UNKNOWN = "unknown"
-
-
-class RetractLeg(NamedTuple):
-    """A straight move of the tip to a point, in mm."""
-
-    x: float
-    z: float
-
-
-@dataclass(frozen=True, slots=True)
-class Retract:
-    """Retract of a tool. ``legs`` lead from its position out of the material; empty if clear or not known.
-
-    ``direction`` is the direction in which the tool leaves in any case, as the signs of (x, z) of the first
-    move; (0, 0) if unknown.
-    """
-
-    situation: ToolSituation
-    legs: tuple[RetractLeg, ...] = ()
-    direction: tuple[int, int] = (0, 0)
-
-    @property
-    def is_known(self) -> bool:
-        """Whether the tool is clear, or its path out of the part is known."""
-        return self.situation is ToolSituation.CLEAR or bool(self.legs)
-
-
-class ToolPosition(NamedTuple):
-    """Position in a program: at or within ``block_number``, with the tip of ``tool_number`` at (x, z)."""
-
-    block_number: int
-    tool_number: int
-    x: float
-    z: float
 
 
 class _Segment(NamedTuple):
@@ -121,35 +74,6 @@ def _nearest_row(cut_record: CutRecord, row: int, position: ToolPosition) -> tup
         rows, key=lambda each: (round(distance_from_row(cut_record, each, position.x, position.z), 4), -each)
     )
     return best, distance_from_row(cut_record, best, position.x, position.z) <= ON_PATH_MM
-
-
-def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
-    """Return the distance of a point from a row, in mm."""
-    x0, z0, x1, z1 = cut_record.get_end_points(row)
-    if isnan(x0) or isnan(z0):
-        return hypot(x - x1, z - z1)
-    return distance_from_segment(x0, z0, x1, z1, x, z)
-
-
-def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
-    """Return the point of a row that is nearest to (x, z), in mm; None if the start of the row is unknown."""
-    x0, z0, x1, z1 = cut_record.get_end_points(row)
-    length = hypot(x1 - x0, z1 - z0)
-    return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
-
-
-def distance_from_segment(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
-    """Return the distance of a point from the straight piece (x0, z0) to (x1, z1), in mm."""
-    foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
-    return hypot(foot_x - x, foot_z - z)
-
-
-def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tuple[float, float]:
-    """Return the point of a straight piece that is nearest to (x, z)."""
-    dx, dz = x1 - x0, z1 - z0
-    size = dx * dx + dz * dz
-    share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size)) if size > 0.0 else 0.0
-    return x0 + share * dx, z0 + share * dz
 
 
 class _Search:
@@ -389,12 +313,12 @@ class _Search:
                 points[0] = RetractLeg(segment.x, segment.z)
             ahead = self._step_back(segment, points[-1]) if len(points) <= _MAX_ROWS_BACK else None
             if ahead is not None:
-                return self._made([*_remove_detours([*points, ahead[0]])[1:], *ahead[1]])
+                return self._made([*remove_detours([*points, ahead[0]])[1:], *ahead[1]])
             points.append(RetractLeg(segment.x0, segment.z0))
             if self.cut_record.is_outside_material(
                 segment.x0, segment.z0, self.position.tool_number
             ) or self._is_approach_rapid(segment.row - 1):
-                legs = _remove_detours(points)[1:]
+                legs = remove_detours(points)[1:]
                 return self._made(legs) if len(legs) <= _LEGS else self._direction_only()
         return self._direction_only()
 
@@ -548,20 +472,3 @@ class _Search:
 
 def _sign(value: float) -> int:
     return (value > _PARALLEL_TOLERANCE_MM) - (value < -_PARALLEL_TOLERANCE_MM)
-
-
-def _remove_detours(points: list[RetractLeg]) -> list[RetractLeg]:
-    """Return a path without detours, in which sections that return to the path are removed."""
-    kept, at = [points[0]], 0
-    while at < len(points) - 1:
-        start, end = points[at], points[at + 1]
-        reached = at + 1
-        for k in range(len(points) - 1, at + 1, -1):
-            ends_here = distance_from_segment(*start, *end, *points[k]) <= SAME_POINT_MM
-            passes = distance_from_segment(*points[k - 1], *points[k], *start) <= SAME_POINT_MM
-            if ends_here or passes:
-                reached = k
-                break
-        kept.append(points[reached])
-        at = reached
-    return kept

@@ -17,15 +17,11 @@ from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_all_cuts
 from core.interpreter.restart.loop_passes import LineVisits, find_line_visits
+from core.interpreter.restart.path_distances import ON_PATH_MM
 from core.interpreter.restart.restart_lines import RestartSuitability
 from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
-from core.interpreter.restart.restart_retract import (
-    ON_PATH_MM,
-    Retract,
-    ToolPosition,
-    ToolSituation,
-    plan_retract,
-)
+from core.interpreter.restart.restart_retract import plan_retract
+from core.interpreter.restart.tool_retract import Retract, ToolPosition, ToolSituation
 from core.interpreter.shared.actions import InputRead, ProgramEnd
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.job_setup import Setup

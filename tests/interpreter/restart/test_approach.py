@@ -16,8 +16,8 @@ from core.interpreter.restart.restart_approach import (
     plan_retract_from_part,
 )
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
-from core.interpreter.restart.restart_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolSituation
 from core.interpreter.shared.actions import CoolantSwitch, OutputSwitch, SpindleRun, SpindleStop
 from core.interpreter.shared.checkpoint import ApproachStep, CAxisMove, Checkpoint, FunctionStep, StraightLeg
 from core.interpreter.shared.job_setup import ToolOffset

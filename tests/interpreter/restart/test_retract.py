@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 from core.interpreter.restart.cut_record import CutRecord
-from core.interpreter.restart.restart_retract import Retract, ToolPosition, ToolSituation, plan_retract
+from core.interpreter.restart.restart_retract import plan_retract
 from core.interpreter.restart.state_rebuild import OmniturnSearch
+from core.interpreter.restart.tool_retract import Retract, ToolPosition, ToolSituation
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.source import ProgramSource
 from tests.interpreter.programs import INCH, OUTPUTS, setup
