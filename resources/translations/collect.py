@@ -75,6 +75,7 @@ APART = frozenset(
         *(
             "access_page.py",
             "json_keys.py",
+            "offsets_keys.py",
             "table_keys.py",
             "checks_page.py",
             "code_book_page.py",

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pytest
 
 import resources
-from app.cli.json_reference import json_keys
+from app.cli.json_reference import json_keys, offsets_keys
 from app.cli.json_reference.json_page import generate_page, main
 from app.shopfloor import json_keys as floor_keys
 from core.json_keys import declare_keys, declare_row_keys
@@ -194,9 +194,9 @@ def test_offsets(turndesk: Turndesk, home: Path) -> None:
     history = whole(turndesk("offsets", "history", "--json"))
     assert turndesk("offsets", "undo").status == 0
     history += whole(turndesk("offsets", "history", "--json"))
-    declared_alone([history], json_keys.OFFSETS_HISTORY_OUTPUT.keys)
+    declared_alone([history], offsets_keys.OFFSETS_HISTORY_OUTPUT.keys)
     assert turndesk("offsets", "set", "T1", "x=1.25", "z=-.5", "--yes").status == 0
-    declared_alone([whole(turndesk("offsets", "show", "--json"))], json_keys.OFFSETS_SHOW_OUTPUT.keys)
+    declared_alone([whole(turndesk("offsets", "show", "--json"))], offsets_keys.OFFSETS_SHOW_OUTPUT.keys)
 
 
 def test_store_verify(turndesk: Turndesk, filled: Path) -> None:
