@@ -399,3 +399,20 @@ class PrepareStart(Command):
     job: Job | None = None
     proof: Proof | None = None
     clearance: Clearance | None = None
+
+
+MOTION_COMMANDS = (
+    CycleStart,
+    RunDriveTest,
+    EnableDrives,
+    HomeAxes,
+    Jog,
+    JogByStep,
+    TouchOffTool,
+    SelectHandwheel,
+)
+BLOCKING_COMMANDS = (
+    EnableDrives,
+    HomeAxes,
+    Reset,
+)  # a driver returns from these only when its drives have obeyed

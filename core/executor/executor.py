@@ -14,18 +14,7 @@ from dataclasses import replace
 from functools import partial
 
 from core.executor.command_handler import CommandHandler
-from core.executor.commands import (
-    Command,
-    CycleStart,
-    EnableDrives,
-    HomeAxes,
-    Jog,
-    JogByStep,
-    Reset,
-    RunDriveTest,
-    SelectHandwheel,
-    TouchOffTool,
-)
+from core.executor.commands import BLOCKING_COMMANDS, MOTION_COMMANDS, Command
 from core.executor.interruption_watch import StoreInterruptedJob
 from core.executor.job import Job, ProgramPass, start_program_pass
 from core.executor.machine_context import MachineContext
@@ -70,22 +59,7 @@ TICK_PAUSE_S = 0.01  # s from the end of one tick to the start of the next
 _ESTOP_ALARM_CODES = frozenset({"power-lost", "spindle-off"})  # alarms that the E-stop chain causes
 _STALL_INTERVAL_S = 0.2  # s between two ticks that show a stalled computer
 _STALE_PRESS_S = 0.5  # s after which a key press must not start a motion
-MOTION_COMMANDS = (
-    CycleStart,
-    RunDriveTest,
-    EnableDrives,
-    HomeAxes,
-    Jog,
-    JogByStep,
-    TouchOffTool,
-    SelectHandwheel,
-)
 """Commands that begin a motion, or switch the drives on."""
-_BLOCKING_COMMANDS = (
-    EnableDrives,
-    HomeAxes,
-    Reset,
-)  # a driver returns from these only when its drives have obeyed
 _LOGGED_OVERRIDE_CHANGE = 0.1  # smallest change of the feed override that is logged
 _MAX_COMMANDS_PER_TICK = 100  # commands handled in one tick at most
 _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOME}
@@ -429,7 +403,7 @@ class Executor:
         signals, control = self._context.signals, self._control
         control.follow_estop(signals.estop_pressed)
         for command in self._posted():
-            self.is_waiting_for_drive = self.is_waiting_for_drive or isinstance(command, _BLOCKING_COMMANDS)
+            self.is_waiting_for_drive = self.is_waiting_for_drive or isinstance(command, BLOCKING_COMMANDS)
             self._run_guarded(partial(self._handler.execute, command))
         if signals.hold_requested:
             control.start_feed_hold("", "the feed hold button on the operator station")

@@ -20,8 +20,8 @@ from app.desk.late_presses import (
 from app.desk.posted_values import ARRIVAL_TIMEOUT_S, PostedValues
 from app.desk.station_controls import StationControls, StationPanel
 from core.executor import commands
+from core.executor.commands import MOTION_COMMANDS as STARTS_OF_CONTROL
 from core.executor.commands import Command
-from core.executor.executor import MOTION_COMMANDS as STARTS_OF_CONTROL
 from core.executor.hand_motion.drive_test import DriveTestPath
 from core.executor.snapshot import MachineState, Snapshot
 
