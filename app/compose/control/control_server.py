@@ -11,13 +11,10 @@ import logging
 import os
 import queue
 import threading
-from collections import deque
-from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from multiprocessing.connection import Connection
-from multiprocessing.reduction import ForkingPickler
 from pathlib import Path
 from socket import AF_UNIX, SHUT_RDWR, SOCK_STREAM, fromfd
 from uuid import uuid4
@@ -30,17 +27,12 @@ from app.compose.control.control_messages import (
     CloseRequest,
     CommandMessage,
     ControlFailed,
-    EventMessage,
     EventStored,
     HelloMessage,
     InputChange,
-    InterruptedJobNote,
-    MachineClosed,
     ScreenAlive,
-    SnapshotMessage,
     StationAction,
     StopSocketMessage,
-    ThreadEnded,
 )
 from app.compose.control.descriptor_passing import (
     SharedMemory,
@@ -49,11 +41,13 @@ from app.compose.control.descriptor_passing import (
     send_descriptor,
 )
 from app.compose.control.process_rights_check import READING, ProcessRight
+from app.compose.control.screen_outbox import NOT_SAVED, ScreenOutbox
 from app.compose.control.unattended_notes import LeftEvents, remove_note, save_events, save_note
 from app.compose.optional_features import extras
 from app.desk.stop_keys.stop_records import StopKind, StopPress
 from core.closing_steps import ClosingStep, close_in_order
 from core.executor.commands import (
+    MOTION_COMMANDS,
     BlockNextPart,
     ChangeOffsets,
     Command,
@@ -65,7 +59,7 @@ from core.executor.commands import (
     StopJog,
     StopSpindle,
 )
-from core.executor.executor import MOTION_COMMANDS, Executor
+from core.executor.executor import Executor
 from core.executor.raised_alarm import Attempt, ReportedAttempt
 from core.executor.recorder import Recorder, list_recorded_signals
 from core.executor.safety.watchdog import WATCHDOG_THREAD_NAME, ExecutorThread, Watchdog
@@ -75,7 +69,6 @@ from core.executor.snapshot import (
     InterruptedJob,
     LogEvent,
     MachineState,
-    Snapshot,
     TickData,
 )
 from core.interpreter.dialects import SharedProgram
@@ -87,9 +80,6 @@ from drivers.process_rights import lower_thread
 from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
-MAX_WAITING_EVENTS = 10_000  # events that can wait while no screen is connected
-SNAPSHOT_INTERVAL_S = 0.015  # =
-RECHECK_INTERVAL_S = 0.1  # s after which the snapshot is checked without notification
 CHECK_INTERVAL_S = 0.1  # s between two checks of the screen
 SILENT_CHECKS = 30  # checks without a message after which the screen is treated as hung (3 s)
 REST_CHECKS = 150  # checks without a screen after which a machine at rest is closed (15 s)
@@ -102,110 +92,7 @@ EXECUTOR_TIMEOUT_S = 12.0  # s, for drives that are switching on; then the machi
 _STOP_COMMANDS = (
     FeedHold | StopJog | Reset | StopSpindle | DeselectHandwheel
 )  # stop commands, which overtake other commands
-_NOT_SAVED = object()
 _NO_SCREEN_TEXT = Message("TurnDesk, because the screen did not respond")
-
-
-class ScreenOutbox:
-    """Messages waiting for the screen. Any thread adds messages, and the screen's sender sends them.
-
-    An event waits until the screen confirms that it is stored. Otherwise the next screen receives it again.
-    """
-
-    def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
-        self._snapshot = snapshot
-        self._events: deque[EventMessage] = deque(maxlen=MAX_WAITING_EVENTS)
-        self._ended: deque[ThreadEnded] = deque()
-        self._noted: InterruptedJobNote | None = None
-        self._ready = threading.Event()
-        self._lock = threading.Lock()  # locked briefly while an event gets its number
-        self._number = self._sent = 0  # numbers of the newest event and of the last event sent to this screen
-        self._stirred = self._closed = False
-        self._shown: Snapshot | None = None
-
-    def request_snapshot(self) -> None:
-        """Request that the newest snapshot is sent."""
-        self._ready.set()
-
-    def request_changed_snapshot(self) -> None:
-        """Request that the newest snapshot is sent immediately and marked as changed."""
-        self._stirred = True
-        self._ready.set()
-
-    def add_event(self, event: LogEvent) -> None:
-        """Queue an event."""
-        with self._lock:
-            self._number += 1
-            self._events.append(EventMessage(self._number, event))
-        self._ready.set()
-
-    def confirm_events(self, number: int) -> None:
-        """Discard the events up to this number, because the screen has stored them."""
-        with self._lock:
-            while self._events and self._events[0].number <= number:
-                self._events.popleft()
-
-    @property
-    def unconfirmed_events(self) -> list[EventMessage]:
-        """Events that no screen has confirmed."""
-        with self._lock:
-            return list(self._events)
-
-    def set_interrupted_job(self, job: InterruptedJob | None) -> None:
-        """Replace the note about the interrupted job."""
-        self._noted = InterruptedJobNote(job)
-        self._ready.set()
-
-    def add_thread_end(self, name: str) -> None:
-        """Queue the message that a thread has ended."""
-        self._ended.append(ThreadEnded(name))
-        self._ready.set()
-
-    def add_closed(self) -> None:
-        """Request the message that the machine is closed."""
-        self._closed = True
-        self._ready.set()
-
-    def send_messages(self, connection: Connection, screen_gone: threading.Event) -> None:
-        """Send waiting messages to a screen until ``gone`` is set. Raises OSError if its connection ends."""
-        self._shown, self._sent = None, 0
-        while not screen_gone.is_set():
-            self._ready.wait(RECHECK_INTERVAL_S)
-            self._ready.clear()
-            if self._send_all(connection):
-                return
-            if not self._stirred:
-                screen_gone.wait(SNAPSHOT_INTERVAL_S)
-
-    def _send_all(self, connection: Connection) -> bool:
-        """Send all waiting messages; return whether the machine is closed."""
-        with self._lock:
-            events = [each for each in self._events if each.number > self._sent]
-        for event in events:
-            _send_message(connection, event)
-            self._sent = event.number
-        while self._ended:
-            _send_message(connection, self._ended.popleft())
-        noted, self._noted = self._noted, None
-        if noted is not None:
-            _send_message(connection, noted)  # a later screen receives it in Hello
-        closed = self._closed  # read first, so that the snapshot sent afterwards is the last
-        stirred, self._stirred = self._stirred, False
-        snapshot = self._snapshot()
-        if stirred or snapshot is not self._shown:
-            _send_message(connection, SnapshotMessage(snapshot, stirred))
-            self._shown = snapshot
-        if closed:
-            _send_message(connection, MachineClosed())
-        return closed
-
-
-def _send_message(connection: Connection, message: object) -> None:
-    """Send one message. A message that cannot be pickled is logged and omitted. Raises OSError."""
-    with ReportedAttempt(lambda _: _log.error("the screen does not get %s", type(message).__name__)) as trial:
-        data = ForkingPickler.dumps(message)
-    if trial.error is None:
-        connection.send_bytes(data)
 
 
 class ControlServer:
@@ -253,7 +140,7 @@ class ControlServer:
         self._met = False  # whether this screen has sent Alive; before that it is opening its window
         self._alone = False  # the screen has disconnected or hangs
         self._barred = ""  # reason why the next part was locked before the screen was lost
-        self._saved: object = _NOT_SAVED  # the note stored in the data folder
+        self._saved: object = NOT_SAVED  # the note stored in the data folder
         self._posts: queue.SimpleQueue[CommandMessage] = queue.SimpleQueue()
         self._stopped_at = -1.0  # s, time of the last stop request
         self.closing_event = threading.Event()
@@ -330,7 +217,7 @@ class ControlServer:
             send_descriptor(connection, self._memory.descriptor)
             self._quiet, self._met, self._screen = 0, False, connection
             remove_note(self._folder)
-            self._saved = _NOT_SAVED  # if the screen disconnects before it has stored the note
+            self._saved = NOT_SAVED  # if the screen disconnects before it has stored the note
             sender.start()
             self._sender = sender
             while True:
@@ -481,7 +368,7 @@ class ControlServer:
 
     def _run_without_screen(self) -> None:
         """React to a lost screen, which can no longer stop the machine or count parts."""
-        self._saved = _NOT_SAVED
+        self._saved = NOT_SAVED
         if self._machine.hardware.continues_without_screen:
             self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
 
