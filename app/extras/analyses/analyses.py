@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from enum import Enum
+from dataclasses import dataclass, field
 from itertools import combinations
 from operator import itemgetter
 
@@ -18,35 +17,28 @@ import numpy.typing as npt
 
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
-from app.desk.pages.table_content import ROW_STEPS, TableContent, TableRow
-from app.desk.status import formats
+from app.desk.pages.table_content import ROW_STEPS, TableContent
 from app.desk.translation import tr
-from app.extras.analyses.axis_response import AxisResponse, draw_response, find_last_move, make_response_table
+from app.extras.analyses.analysis_result import AnalysisKind, Found
+from app.extras.analyses.analysis_tables import (
+    choose_response_table,
+    describe_response,
+    make_ball_bar_table,
+    make_path_table,
+    make_thread_table,
+)
+from app.extras.analyses.axis_response import draw_response, find_last_move
 from app.extras.analyses.drawing import AnalysisDrawing
-from app.extras.analyses.drive_test_results import (
-    DriveTestResults,
-    calculate_results,
-    describe_test_path,
-    find_test_path,
-    make_results_table,
-)
-from app.extras.analyses.spindle_response import (
-    SpindleResponse,
-    draw_spindle_response,
-    find_last_run_up,
-    make_spindle_table,
-)
+from app.extras.analyses.drive_test_results import calculate_results, find_test_path
+from app.extras.analyses.spindle_response import draw_spindle_response, find_last_run_up
 from app.scope.scope_model import ScopeModel
 from core.extras.analyses.path_error import (
-    BallBarResult,
-    PathError,
-    WorstDeviation,
     analyze_ball_bar,
     calculate_from_samples,
     find_arcs,
     find_worst_deviations,
 )
-from core.extras.analyses.thread_passes import ThreadAnalysis, analyze_thread, calculate_max_rpm
+from core.extras.analyses.thread_passes import analyze_thread
 from core.machine.machine_model import Axis, SpindleModel
 from core.message import Message
 from core.records.record import AnalysisError, ScopeRecord
@@ -56,36 +48,6 @@ MAX_POINTS = 6000  # that are drawn of a path
 MAGNIFICATIONS = (10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0, 2000.0, 5000.0)
 _PAUSE = 2.0  # s without a line that end a run of the program
 _WORST = 12
-
-
-class AnalysisKind(Enum):
-    """What is looked for."""
-
-    PATH = "PATH ERROR"
-    THREAD = "THREAD"
-    BALL_BAR = "BALL BAR"
-    AXIS_RESPONSE = "RESPONSE"
-    SPINDLE_RESPONSE = "SPINDLE"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Found:
-    """What an analysis has found: one of the three, or ``missing_reason`` there is nothing."""
-
-    kind: AnalysisKind
-    missing_reason: str = ""
-    path_error: PathError | None = None
-    worst_deviations: tuple[WorstDeviation, ...] = ()
-    thread: ThreadAnalysis | None = None
-    pass_speeds_rpm: tuple[FloatArray, ...] = ()  # of the passes, rpm
-    ball_bar: BallBarResult | None = None
-    axis_response: AxisResponse | None = None
-    spindle_response: SpindleResponse | None = None
-    drive_test: DriveTestResults | None = None  # the record is one of a drive test
-    arc_selection: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
-    max_speed_mm_s: float = 0.0  # of the slide along a thread, mm/s
-    axis_names: tuple[str, str] = ("Z", "X")  # that are drawn
-    linear_axes: tuple[str, ...] = ("Z", "X")  # of a path: all that it goes in
 
 
 @dataclass(slots=True)
@@ -205,12 +167,12 @@ class AnalysesModel:
         if found is None:
             return TableContent(title, ("",), (1.0,), (), notes=(tr("CALCULATING …"),))
         if found.path_error is not None:
-            return _path_sheet(title, found, metric, self.selected_row)
+            return make_path_table(title, found, metric, self.selected_row)
         if found.thread is not None:
-            return _thread_sheet(title, found.thread, found.max_speed_mm_s, metric, self.selected_row)
+            return make_thread_table(title, found.thread, found.max_speed_mm_s, metric, self.selected_row)
         if found.ball_bar is not None:
-            return _ball_sheet(title, found.ball_bar, found, metric)
-        return _response_sheet(title, found, metric)
+            return make_ball_bar_table(title, found.ball_bar, found, metric)
+        return choose_response_table(title, found, metric)
 
     @property
     def description(self) -> str:
@@ -223,7 +185,7 @@ class AnalysesModel:
         if found.thread is not None:
             return tr("thread passes overlaid by spindle angle: deviation from the thread, and spindle speed")
         if found.kind in {AnalysisKind.AXIS_RESPONSE, AnalysisKind.SPINDLE_RESPONSE}:
-            return _response_words(found, self.scope.metric)
+            return describe_response(found, self.scope.metric)
         return tr(
             Message("error magnified {times}x; press Z to change the scale", times=f"{self.magnification:g}")
         )
@@ -386,154 +348,3 @@ def _ball_drawing(found: Found, factor: float) -> AnalysisDrawing:
     out = np.column_stack([np.cos(angles), np.sin(angles)])
     seen = (ball.radius_mm + factor * ball.deviations_mm)[:, None] * out
     return AnalysisDrawing(_thinned(ball.radius_mm * out), (_thinned(seen),), axis_labels=_axis_names(found))
-
-
-# --- figures --------------------------------------------------------------------------------------------
-
-
-def _length(mm: float, metric: bool) -> str:
-    return f"{formats.format_length(mm, metric)} {tr('mm') if metric else tr('in')}"
-
-
-def _path_sheet(title: str, found: Found, metric: bool, marked: int) -> TableContent:
-    path = found.path_error
-    assert path is not None
-    rows = tuple(
-        TableRow(
-            (
-                str(each.line),
-                *(formats.format_length(way, metric) for way in (each.distance_mm, *each.position)),
-            )
-        )
-        for each in found.worst_deviations
-    )
-    lathe = len(found.linear_axes) == 2
-    notes = (
-        tr(Message("Largest error: {distance}", distance=_length(path.max_distance_mm, metric))),
-        *((tr("Positive values are to the left of the direction of travel."),) if lathe else ()),
-        tr("The table shows the worst point of each line."),
-        tr("Axis positions are measured from home, X as a radius.")
-        if lathe
-        else tr("Axis positions are measured from home."),
-    )
-    heads = (tr("LINE"), tr("PATH DEVIATION"), *found.linear_axes)
-    shares = (0.16, 0.3, 0.27, 0.27) if lathe else (0.11, 0.23, 0.22, 0.22, 0.22)
-    figures = frozenset(range(1, len(heads)))
-    return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=figures
-    )
-
-
-def _thread_sheet(title: str, thread: ThreadAnalysis, vmax: float, metric: bool, marked: int) -> TableContent:
-    rows = tuple(
-        TableRow(
-            (
-                str(number),
-                formats.format_length(abs(each.depth_mm - thread.passes[0].depth_mm), metric),
-                f"{formats.format_fixed(each.entry_angle_deg, 2)}°",
-                formats.format_length(each.lead_mm - thread.reference_lead_mm, metric),
-                formats.format_fixed(each.speed_drop_rpm, 0),
-            )
-        )
-        for number, each in enumerate(thread.passes, 1)
-    )
-    limit = calculate_max_rpm(thread.reference_lead_mm, vmax) if vmax else math.inf
-    notes = (
-        tr(Message("Lead: {lead} per revolution", lead=_length(abs(thread.reference_lead_mm), metric))),
-        tr(
-            Message(
-                "The thread entry angles agree within {angle}°",
-                angle=formats.format_fixed(thread.entry_spread_deg, 2),
-            )
-        ),
-        tr("Flank infeed shifts the entry angle with the depth."),
-        tr(Message("The axis is fast enough to cut this lead at up to {rpm} rpm", rpm=formats.rpm(limit))),
-    )
-    heads = (tr("PASS"), tr("ADDED DEPTH"), tr("ENTRY ANGLE"), tr("LEAD ERROR"), tr("RPM DROP"))
-    shares = (0.12, 0.24, 0.2, 0.24, 0.2)
-    figures = frozenset({1, 2, 3, 4})
-    return TableContent(
-        title, heads, shares, rows, min(marked, len(rows) - 1), notes=notes, number_columns=figures
-    )
-
-
-def _response_sheet(title: str, found: Found, metric: bool) -> TableContent:
-    if found.drive_test is not None:
-        return make_results_table(title, found.drive_test, metric)
-    if found.spindle_response is not None:
-        return make_spindle_table(title, found.spindle_response)
-    if found.axis_response is not None:
-        return make_response_table(title, found.axis_response, metric)
-    return TableContent(title, ("",), (1.0,), ())
-
-
-def _response_words(found: Found, metric: bool) -> str:
-    if found.drive_test is not None:
-        return describe_test_path(found.drive_test.test_path, metric)
-    if found.spindle_response is not None:
-        return tr("last spindle speed change: commanded and actual speed over time in seconds")
-    return tr("last move: commanded position, actual position and following error over time in seconds")
-
-
-def _ball_sheet(title: str, ball: BallBarResult, found: Found, metric: bool) -> TableContent:
-    u, v = found.axis_names
-
-    def lean(value: float) -> str:
-        return (
-            Message("{fixed} mm/m", fixed=formats.format_fixed(value, 3))
-            if math.isfinite(value)
-            else formats.NO_VALUE
-        )
-
-    def told(value: float) -> str:
-        return _length(value, metric) if math.isfinite(value) else formats.NO_VALUE
-
-    rows = (
-        TableRow((tr("ROUNDNESS"), told(ball.circularity_mm))),
-        TableRow((tr(Message("BACKLASH {axis}", axis=u)), told(ball.backlash_mm[0]))),
-        TableRow((tr(Message("BACKLASH {axis}", axis=v)), told(ball.backlash_mm[1]))),
-        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=u)), told(ball.reversal_spike_mm[0]))),
-        TableRow((tr(Message("REVERSAL SPIKE {axis}", axis=v)), told(ball.reversal_spike_mm[1]))),
-        TableRow((tr("SQUARENESS ERROR"), lean(ball.squareness_error_mm_m))),
-        TableRow(
-            (tr(Message("SCALE OF {value} RELATIVE TO {v}", value=u, v=v)), lean(ball.scale_error_mm_m))
-        ),
-        TableRow((tr("RADIUS ERROR"), told(ball.size_error_mm))),
-    )
-    number, count, line = found.arc_selection
-    notes = (
-        tr(
-            Message(
-                "Line {line}, arc {number} of {count}: radius {radius}, {angle}°",
-                line=line,
-                number=number + 1,
-                count=count,
-                radius=_length(ball.radius_mm, metric),
-                angle=formats.format_fixed(ball.arc_angle_deg, 0),
-            )
-        ),
-        tr("A dash means that the arc is too short to calculate the value."),
-        tr("The encoder cannot measure backlash between the encoder and the tool."),
-    )
-    return TableContent(title, ("", ""), (0.52, 0.48), rows, notes=notes, number_columns=frozenset({1}))
-
-
-def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
-    """In another unit of length, both ways of equal axes, else upwards."""
-    by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
-    marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)
-    curves = tuple(each * by for each in drawing.curves)
-    below = (
-        tuple(each * by for each in drawing.lower_curves) if drawing.is_lower_length else drawing.lower_curves
-    )
-    unit = "mm" if factor == 1.0 else tr("in")
-    upper, lower, across = (each.replace("{unit}", unit) for each in drawing.axis_labels)
-    soft, names = drawing.command_points * by, (upper, lower, across)
-    return replace(
-        drawing,
-        command_points=soft,
-        curves=curves,
-        labeled_points=marks,
-        lower_curves=below,
-        axis_labels=names,
-    )

@@ -18,8 +18,9 @@ from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.formats import MM_PER_INCH
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
-from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, scale_drawing
-from app.extras.analyses.drawing import AnalysisDrawing
+from app.extras.analyses.analyses import AnalysesModel
+from app.extras.analyses.analysis_result import AnalysisKind
+from app.extras.analyses.drawing import AnalysisDrawing, scale_drawing
 from app.screen import page_table
 from app.screen.page_base import KeyActions, PageHost
 from app.screen.panel import Panel, RedrawingAttribute

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
+
+from app.desk.translation import tr
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -34,3 +36,24 @@ class AnalysisDrawing:
     def is_inverted(self) -> bool:
         """Return whether the vertical axis points down, as X of a lathe does for the operator."""
         return self.has_equal_axes and self.axis_labels[0].startswith("X")
+
+
+def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
+    """In another unit of length, both ways of equal axes, else upwards."""
+    by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
+    marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)
+    curves = tuple(each * by for each in drawing.curves)
+    below = (
+        tuple(each * by for each in drawing.lower_curves) if drawing.is_lower_length else drawing.lower_curves
+    )
+    unit = "mm" if factor == 1.0 else tr("in")
+    upper, lower, across = (each.replace("{unit}", unit) for each in drawing.axis_labels)
+    soft, names = drawing.command_points * by, (upper, lower, across)
+    return replace(
+        drawing,
+        command_points=soft,
+        curves=curves,
+        labeled_points=marks,
+        lower_curves=below,
+        axis_labels=names,
+    )

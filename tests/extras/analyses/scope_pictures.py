@@ -19,7 +19,8 @@ from PySide6.QtWidgets import QApplication
 from app.compose.runs.journal import Journal
 from app.extras.analyses.analyses import AnalysesModel
 from app.scope.scope_model import ScopeModel
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.recorder import Recorder
 from core.executor.snapshot import MachineState

@@ -8,7 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, analyze, find_last_run, scale_drawing
+from app.extras.analyses.analyses import AnalysesModel, analyze, find_last_run
+from app.extras.analyses.analysis_result import AnalysisKind
+from app.extras.analyses.drawing import scale_drawing
 from tests.scope.played_record import record_of, seconds
 from tests.texts import text
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import AnalysisKind, analyze
+from app.extras.analyses.analyses import analyze
+from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.axis_response import find_last_move, make_response_table
 from core.records.record import AnalysisError
 from tests.coded import raises_code

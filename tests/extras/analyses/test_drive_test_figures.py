@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import AnalysisKind, analyze
+from app.extras.analyses.analyses import analyze
+from app.extras.analyses.analysis_result import AnalysisKind
 from app.extras.analyses.drive_test_results import (
     TEST_PATH_KEY,
     ResultsPart,

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.extras.analyses.analyses import AnalysesModel, AnalysisKind, analyze, scale_drawing
+from app.extras.analyses.analyses import AnalysesModel, analyze
+from app.extras.analyses.analysis_result import AnalysisKind
+from app.extras.analyses.drawing import scale_drawing
 from app.extras.analyses.spindle_response import SpindleResponse, find_last_run_up
 from core.records.record import AnalysisError, FloatArray, ScopeRecord
 from tests.coded import raises_code

@@ -1,0 +1,47 @@
+"""The result of one analysis of a record, with all values of its drawing and its table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+import numpy.typing as npt
+
+from app.extras.analyses.axis_response import AxisResponse
+from app.extras.analyses.drive_test_results import DriveTestResults
+from app.extras.analyses.spindle_response import SpindleResponse
+from core.extras.analyses.path_error import BallBarResult, PathError, WorstDeviation
+from core.extras.analyses.thread_passes import ThreadAnalysis
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class AnalysisKind(Enum):
+    """What is looked for."""
+
+    PATH = "PATH ERROR"
+    THREAD = "THREAD"
+    BALL_BAR = "BALL BAR"
+    AXIS_RESPONSE = "RESPONSE"
+    SPINDLE_RESPONSE = "SPINDLE"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What an analysis has found: one of the three, or ``missing_reason`` there is nothing."""
+
+    kind: AnalysisKind
+    missing_reason: str = ""
+    path_error: PathError | None = None
+    worst_deviations: tuple[WorstDeviation, ...] = ()
+    thread: ThreadAnalysis | None = None
+    pass_speeds_rpm: tuple[FloatArray, ...] = ()  # of the passes, rpm
+    ball_bar: BallBarResult | None = None
+    axis_response: AxisResponse | None = None
+    spindle_response: SpindleResponse | None = None
+    drive_test: DriveTestResults | None = None  # the record is one of a drive test
+    arc_selection: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
+    max_speed_mm_s: float = 0.0  # of the slide along a thread, mm/s
+    axis_names: tuple[str, str] = ("Z", "X")  # that are drawn
+    linear_axes: tuple[str, ...] = ("Z", "X")  # of a path: all that it goes in
