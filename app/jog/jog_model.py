@@ -15,7 +15,8 @@ from app.jog.jog_homing import HomingQuestion
 from app.jog.manual_functions import ManualFunctions
 from app.jog.skim_and_setter import HeldTouchOff, SetterTouchOff, SkimCut
 from app.jog.tilted_jog import TiltedJog
-from app.jog.tool_setting import TOOL_QUESTION, TOUCH_X, TOUCH_Z, ToolSetting
+from app.jog.tool_setting import TOOL_QUESTION, ToolSetting
+from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.offsets.mill_touch import MillTouchCalculator
 from core.executor.commands import StopJog
 from core.executor.snapshot import ACTIVE_STATES, MachineState, Snapshot

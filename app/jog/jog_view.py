@@ -18,19 +18,10 @@ from app.desk.translation import tr
 from app.jog.held_keys_view import CHORD_MODIFIERS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
-from app.jog.manual_functions import (
-    CLOSE,
-    COOLANT_OFF,
-    COOLANT_ON,
-    FORWARD,
-    OPEN,
-    REVERSE,
-    SPEED_KEY,
-    STOP,
-)
+from app.jog.manual_functions import CLOSE, COOLANT_OFF, COOLANT_ON, FORWARD, OPEN, REVERSE, SPEED_KEY, STOP
 from app.jog.skim_and_setter import SkimCutStep
-from app.jog.tool_setting import TOUCH_X, TOUCH_Z
 from app.jog.tool_setting_view import MillJogPanel, ToolSettingPanel
+from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.screen import page_table
 from app.screen.entry_panel import EntryPanel, EntryTexts, NumberPad
 from app.screen.page_base import KeyActions, PageHost

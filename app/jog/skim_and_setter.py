@@ -16,7 +16,8 @@ from app.desk.status.formats import format_length
 from app.desk.status.readouts import TURNING_RPM
 from app.desk.translation import tr
 from app.jog.held_jog import ActiveJog, HeldJog, JogDirection
-from app.jog.tool_setting import MOVE_TOLERANCE_MM, TOUCH_FIELDS, TOUCH_X, TOUCH_Z, ToolSetting
+from app.jog.tool_setting import ToolSetting
+from app.jog.tool_touch_off import MOVE_TOLERANCE_MM, TOUCH_FIELDS, TOUCH_X, TOUCH_Z
 from app.offsets.offset_changes import find_change_refusal
 from app.offsets.offset_values import format_signed
 from core.executor.commands import Command, TouchOffTool

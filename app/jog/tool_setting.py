@@ -8,14 +8,14 @@ from app.desk.arithmetic import EXPRESSION_CHARACTERS, MAX_LENGTH, EntryError, e
 from app.desk.desk import Desk
 from app.desk.pages.table_content import edit_text, refused
 from app.desk.translation import tr
+from app.jog.tool_touch_off import TOUCH_FIELDS, TOUCH_X, TOUCH_Z, TouchOff, find_touch_refusal
 from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal, format_followers
-from app.offsets.offset_table import IncompleteTool, ToolFieldEditor
+from app.offsets.offset_table import ToolFieldEditor
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     ValueMode,
-    convert_to_mm,
     describe_unset,
     format_signed,
     format_value,
@@ -23,162 +23,10 @@ from app.offsets.offset_values import (
     parse_value,
     translate_field,
 )
-from core.executor.snapshot import MachineState, Snapshot
+from core.executor.snapshot import Snapshot
 from core.message import Message
-from core.store.offsets.touch_off import TouchPosition
 from core.store.store_rows import MAX_REMARK_LENGTH, OFFSET_NUMBERS, FieldType, OffsetKind, ToolRow
 from core.tool_edges import format_edge_name, format_edge_suffix
-
-TOUCH_X, TOUCH_Z = "touch x", "touch z"
-TOUCH_FIELDS = {TOUCH_X: "x", TOUCH_Z: "z"}
-MOVE_TOLERANCE_MM = (
-    0.005  # Tolerance in mm. After a larger move, the axis is no longer where the tip touched.
-)
-
-
-def find_touch_refusal(quantity: str, snapshot: Snapshot) -> str:
-    """Return why an axis cannot be touched off now. Empty if it can."""
-    axis = TOUCH_FIELDS[quantity].upper()
-    if not snapshot.homed[snapshot.axes.index(axis)]:
-        return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
-    if snapshot.state not in {MachineState.IDLE, MachineState.DISABLED}:
-        return tr("TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY")
-    return ""
-
-
-def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
-    """Return the machine position of the touched axis in mm."""
-    return snapshot.tip["xz".index(TOUCH_FIELDS[quantity])]
-
-
-@dataclass(slots=True)
-class TouchOff:
-    """One touch-off of one axis. ``at`` is the machine position at the touch in mm.
-
-    ``found`` is the machine position in mm with the tip on part zero, as the tool setter measured it.
-    ``reason`` describes the measurement. Such a value needs no entry, and the axis may move afterwards.
-    """
-
-    quantity: str = ""
-    touch_position: float = 0.0
-    skips_followers: bool = False  # Only this tool changes, although it is the master.
-    measured_value: float | None = None
-    reason: str = ""
-    is_skim_cut: bool = False  # The entered size was measured on a skim cut.
-
-    @property
-    def field_name(self) -> str:
-        """The field of the tool that the touch-off sets."""
-        return TOUCH_FIELDS[self.quantity]
-
-    def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
-        """Store the present position of the axis as the touch."""
-        self.quantity, self.touch_position, self.skips_followers = (
-            quantity,
-            find_axis_position(quantity, snapshot),
-            False,
-        )
-        self.measured_value, self.reason, self.is_skim_cut = None, "", False
-
-    def set_cut(self, quantity: str, position: float) -> None:
-        """Store the machine position of a skim cut in mm."""
-        self.quantity, self.touch_position, self.skips_followers = quantity, position, False
-        self.measured_value, self.reason, self.is_skim_cut = None, "", True
-
-    def set_measurement(self, quantity: str, value: float, reason: str) -> None:
-        """Store a measurement of the tool setter. Other tools do not follow a master in this case."""
-        self.quantity, self.measured_value, self.reason, self.skips_followers, self.is_skim_cut = (
-            quantity,
-            value,
-            reason,
-            True,
-            False,
-        )
-
-    def find_zero_position(self, text: str, mode: ValueMode) -> float:
-        """Return the machine position in mm with the tip on part zero, X as a radius. Raises EntryError."""
-        if self.measured_value is not None:
-            return self._within(self.measured_value)
-        typed = evaluate_expression(text) * (0.5 if self.quantity == TOUCH_X else 1.0)
-        return self._within(self.touch_position - convert_to_mm(typed, mode.is_metric))
-
-    def _within(self, place: float) -> float:
-        if not TOOL_FIELDS[self.field_name].accepts(place):
-            raise EntryError(
-                tr(
-                    Message(
-                        "the {axis} offset would be outside the allowed range",
-                        axis=translate_field(self.field_name),
-                    )
-                )
-            )
-        return place
-
-    def save_touch(self, number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool) -> str:
-        """Save the touch-off. Return why it was rejected, or an empty text.
-
-        X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
-        """
-        place, book, ask = (
-            self.find_zero_position(text, history.value_mode),
-            history.offset_book,
-            OffsetQuestions(history),
-        )
-        if number in book.tools:
-            return ask.touch_off(
-                number,
-                self.make_touch(place),
-                self._make_reason(text, history.value_mode),
-                self._find_tip_x(place),
-            )
-        values = new_tool.add_value(number, self.field_name, place)
-        new_tool.tip_x_mm = self._find_tip_x(place) if self.field_name == "x" else new_tool.tip_x_mm
-        if len(values) < 2:
-            return ""
-        x, z = (float(values[name]) for name in ("x", "z"))
-        why = ask.touch_off(
-            number, TouchPosition(x, z), self.reason or tr("touch-off of a new tool"), new_tool.tip_x_mm
-        )
-        if not why:
-            new_tool.discard()
-        return why
-
-    def make_touch(self, place: float) -> TouchPosition:
-        """Return the touch of this axis.
-
-        ``place`` is the machine position in mm with the tip on part zero.
-        """
-        return (
-            TouchPosition(place, None, self.skips_followers)
-            if self.field_name == "x"
-            else TouchPosition(None, place, self.skips_followers)
-        )
-
-    def _find_tip_x(self, place: float) -> float | None:
-        """Return X of the tip relative to part zero at the touch in mm. None if X was not touched."""
-        return self.touch_position - place if self.field_name == "x" and self.measured_value is None else None
-
-    def has_moved(self, snapshot: Snapshot) -> bool:
-        """Return whether the axis has moved since the touch. A skim cut checks this itself."""
-        return (
-            self.measured_value is None
-            and not self.is_skim_cut
-            and abs(find_axis_position(self.quantity, snapshot) - self.touch_position) > MOVE_TOLERANCE_MM
-        )
-
-    def _make_reason(self, text: str, mode: ValueMode) -> str:
-        """Return the text for the history."""
-        if self.reason:
-            return f"{self.reason}{tr(', this tool only') if self.skips_followers else ''}"
-        unit = "MM " if mode.is_metric else ""
-        names = (
-            (tr("skim cut Ø"), tr("skim cut Z"))
-            if self.is_skim_cut
-            else (tr("touch-off Ø"), tr("touch-off Z"))
-        )
-        what = names[self.quantity != TOUCH_X]
-        return f"{unit}{what} {text.strip()}{tr(', this tool only') if self.skips_followers else ''}"
-
 
 TOOL_QUESTION = "tool"  # The question for the tool number.
 Pair = tuple[float, float]

@@ -12,7 +12,8 @@ from app.desk.status.formats import format_length
 from app.desk.translation import tr
 from app.jog.jog_model import JogModel
 from app.jog.tilted_jog import LINEAR_AXES
-from app.jog.tool_setting import TOOL_QUESTION, TOUCH_X, TOUCH_Z
+from app.jog.tool_setting import TOOL_QUESTION
+from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.offsets.offset_values import (
     ValueMode,
     describe_unset,
