@@ -14,11 +14,12 @@ from core.executor.hand_motion.drive_test import DriveTester, DriveTestPath, Sha
 from core.executor.hand_motion.jogging import Jogger
 from core.executor.job import Job, Proof, check_block, find_outdated_setting, make_job
 from core.executor.program_motion.path_section import PathSection
+from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.program_run import ChangedOffsets
 from core.executor.raised_alarm import AlarmError, ReportedAttempt
 from core.executor.signals import StationSignals
 from core.executor.snapshot import MachineState
-from core.executor.spindle_control import SpindleAnglePredictor, SpindleControl, SpindleRequest
+from core.executor.spindle_control import SpindleControl, SpindleRequest
 from core.executor.start_conditions import find_missing_function, find_state_refusal
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from core.executor.commands import CycleStart, FeedHold, Reset
+from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.snapshot import MachineState, Snapshot
-from core.executor.spindle_control import SpindleAnglePredictor
 from core.interpreter.shared.job_setup import ToolOffset
 from core.motion.axis_limits import FloatArray
 from tests.executor.rig import FINE, INCH, CreepingClock, Rig

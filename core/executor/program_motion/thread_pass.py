@@ -14,9 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.program_motion.thread_curve import spindle_revolutions
 from core.executor.program_motion.thread_path import Phases, ThreadPath
-from core.executor.spindle_control import SpindleAnglePredictor
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.ports import AxisSink, Cam, DriverError, GearState, Segments, SpindleGear, StopMode
