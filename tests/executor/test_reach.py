@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.executor.hand_motion.jog_line import Ramp
-from core.executor.hand_motion.jogging import plan_stop_at_distance
+from core.executor.hand_motion.jog_ramps import plan_stop_at_distance
 
 A = 3048.0
 SPEEDS = st.floats(-42.0, 42.0)

@@ -20,14 +20,15 @@ from core.executor.commands import (
     SetSwitch,
 )
 from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
-from core.executor.hand_motion.jogging import plan_jog_ramps
+from core.executor.hand_motion.jog_ramps import plan_jog_ramps
 from core.executor.hand_motion.touch_off import Homing
 from core.executor.machine_context import MachineContext
+from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.program_motion.standstill import make_spindle_speed_wait
 from core.executor.program_motion.thread_path import ThreadPath
 from core.executor.raised_alarm import AlarmError
 from core.executor.snapshot import MachineState
-from core.executor.spindle_control import SpindleAnglePredictor, SpindleRequest
+from core.executor.spindle_control import SpindleRequest
 from core.executor.spindle_orientation import OrientationControl
 from core.ports import AxisSample, StopMode
 from tests.coded import raises_code

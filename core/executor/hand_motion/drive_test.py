@@ -18,7 +18,8 @@ from itertools import pairwise
 import numpy as np
 
 from core.executor.hand_motion.jog_line import Ramp, distance_to_limit
-from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, plan_step_ramps
+from core.executor.hand_motion.jog_ramps import plan_step_ramps
+from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import DriveTestState
 from core.machine.machine_model import Axis

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from core.executor.commands import SelectHandwheel
-from core.executor.hand_motion import jogging
 from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, Ramp
+from core.executor.hand_motion.jog_ramps import plan_stop_at_distance
 from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, travel_end_message
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import MachineState
@@ -243,4 +243,4 @@ class _TargetMove:
             way = math.copysign(longest, way)
             self.goal = p + way
         least = max(abs(way), v * v / (2.0 * self._amax))
-        return jogging.plan_stop_at_distance(v, way, min(self._top, least / _FOLLOW_DELAY_S), self._amax)
+        return plan_stop_at_distance(v, way, min(self._top, least / _FOLLOW_DELAY_S), self._amax)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.block_ports import BlockController
 from core.executor.hand_motion.jog_line import (
     SOFT_LIMIT_MARGIN,
     Direction,
@@ -21,108 +22,17 @@ from core.executor.hand_motion.jog_line import (
     distance_to_limit,
     is_invalid_direction,
 )
+from core.executor.hand_motion.jog_ramps import POSITION_TOLERANCE, plan_jog_ramps, plan_step_ramps
 from core.executor.machine_context import MachineContext
 from core.machine.machine_model import Axis
 from core.message import Message
-from core.ports import BlockController, DriverError, is_queue_finished
+from core.ports import DriverError, is_queue_finished
 
-# --- setpoints of one axis ------------------------------------------------------------------------------
-
-
-_MIN_RAMP_S = 1e-12  # s; shorter ramps are dropped
-_POSITION_TOLERANCE = 1e-9  # mm or degrees; closer positions count as equal
 _UNHOMED_SPEED_FRACTION = 0.1  # fraction of the manual rapid for an axis that is not homed
 MAX_LEASE_S = 1.0  # s, the longest lease that is accepted
 _MAX_STEP = 2.54  # mm (.1 in) or degrees, the longest step
 _STEP_ROUNDING = 1e-9
 _MARGINS = (0.0, 0.002, 0.02)  # s added to the start for the time between reading the clock and queueing
-
-
-def plan_jog_ramps(
-    start_speed: float, end_speed: float, acceleration: float, duration_s: float, distance: float
-) -> list[Ramp]:
-    """Return ramps from speed ``start_speed`` to ``end_speed``, a cruise for the rest of ``duration_s``, and
-    braking to rest.
-
-    If ``distance`` (mm) is too short, the jog is slower or ends earlier. The braking distance v0²/2a is
-    always used.
-    """
-    if start_speed * end_speed < 0.0:
-        first = abs(start_speed) / acceleration
-        return [
-            (first, start_speed, -math.copysign(acceleration, start_speed)),
-            *plan_jog_ramps(0.0, end_speed, acceleration, duration_s - first, distance),
-        ]
-    sign = math.copysign(1.0, end_speed or start_speed)
-    here, top = abs(start_speed), abs(end_speed)
-    fastest = (
-        math.sqrt(max(here * here / 2.0 + acceleration * max(distance, 0.0), 0.0))
-        if math.isfinite(distance)
-        else math.inf
-    )
-    top = (
-        max(min(top, fastest, here + acceleration * max(duration_s, 0.0)), 0.0)
-        if top > here
-        else min(top, fastest)
-    )
-    change = abs(top - here) / acceleration
-    least = change * (here + top) / 2.0 + top * top / (2.0 * acceleration)
-    cruise = max(duration_s - change, 0.0) if top > 0.0 else 0.0
-    if cruise and math.isfinite(distance):
-        cruise = min(cruise, max(distance - least, 0.0) / top)
-    return _ramps(
-        (change, start_speed, sign * math.copysign(acceleration, top - here)),
-        (cruise, sign * top, 0.0),
-        (top / acceleration, sign * top, -sign * acceleration),
-    )
-
-
-def plan_step_ramps(distance: float, speed: float, acceleration: float) -> list[Ramp]:
-    """Return ramps from rest to rest over exactly ``distance``, at ``speed`` at most.
-
-    A short distance has no cruise; its top speed is √(a·|distance|).
-    """
-    sign, way = math.copysign(1.0, distance), abs(distance)
-    top = min(speed, math.sqrt(acceleration * way))
-    change = top / acceleration
-    return _ramps(
-        (change, 0.0, sign * acceleration),
-        ((way - top * change) / top, sign * top, 0.0),
-        (change, sign * top, -sign * acceleration),
-    )
-
-
-def plan_stop_at_distance(
-    start_speed: float, distance: float, max_speed: float, acceleration: float
-) -> list[Ramp]:
-    """Return ramps from speed ``start_speed`` to rest at exactly the distance ``distance``.
-
-    The speed does not exceed ``top`` except while the axis slows down to it. If the target is in the opposite
-    direction or within the braking distance, the axis stops first and then returns.
-    """
-    stop = start_speed * abs(start_speed) / (2.0 * acceleration)
-    if start_speed * distance < 0.0 or abs(stop) > abs(distance) + _POSITION_TOLERANCE:
-        brake = (abs(start_speed) / acceleration, start_speed, -math.copysign(acceleration, start_speed))
-        back = distance - stop
-        return _ramps(
-            brake,
-            *(plan_step_ramps(back, max_speed, acceleration) if abs(back) > _POSITION_TOLERANCE else ()),
-        )
-    if abs(distance) <= _POSITION_TOLERANCE:
-        return []
-    sign, here, left = math.copysign(1.0, distance), abs(start_speed), abs(distance)
-    peak = min(max_speed, math.sqrt(acceleration * left + here * here / 2.0))
-    change = abs(peak - here) / acceleration
-    cruise = (left - change * (here + peak) / 2.0 - peak * peak / (2.0 * acceleration)) / peak
-    return _ramps(
-        (change, start_speed, sign * math.copysign(acceleration, peak - here)),
-        (cruise, sign * peak, 0.0),
-        (peak / acceleration, sign * peak, -sign * acceleration),
-    )
-
-
-def _ramps(*pieces: Ramp) -> list[Ramp]:
-    return [piece for piece in pieces if piece[0] > _MIN_RAMP_S]
 
 
 class Jogger:
@@ -295,7 +205,7 @@ class Jogger:
 
         def go(start: float, p: float, v: float) -> list[Ramp]:
             way = target - p
-            if abs(way) <= _POSITION_TOLERANCE:
+            if abs(way) <= POSITION_TOLERANCE:
                 return []
             room = distance_to_limit(axis, p, way)
             return plan_jog_ramps(

@@ -1,0 +1,97 @@
+"""The ramps of a jog and of a step: phases of constant acceleration that end at rest."""
+
+from __future__ import annotations
+
+import math
+
+from core.executor.hand_motion.jog_line import Ramp
+
+_MIN_RAMP_S = 1e-12  # s; shorter ramps are dropped
+POSITION_TOLERANCE = 1e-9  # mm or degrees; closer positions count as equal
+
+
+def plan_jog_ramps(
+    start_speed: float, end_speed: float, acceleration: float, duration_s: float, distance: float
+) -> list[Ramp]:
+    """Return ramps from speed ``start_speed`` to ``end_speed``, a cruise for the rest of ``duration_s``, and
+    braking to rest.
+
+    If ``distance`` (mm) is too short, the jog is slower or ends earlier. The braking distance v0²/2a is
+    always used.
+    """
+    if start_speed * end_speed < 0.0:
+        first = abs(start_speed) / acceleration
+        return [
+            (first, start_speed, -math.copysign(acceleration, start_speed)),
+            *plan_jog_ramps(0.0, end_speed, acceleration, duration_s - first, distance),
+        ]
+    sign = math.copysign(1.0, end_speed or start_speed)
+    here, top = abs(start_speed), abs(end_speed)
+    fastest = (
+        math.sqrt(max(here * here / 2.0 + acceleration * max(distance, 0.0), 0.0))
+        if math.isfinite(distance)
+        else math.inf
+    )
+    top = (
+        max(min(top, fastest, here + acceleration * max(duration_s, 0.0)), 0.0)
+        if top > here
+        else min(top, fastest)
+    )
+    change = abs(top - here) / acceleration
+    least = change * (here + top) / 2.0 + top * top / (2.0 * acceleration)
+    cruise = max(duration_s - change, 0.0) if top > 0.0 else 0.0
+    if cruise and math.isfinite(distance):
+        cruise = min(cruise, max(distance - least, 0.0) / top)
+    return _ramps(
+        (change, start_speed, sign * math.copysign(acceleration, top - here)),
+        (cruise, sign * top, 0.0),
+        (top / acceleration, sign * top, -sign * acceleration),
+    )
+
+
+def plan_step_ramps(distance: float, speed: float, acceleration: float) -> list[Ramp]:
+    """Return ramps from rest to rest over exactly ``distance``, at ``speed`` at most.
+
+    A short distance has no cruise; its top speed is √(a·|distance|).
+    """
+    sign, way = math.copysign(1.0, distance), abs(distance)
+    top = min(speed, math.sqrt(acceleration * way))
+    change = top / acceleration
+    return _ramps(
+        (change, 0.0, sign * acceleration),
+        ((way - top * change) / top, sign * top, 0.0),
+        (change, sign * top, -sign * acceleration),
+    )
+
+
+def plan_stop_at_distance(
+    start_speed: float, distance: float, max_speed: float, acceleration: float
+) -> list[Ramp]:
+    """Return ramps from speed ``start_speed`` to rest at exactly the distance ``distance``.
+
+    The speed does not exceed ``top`` except while the axis slows down to it. If the target is in the opposite
+    direction or within the braking distance, the axis stops first and then returns.
+    """
+    stop = start_speed * abs(start_speed) / (2.0 * acceleration)
+    if start_speed * distance < 0.0 or abs(stop) > abs(distance) + POSITION_TOLERANCE:
+        brake = (abs(start_speed) / acceleration, start_speed, -math.copysign(acceleration, start_speed))
+        back = distance - stop
+        return _ramps(
+            brake,
+            *(plan_step_ramps(back, max_speed, acceleration) if abs(back) > POSITION_TOLERANCE else ()),
+        )
+    if abs(distance) <= POSITION_TOLERANCE:
+        return []
+    sign, here, left = math.copysign(1.0, distance), abs(start_speed), abs(distance)
+    peak = min(max_speed, math.sqrt(acceleration * left + here * here / 2.0))
+    change = abs(peak - here) / acceleration
+    cruise = (left - change * (here + peak) / 2.0 - peak * peak / (2.0 * acceleration)) / peak
+    return _ramps(
+        (change, start_speed, sign * math.copysign(acceleration, peak - here)),
+        (cruise, sign * peak, 0.0),
+        (peak / acceleration, sign * peak, -sign * acceleration),
+    )
+
+
+def _ramps(*pieces: Ramp) -> list[Ramp]:
+    return [piece for piece in pieces if piece[0] > _MIN_RAMP_S]
