@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from core.faults import DriverHostTrip, TrippedError
+from core.faults import TrippedError
 from core.message import Message as Text
 from core.ports import DriverError, MachinePorts, StationState, StopMode, is_queue_finished
 from drivers.driver_host.host_messages import (
@@ -25,6 +25,7 @@ from drivers.driver_host.host_messages import (
     parse_segments,
     text,
 )
+from drivers.driver_host.trip_guard import TripGuard
 
 _Part = TypeVar("_Part")
 # Text and reason code for each missing optional part of the machine.
@@ -96,67 +97,6 @@ def _how(word: str) -> StopMode:
         raise DriverError(
             "the driver host does not recognize the stop command '{word}'", reason="unknown-stop", word=word
         ) from error
-
-
-# --- Functions that the driver host has switched off, which stay off until the control acknowledges.
-
-
-_MOTION_COMMANDS = frozenset(("splice", "mesh"))
-
-
-class TripGuard:
-    """Guard that rejects requests of the control after a trip, until it is acknowledged."""
-
-    def __init__(self) -> None:
-        self.active_trip: DriverHostTrip | None = None
-        self._count = 0
-        self._turns = False  # The control has commanded the spindle to turn.
-
-    def require_allowed(self, message: Message) -> None:
-        """Raise TrippedError for a motion, start or output while a trip is not acknowledged."""
-        what = text(message.head, "what")
-        turns = what == "orient" or (what == "run" and number(message.head, "rpm") != 0.0)
-        switches = what == "write" and message.head.get("on") is True
-        if self.active_trip is not None and (
-            text(message.head, "do") in _MOTION_COMMANDS or what == "home" or turns or switches
-        ):
-            raise TrippedError(
-                Text(
-                    "the driver host received no messages for {seconds} s and stopped the machine",
-                    seconds=f"{self.active_trip.silence_s:.2f}",
-                )
-            )
-        if what in {"run", "coast", "orient", "release"}:
-            self._turns = turns
-
-    def record_trip(self, silence_s: float, outputs: Sequence[str], *, spindle: bool) -> None:
-        """Record that outputs and the spindle were switched off, unless nothing was on."""
-        turned = self._turns and spindle
-        self._turns = self._turns and not spindle
-        if turned or outputs:
-            self._tripped(silence_s, turned, outputs)
-
-    def record_output_off(self, silence_s: float, output: str) -> None:
-        """Record that one output was switched off because it was not renewed."""
-        self._tripped(silence_s, False, [output])
-
-    def update_silence(self, silence_s: float) -> None:
-        """Update the duration of the silence when the control sends messages again."""
-        if self.active_trip is not None:
-            self.active_trip = self.active_trip._replace(silence_s=max(silence_s, self.active_trip.silence_s))
-
-    def acknowledge(self, count: float) -> None:
-        """Clear the trip with this number, but not a later one."""
-        if self.active_trip is not None and self.active_trip.number == count:
-            self.active_trip = None
-
-    def _tripped(self, away: float, spindle: bool, outputs: Sequence[str]) -> None:
-        self._count += 1
-        before = self.active_trip or DriverHostTrip(0, 0.0, False, ())
-        on = tuple(dict.fromkeys((*before.active_outputs, *outputs)))
-        self.active_trip = DriverHostTrip(
-            self._count, max(away, before.silence_s), spindle or before.spindle, on
-        )
 
 
 CYCLE_PERIOD_S = 0.005  # Seconds between two cycles of the loop.

@@ -24,9 +24,9 @@ from drivers.driver_host.host_server import (
     MAX_SLEEP_CYCLE_S,
     DriverBundle,
     DriverHost,
-    TripGuard,
     execute_command,
 )
+from drivers.driver_host.trip_guard import TripGuard
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.wakeups import ManualClock, ProcessBell
 from tests.coded import raises_code
