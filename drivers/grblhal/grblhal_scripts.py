@@ -5,14 +5,19 @@ Each script is a generator that ``GrblController.pump`` advances. A script raise
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Generator, Mapping
+from collections.abc import Callable, Generator
 
 from core.message import Message
 from drivers.grblhal import grblhal_codes
 from drivers.grblhal.grblhal_config import ESTOP, HARDWARE
 from drivers.grblhal.grblhal_controller import GrblController
 from drivers.grblhal.grblhal_report import ControllerIdentity, parse_identity
+from drivers.grblhal.grblhal_settings import (
+    find_required_settings,
+    format_setting,
+    is_same_setting,
+    parse_settings,
+)
 from drivers.grblhal.grblhal_transport import Script, ScriptError, ScriptStep, SentLine
 
 # --- Parts of scripts: one line with its reply, a full report, the modes.
@@ -225,27 +230,22 @@ def _stopping_time(c: GrblController) -> float:
 # --- Settings: read, corrected according to the machine file, and read back.
 
 
-# Machine position, buffers, line numbers, speeds, pins, offsets, overrides; the number of an alarm.
-_REPORTS = 0x7F | 0x400
-_PARSER = 0x200  # Unrequested parser state, which would look like a reply to $G.
-_RESTORE = 0x2  # Feed hold option: the spindle restarts automatically.
 _LISTED = 6.0  # Seconds for all settings, which are a few hundred lines.
-_MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
 
 
 def write_settings(controller: GrblController) -> Script:
     """Write settings that differ from the required values, and read them back."""
-    there = controller.settings = _values((yield from query_line(controller, "$$", _LISTED)))
+    there = controller.settings = parse_settings((yield from query_line(controller, "$$", _LISTED)))
     wrong = {
         n: value
-        for n, value in _wanted(controller, there).items()
+        for n, value in find_required_settings(controller, there).items()
         if not is_same_setting(there.get(n), value)
     }
     if not wrong:
         return
     for n, value in wrong.items():
         yield from query_line(controller, f"${n}={format_setting(value)}")
-    there = controller.settings = _values((yield from query_line(controller, "$$", _LISTED)))
+    there = controller.settings = parse_settings((yield from query_line(controller, "$$", _LISTED)))
     for n, value in wrong.items():
         if not is_same_setting(there.get(n), value):
             raise ScriptError(
@@ -254,40 +254,6 @@ def write_settings(controller: GrblController) -> Script:
                 written=format_setting(value),
                 number2=there.get(n, "nothing"),
             )
-
-
-def _wanted(c: GrblController, there: Mapping[int, str]) -> dict[int, float | str]:
-    wanted: dict[int, float | str] = dict(c.config.table.settings)
-    always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
-    if always and wanted.get(_MODE) == _LATHE:
-        del wanted[_MODE]  # Firmware built for lathes only does not have this setting.
-    wanted[_MASK] = (int(float(there.get(_MASK, "0"))) | _REPORTS) & ~_PARSER
-    if _AFTER_HOLD in there:
-        wanted[_AFTER_HOLD] = int(float(there[_AFTER_HOLD])) & ~_RESTORE
-    return wanted
-
-
-def _values(lines: list[str]) -> dict[int, str]:
-    pairs = (line[1:].split("=", 1) for line in lines if line.startswith("$") and "=" in line)
-    return {int(n): value for n, value in pairs}
-
-
-def is_same_setting(present: str | None, required: float | str) -> bool:
-    """Return whether a setting equals the required value within its reported decimals."""
-    if present is None or isinstance(required, str):
-        return present == required
-    decimals = len(present.partition(".")[2])
-    try:
-        return math.isclose(float(present), required, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals)
-    except ValueError:
-        return False
-
-
-def format_setting(value: float | str) -> str:
-    """Return a setting value as text without an exponent, which the controller cannot read."""
-    if isinstance(value, str):
-        return value
-    return f"{value:.6f}".rstrip("0").rstrip(".")
 
 
 _BOOT = 6.0  # Seconds; some boards restart when their port is opened.

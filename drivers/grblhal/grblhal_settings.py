@@ -1,0 +1,50 @@
+"""The settings of a controller: the required values, and their comparison with the reported ones."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+from drivers.grblhal.grblhal_controller import GrblController
+
+# Machine position, buffers, line numbers, speeds, pins, offsets, overrides; the number of an alarm.
+_REPORTS = 0x7F | 0x400
+_PARSER = 0x200  # Unrequested parser state, which would look like a reply to $G.
+_RESTORE = 0x2  # Feed hold option: the spindle restarts automatically.
+_MASK, _MODE, _LATHE, _AFTER_HOLD = 10, 32, 2, 63
+
+
+def find_required_settings(c: GrblController, there: Mapping[int, str]) -> dict[int, float | str]:
+    """Return the required settings, given the reported ones."""
+    wanted: dict[int, float | str] = dict(c.config.table.settings)
+    always = c.identity is not None and c.identity.is_lathe_mode and _MODE not in there
+    if always and wanted.get(_MODE) == _LATHE:
+        del wanted[_MODE]  # Firmware built for lathes only does not have this setting.
+    wanted[_MASK] = (int(float(there.get(_MASK, "0"))) | _REPORTS) & ~_PARSER
+    if _AFTER_HOLD in there:
+        wanted[_AFTER_HOLD] = int(float(there[_AFTER_HOLD])) & ~_RESTORE
+    return wanted
+
+
+def parse_settings(lines: list[str]) -> dict[int, str]:
+    """Return the settings that the lines report."""
+    pairs = (line[1:].split("=", 1) for line in lines if line.startswith("$") and "=" in line)
+    return {int(n): value for n, value in pairs}
+
+
+def is_same_setting(present: str | None, required: float | str) -> bool:
+    """Return whether a setting equals the required value within its reported decimals."""
+    if present is None or isinstance(required, str):
+        return present == required
+    decimals = len(present.partition(".")[2])
+    try:
+        return math.isclose(float(present), required, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals)
+    except ValueError:
+        return False
+
+
+def format_setting(value: float | str) -> str:
+    """Return a setting value as text without an exponent, which the controller cannot read."""
+    if isinstance(value, str):
+        return value
+    return f"{value:.6f}".rstrip("0").rstrip(".")
