@@ -13,8 +13,9 @@ from app.desk.status import formats
 from app.scope.scope_curves import ScopePicture
 from app.scope.scope_model import ScopeModel
 from app.scope.signals import ScopeSignal
+from app.screen.color_palettes import CURVE_COLORS
 from app.screen.panel import RedrawingAttribute
-from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, CURVE_COLORS, ScreenTheme, ThemedPainter
+from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from app.screen.table_panel import RowPanel
 from app.screen.window_layout import FINGERTIP_PX
 from core.message import Message

@@ -18,7 +18,8 @@ from PySide6.QtWidgets import QFrame, QGraphicsGridLayout, QGraphicsItem, QGraph
 
 from app.desk.status.formats import format_fixed
 from app.desk.translation import tr
-from app.screen.screen_theme import CURVE_COLORS, FONT_FAMILY, MIN_TEXT_SIZE, ScreenTheme
+from app.screen.color_palettes import CURVE_COLORS
+from app.screen.screen_theme import FONT_FAMILY, MIN_TEXT_SIZE, ScreenTheme
 
 _TICK, _NAME = 1.6, 1.5  # Units: height of the numbers on an axis, and of the name of a plot.
 FloatArray = npt.NDArray[np.float64]

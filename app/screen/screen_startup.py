@@ -17,7 +17,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.desk import Desk
 from app.desk.programs.first_program import load_first_program
 from app.screen import accessible
-from app.screen.screen_theme import PALETTES, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import PALETTES
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.message import Message
 

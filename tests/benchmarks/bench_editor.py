@@ -25,7 +25,8 @@ from app.compose.program_proving import get_samples_folder
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
 from app.editor.editor_view import EditorPage
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 
 LINES = 2000

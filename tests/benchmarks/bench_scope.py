@@ -27,7 +27,8 @@ from app.desk.programs.program_loading import LoadingPhase
 from app.scope.scope_model import ScopeModel
 from app.scope.scope_view import ScopePage
 from app.screen import page_table
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.recorder import Recorder
 from core.records.record import ScopeRecord

@@ -26,7 +26,8 @@ from PySide6.QtWidgets import QApplication
 from app.compose.screen_desk import build_desk
 from app.compose.stored_offsets import read_offsets
 from app.desk.programs.program_loading import LoadingPhase
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import MachineState
 from tests.benchmarks.bench_hold import chords

@@ -19,8 +19,9 @@ from pytestqt.qtbot import QtBot
 from app.compose.runs.journal import Journal
 from app.desk.desk import Desk
 from app.desk.translation import ENGLISH_CODE
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, style_application, use_language
-from app.screen.window import keyboard
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application, use_language
+from app.screen.window import input_times
 from app.screen.window.main_window import MainWindow
 from tests.screen.desks import desk_on
 from tests.screen.fake import FakeMachine
@@ -28,7 +29,7 @@ from tests.screen.hands import Hands, window_on
 from tests.screen.lathe import Operator
 from tests.screen.pictures import Stage
 
-STALL = keyboard.STALL_TIME_S
+STALL = input_times.STALL_TIME_S
 
 
 def left_over(*, collect: bool) -> list[str]:
@@ -65,13 +66,13 @@ def nothing_left(qapp: QApplication) -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def never_late(monkeypatch: pytest.MonkeyPatch) -> None:
     """No key and no finger is late, however busy this computer is; ``stalls`` is for those that play it."""
-    monkeypatch.setattr(keyboard, "STALL_TIME_S", float("inf"))
+    monkeypatch.setattr(input_times, "STALL_TIME_S", float("inf"))
 
 
 @pytest.fixture
 def stalls(monkeypatch: pytest.MonkeyPatch, never_late: None) -> None:
     """Who is late is late, as in the shop."""
-    monkeypatch.setattr(keyboard, "STALL_TIME_S", STALL)
+    monkeypatch.setattr(input_times, "STALL_TIME_S", STALL)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -21,7 +21,8 @@ from app.compose.stored_offsets import read_stored_offsets
 from app.desk.data_folder import find_data_folder
 from app.desk.desk import Desk
 from app.programs.atomic_files import write_program_file
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
 from core.executor.executor import Executor

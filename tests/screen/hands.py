@@ -13,7 +13,8 @@ from pytestqt.qtbot import QtBot
 
 from app.automatic.automatic_view import AutomaticPage
 from app.desk.desk import Desk
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
 from core.executor.snapshot import MachineState

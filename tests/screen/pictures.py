@@ -30,7 +30,8 @@ from app.desk.desk import Desk
 from app.editor.editor_view import EditorPage
 from app.offsets.offset_book import OffsetBook
 from app.screen import page_table
-from app.screen.screen_theme import PALETTES, ScreenTheme, load_fonts, style_application
+from app.screen.color_palettes import PALETTES
+from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
 from core.access.access_table import AccessLevel
 from core.executor.snapshot import MachineState

@@ -14,9 +14,10 @@ from pytestqt.qtbot import QtBot
 
 from app.desk.pages.table_content import TableContent, TableRow
 from app.screen import accessible, page_table
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.page_table import list_pages
 from app.screen.panel import TouchControl, TouchPanel
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
 from app.screen.table_panel import TablePanel
 from app.screen.window.main_window import MainWindow
 from core.executor.commands import SetSwitch

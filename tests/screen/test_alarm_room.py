@@ -9,7 +9,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.status.machine_status import make_status
 from app.desk.status.prompt_line import describe_cause, make_alarm_prompt, reason
 from app.desk.status.readouts import ReadoutKind
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts
 from app.screen.window.readout_panels import describe_stop
 from core.alarms import CATALOGUE, AlarmCode, Reaction
 from core.executor.raised_alarm import make_alarm

@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.screen.chart import Chart, find_curve_color, make_line_pen, set_curve_points
-from app.screen.screen_theme import CURVE_COLORS, DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
+from app.screen.color_palettes import CURVE_COLORS, DARK_PALETTE, LIGHT_PALETTE
+from app.screen.screen_theme import ScreenTheme
 
 
 @pytest.fixture

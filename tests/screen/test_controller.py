@@ -13,7 +13,8 @@ from pytestqt.qtbot import QtBot
 import resources
 from app.compose.screen_desk import build_desk
 from app.desk.desk import Desk
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import MachineState
 from drivers.simulators.grblhal_connections import TcpConnection, run_simulator

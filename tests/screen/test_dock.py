@@ -7,7 +7,8 @@ from PySide6.QtGui import QTouchEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.station_dock import StationDock
 from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit, make_layout
 from core.executor.commands import CycleStart

@@ -13,7 +13,8 @@ from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import create_setup
 from app.compose.stored_offsets import Offsets
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import MachineState
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset

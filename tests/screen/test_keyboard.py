@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QWindow
 from PySide6.QtWidgets import QApplication
 
 from app.screen import page_table
-from app.screen.window.keyboard import FRAMES_AFTER_STALL, STALL_TIME_S, InputTimes
+from app.screen.window.input_times import FRAMES_AFTER_STALL, STALL_TIME_S, InputTimes
 from app.screen.window.main_window import MainWindow
 from core.executor.commands import FeedHold
 from core.executor.snapshot import MachineState

@@ -20,8 +20,9 @@ from app.desk.status.modal_rows import NO_CODE, make_modal_rows
 from app.desk.status.prompt_line import describe_cause
 from app.desk.translation import tr
 from app.screen import screen_theme
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.page_base import Page
-from app.screen.screen_theme import DARK_PALETTE, TRANSLATION_CONTEXT, ScreenTheme, use_language
+from app.screen.screen_theme import TRANSLATION_CONTEXT, ScreenTheme, use_language
 from app.screen.window.main_window import MainWindow
 from app.special.machine_records import make_event_row
 from core.alarms import CATALOGUE, AlarmCode, AlarmEntry

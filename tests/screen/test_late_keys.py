@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.desk.late_presses import StartingAction, name_starting_action
 from app.screen import page_table
-from app.screen.window.keyboard import FRAMES_AFTER_STALL, PAUSE_TIME_S
+from app.screen.window.input_times import FRAMES_AFTER_STALL, PAUSE_TIME_S
 from core.executor.commands import ConfirmStart, CycleStart, EnableDrives, FeedHold, Jog, JogByStep, SetSwitch
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key

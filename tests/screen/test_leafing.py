@@ -25,10 +25,11 @@ from app.offsets.cell_table_view import CellPanel
 from app.offsets.mill_tools import MillToolTable
 from app.offsets.offsets_view import ChangeHistoryList
 from app.programs.file_prompt_view import FilePrompt
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.main_menu import _MenuTiles
 from app.screen.page_table import list_menu_entries
 from app.screen.panel import Panel
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
 from app.screen.table_panel import TablePanel
 from app.screen.window_layout import FINGERTIP_PX
 from app.special.special_view import FunctionList

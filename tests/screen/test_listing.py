@@ -9,8 +9,9 @@ import pytest
 from PySide6.QtGui import QPixmap
 from PySide6.QtWidgets import QWidget
 
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.program_listing import ProgramListing
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.screen_theme import ScreenTheme
 from tests.screen.test_leafing import above
 
 __all__ = ["above"]  # a fixture of this module too

@@ -17,7 +17,8 @@ from app.path.path_aspects import DrawnLeg, PathAspect, TipPosition
 from app.path.path_marks_view import place_leg_labels
 from app.path.path_picture import PictureBuilder, ProgramPicture
 from app.path.path_view import PathView
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from core.executor.snapshot import MachineState
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.modal_state import ModalState

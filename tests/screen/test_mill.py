@@ -17,7 +17,8 @@ from app.compose.program_proving import get_samples_folder
 from app.compose.stored_offsets import read_offsets
 from app.editor.editor_view import EditorPage
 from app.jog.jog_view import JogPage
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from app.searchto.searchto_view import SearchtoPage
 from core.executor.snapshot import MachineState, Snapshot

@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QApplication
 from app.desk.status.interrupted_notice import NoticeRow, _describe_uncertainty
 from app.desk.translation import tr
 from app.screen import page_table
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, load_fonts, use_language
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme, load_fonts, use_language
 from app.screen.window.window_bars import NoticeRows
 from app.screen.window_layout import FINGERTIP_PX
 from core.executor.snapshot import POWER_LOST_REASON, MachineState

@@ -16,7 +16,8 @@ from app.path.part_player import PartPlayer
 from app.path.path_aspects import PathAspect, TipPosition
 from app.path.path_marks_view import make_part_title
 from app.path.path_view import PathView
-from app.screen.screen_theme import DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping
 from tests.path.test_part_player import RAPID, SHAFT, Clock, picture
 from tests.screen.hands import LIMIT

@@ -30,7 +30,8 @@ from app.path.path_projection import (
     rasterize_chords,
 )
 from app.path.polyline import Polyline, Stroke
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window_layout import FINGERTIP_PX
 from tests.screen.colours import apart
 

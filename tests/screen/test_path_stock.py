@@ -10,7 +10,8 @@ from pytestqt.qtbot import QtBot
 from app.path.path_aspects import DrawnLeg
 from app.path.path_stock_view import Blank, blank_of
 from app.path.path_view import FOOT, PathView
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping, Stock, make_bar
 from core.part.stock_spec import StockSpec, parse_specification
 from core.proving.part_history import ProgramSteps

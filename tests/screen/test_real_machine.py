@@ -8,7 +8,8 @@ import pytest
 from PySide6.QtTest import QTest
 
 from app.desk.desk import Desk
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Key

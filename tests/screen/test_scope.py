@@ -20,7 +20,7 @@ from app.scope.scope_model import ScopeModel, SidePanel
 from app.scope.scope_view import ScopePage
 from app.scope.time_window import TriggerEvent
 from app.screen import page_table
-from app.screen.screen_theme import CURVE_COLORS
+from app.screen.color_palettes import CURVE_COLORS
 from app.screen.window_layout import FINGERTIP_PX
 from app.special.special_view import SpecialPage
 from core.executor.commands import FeedHold

@@ -14,9 +14,10 @@ from app.mdi.mdi_view import MdiHistoryPanel
 from app.scope.scope_curves import ScopePicture
 from app.scope.scope_readings_view import ScopeReadings
 from app.screen.code_choices_view import CodeChoiceList
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.panel import Panel
 from app.screen.program_listing import ProgramListing
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.alarm_panels import AlarmList
 from core.executor.snapshot import Alarm
 from tests.screen.test_leafing import MANY, SMALL, above, chosen_rows, leaf_keys, press, turn_wheel

@@ -7,7 +7,8 @@ from math import radians, tan
 import pytest
 
 from app.screen import page_table
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.text_sizes import CAPITALS, PanelSize, Role, panel_size
 from app.screen.window_layout import LOW_WINDOW_PX, find_unit, make_layout, make_low_layout
 from tests.screen.lathe import Operator

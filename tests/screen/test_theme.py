@@ -7,16 +7,8 @@ from dataclasses import fields
 import pytest
 from PySide6.QtGui import QFontInfo, QFontMetricsF, QRawFont
 
-from app.screen.screen_theme import (
-    CURVE_COLORS,
-    DARK_PALETTE,
-    MIN_TEXT_SIZE,
-    PALETTES,
-    ColorPalette,
-    ScreenTheme,
-    load_fonts,
-    measure_text,
-)
+from app.screen.color_palettes import CURVE_COLORS, DARK_PALETTE, PALETTES, ColorPalette
+from app.screen.screen_theme import MIN_TEXT_SIZE, ScreenTheme, load_fonts, measure_text
 
 TEXT = [
     *((ink, ground) for ink in ("text", "soft", "accent") for ground in ("ground", "panel", "key")),

@@ -11,7 +11,7 @@ import threading
 import time
 
 from app.compose.control import control_attachment
-from app.screen.window import keyboard
+from app.screen.window import input_times
 from drivers.wakeups import RealClock
 
 GRACE = 0.12  # s; the control at rest ticks every 0.095 s
@@ -71,7 +71,7 @@ class PatientClock:
 
 
 CLOCK = PatientClock()
-_STALL = keyboard.STALL_TIME_S
+_STALL = input_times.STALL_TIME_S
 
 
 def install() -> None:
@@ -91,10 +91,10 @@ def install() -> None:
     setattr(RealClock, "now", now)  # noqa: B010
     # One process has one machine time: the control runs on a thread here, as it does on Windows.
     setattr(control_attachment, "USES_OWN_PROCESS", False)  # noqa: B010
-    keyboard.STALL_TIME_S = float("inf")
+    input_times.STALL_TIME_S = float("inf")
 
 
 def run_in_real_time() -> None:
     """Let delays of machine time and of keys count from now on."""
-    keyboard.STALL_TIME_S = _STALL
+    input_times.STALL_TIME_S = _STALL
     CLOCK.run_in_real_time()

@@ -26,10 +26,12 @@ from app.desk.late_presses import StartingAction
 from app.desk.status.prompt_line import ACTIVE_STATES, MOVING_STATES
 from app.desk.stop_keys.stop_records import SOURCE_SCREEN
 from app.desk.translation import get_language, tr
+from app.screen.color_palettes import PALETTES
 from app.screen.page_table import AUTOMATIC, PagePreloader
 from app.screen.panel import TouchPanel
-from app.screen.screen_theme import PALETTES, ScreenTheme, style_application, use_language
+from app.screen.screen_theme import ScreenTheme, style_application, use_language
 from app.screen.text_sizes import panel_size
+from app.screen.window.input_times import InputTimes
 from app.screen.window.key_table import (
     AUTOMATIC_KEYS,
     NO_KEY,
@@ -41,7 +43,7 @@ from app.screen.window.key_table import (
     find_typed_text,
     name_key,
 )
-from app.screen.window.keyboard import InputTimes, KeyboardFilter, find_key_code, find_letter
+from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window_layout import MIN_WINDOW_PX
 from core.message import Message

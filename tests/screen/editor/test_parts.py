@@ -19,7 +19,8 @@ from app.editor.editor_model import EditorModel, EditorStage, open_editor
 from app.editor.editor_parts_view import FindingList, make_editor_layout
 from app.editor.live_proof import ProofFindings
 from app.editor.text_view import ProgramTextField
-from app.screen.screen_theme import DARK_PALETTE, LIGHT_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE, LIGHT_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window_layout import FINGERTIP_PX
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect

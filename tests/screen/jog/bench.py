@@ -16,7 +16,8 @@ from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.stored_offsets import read_store_offsets
 from app.desk.desk import Desk
 from app.jog.jog_view import JogPage
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from app.screen.window.main_window import MainWindow
 from app.screen.window.window_frame import WindowFrame
 from core.executor.executor import Executor

@@ -5,7 +5,8 @@ from __future__ import annotations
 from PySide6.QtWidgets import QWidget
 
 from app.extras.shapes.shapes_view import ShapeRowsPanel, _Line
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme
+from app.screen.color_palettes import DARK_PALETTE
+from app.screen.screen_theme import ScreenTheme
 from tests.screen.test_leafing import MANY, SMALL, above, chosen_rows, leaf_keys
 
 __all__ = ["above"]

@@ -14,8 +14,9 @@ from pytestqt.qtbot import QtBot
 from app.editor.editor_parts_view import EditorMode
 from app.extras.shapes import shapes_view
 from app.extras.shapes.shapes_view import ShapeLinesPanel, ShapeRowsPanel, _Line
+from app.screen.color_palettes import DARK_PALETTE
 from app.screen.panel import Panel
-from app.screen.screen_theme import DARK_PALETTE, ScreenTheme, ThemedPainter
+from app.screen.screen_theme import ScreenTheme, ThemedPainter
 from app.screen.window_layout import FINGERTIP_PX
 from tests.extras.shapes.screen.panel import shapes_of
 from tests.screen.editor.writer import Writer
