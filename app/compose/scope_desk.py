@@ -50,7 +50,7 @@ def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
     page.
     """
     desk.page_registry.attach_lazily("app.scope.scope_model.ScopeModel", partial(_scope, desk, live_samples))
-    desk.page_registry.set_recording_opener(lambda name: _scope_of(desk).open_alarm_recording(name))
+    desk.page_registry.set_recording_opener(partial(_open_alarm_recording, desk))
 
 
 def _scope(desk: Desk, live: LiveSamples | None) -> ScopeModel:
@@ -68,9 +68,10 @@ def _scope(desk: Desk, live: LiveSamples | None) -> ScopeModel:
     )
 
 
-def _scope_of(desk: Desk) -> ScopeModel:
+def _open_alarm_recording(desk: Desk, name: str) -> None:
+    from app.scope.scope_files import ScopeFiles
     from app.scope.scope_model import ScopeModel
 
     scope = desk.page_registry.find(ScopeModel)
     assert scope is not None
-    return scope
+    ScopeFiles(scope).open_alarm_recording(name)

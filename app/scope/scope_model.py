@@ -15,7 +15,7 @@ import numpy as np
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.scope.recording_store import INSTANT_KEY, RecordingFile, RecordingStore, find_zero_instant
+from app.scope.recording_store import INSTANT_KEY, RecordingStore, find_zero_instant
 from app.scope.scope_curves import (
     LiveCurves,
     LiveSamples,
@@ -26,7 +26,6 @@ from app.scope.scope_curves import (
 )
 from app.scope.signals import Quantity, ScopeSignal, find_default_keys, list_signals
 from app.scope.time_window import PAN_STEP_SHARE, TimeCursors, TimeWindow, Trigger, TriggerEvent
-from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.records.record import ScopeRecord
@@ -383,123 +382,6 @@ class ScopeModel:
         if self._released is not None:
             return tr("TRIGGERED")
         return tr("ARMED") if self.is_armed else tr("TRIGGER NOT ARMED. F2: ARM")
-
-    # --- files ---------------------------------------------------------------------------------------
-
-    def make_visible_record(self) -> ScopeRecord | None:
-        """Return the record of the visible window, or None with a message while the curves are live."""
-        frozen = self.frozen_curves
-        if frozen is None:
-            self.desk.say(CURVES_ARE_LIVE)
-            return None
-        begin, end = frozen.zero_s + self.time_window.begin_s, frozen.zero_s + self.time_window.end_s
-        cut = frozen.record.select_between(begin, end)
-        if not len(cut.times_s):
-            self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
-            return None
-        told = {**cut.about, INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
-        return replace(cut, about=told)
-
-    def save_visible(self) -> None:
-        """Save the visible window as a record."""
-        record = self.make_visible_record()
-        if record is not None:
-            self.file_worker.enqueue(
-                lambda: self.recording_store.save_named(record), self._written, self.desk.show_refusal
-            )
-
-    def write_csv(self) -> None:
-        """Write the visible window as a CSV table."""
-        record = self.make_visible_record()
-        if record is not None:
-            self.file_worker.enqueue(
-                lambda: self.recording_store.write_csv(record), self._written, self.desk.show_refusal
-            )
-
-    def _written(self, path: object) -> None:
-        self.desk.say(tr(Message("SAVED: {path}", path=path)))
-        self.reload_files()
-
-    def reload_files(self) -> None:
-        """Update the list of files."""
-        self.file_worker.enqueue(self.recording_store.list_files, self._listed, self.desk.show_refusal)
-
-    def _listed(self, files: tuple[RecordingFile, ...]) -> None:
-        self.recording_store.recording_files = files
-
-    def open_alarm_recording(self, name: str) -> None:
-        """Open the record of an alarm, which may still be in the process of writing."""
-        recorder = self.desk.desk_control.recordings
-        folder, shelf = self.recording_store.folder, self.recording_store
-        self.side_panel = SidePanel.READINGS
-
-        def work() -> ScopeRecord:
-            return (
-                recorder.open_alarm_record(name)
-                if recorder is not None
-                else shelf.read_recording(folder / name)
-            )
-
-        def done(record: ScopeRecord) -> None:
-            self.show_recording(record, name)
-
-        self.file_worker.enqueue(work, done, self.desk.show_refusal)
-
-    def open_file(self, file: RecordingFile) -> None:
-        """Open a record from the disk."""
-        path, shelf = file.path, self.recording_store
-
-        def done(record: ScopeRecord) -> None:
-            self.side_panel = SidePanel.READINGS
-            self.show_recording(record, path.name)
-
-        self.file_worker.enqueue(lambda: shelf.read_recording(path), done, self.desk.show_refusal)
-
-    def overlay_file(self, file: RecordingFile) -> None:
-        """Overlay an earlier record, aligned at instant 0.
-
-        The same record again removes the overlay.
-        """
-        self.desk.clear_prompt_line()
-        if self.overlay_name == file.path.name:
-            self.overlay_curves, self.overlay_name = None, ""
-            return
-        path, shelf = file.path, self.recording_store
-
-        def done(record: ScopeRecord) -> None:
-            self.overlay_curves, self.overlay_name = (
-                RecordingCurves(record, find_zero_instant(record)),
-                path.name,
-            )
-
-        self.file_worker.enqueue(lambda: shelf.read_recording(path), done, self.desk.show_refusal)
-
-    def delete_file(self, file: RecordingFile) -> None:
-        """Delete a record file after confirmation."""
-        if self.desk.is_refused(ProtectedChange.RECORDS):
-            return
-
-        def gone(_nothing: object) -> None:
-            self.desk.user_access.persistence.log_change(
-                Message("record {path} deleted", path=file.path.name)
-            )
-            self.desk.say(tr(Message("DELETED: {path}", path=file.path.name)))
-            self.reload_files()
-
-        def yes() -> None:
-            self.file_worker.enqueue(
-                lambda: self.recording_store.delete(file.path), gone, self.desk.show_refusal
-            )
-
-        question = tr(Message("PRESS Y TO DELETE {path}, N TO KEEP IT", path=file.path.name))
-        self.desk.ask_operator(question, yes)
-
-    def write_picture(self, render_png: Callable[[], bytes]) -> None:
-        """Save a picture of the page on a worker. ``render_png`` returns its bytes."""
-        shelf = self.recording_store
-        self.file_worker.enqueue(
-            lambda: shelf.write_picture(render_png()), self._written, self.desk.show_refusal
-        )
 
     def close(self) -> None:
         """Stop the workers after pending writes are finished."""

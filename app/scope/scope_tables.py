@@ -9,6 +9,7 @@ from app.desk.arithmetic import EntryError, evaluate_expression, evaluate_line_n
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, TableContent, TableRow, refused
 from app.desk.status import formats
 from app.desk.translation import tr
+from app.scope.scope_files import ScopeFiles
 from app.scope.scope_model import NO_SAMPLES, ScopeModel, SidePanel
 from app.scope.signals import ScopeSignal
 from app.scope.time_window import TriggerEvent
@@ -26,6 +27,10 @@ class ScopeTables:
     scope_model: ScopeModel
     selected_rows: dict[SidePanel, int] = field(default_factory=dict)
     input_field: InputField = field(default_factory=InputField)
+    scope_files: ScopeFiles = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.scope_files = ScopeFiles(self.scope_model)
 
     @property
     def selected_row(self) -> int:
@@ -51,7 +56,7 @@ class ScopeTables:
             SidePanel.READINGS if self.scope_model.side_panel is side_panel else side_panel
         )
         if self.scope_model.side_panel is SidePanel.FILES:
-            self.scope_model.reload_files()
+            self.scope_files.reload_files()
 
     def make_table(self) -> TableContent:
         """Return the table that is shown now."""
@@ -141,26 +146,25 @@ class ScopeTables:
         """Return the function keys while the records are listed."""
         if self.scope_model.side_panel is not SidePanel.FILES:
             return {}
-        scope = self.scope_model
         return {
-            "F2": FunctionKey("SAVE", scope.save_visible),
+            "F2": FunctionKey("SAVE", self.scope_files.save_visible),
             "F3": FunctionKey("OPEN", self._open),
             "F4": FunctionKey("OVERLAY", self._overlay),
-            "F5": FunctionKey("CSV", scope.write_csv),
+            "F5": FunctionKey("CSV", self.scope_files.write_csv),
             "F8": FunctionKey("DELETE", self._delete),
         }
 
     def _open(self) -> None:
         if self.row_count:
-            self.scope_model.open_file(self.scope_model.recording_store.recording_files[self.selected_row])
+            self.scope_files.open_file(self.scope_model.recording_store.recording_files[self.selected_row])
 
     def _overlay(self) -> None:
         if self.row_count:
-            self.scope_model.overlay_file(self.scope_model.recording_store.recording_files[self.selected_row])
+            self.scope_files.overlay_file(self.scope_model.recording_store.recording_files[self.selected_row])
 
     def _delete(self) -> None:
         if self.row_count:
-            self.scope_model.delete_file(self.scope_model.recording_store.recording_files[self.selected_row])
+            self.scope_files.delete_file(self.scope_model.recording_store.recording_files[self.selected_row])
 
     @property
     def is_value_asked(self) -> bool:

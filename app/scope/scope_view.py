@@ -285,7 +285,7 @@ class ScopePage(ListPage):
         A worker encodes the picture.
         """
         image = self.grab().toImage()
-        self.scope_model.write_picture(partial(_encode_png, image))
+        self.scope_tables.scope_files.write_picture(partial(_encode_png, image))
 
     # --- every frame ---------------------------------------------------------------------------------
 

@@ -1,0 +1,151 @@
+"""Actions on the files of the scope: saving, opening, overlaying and deleting of records, and pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from app.desk.translation import tr
+from app.scope.recording_store import INSTANT_KEY, RecordingFile, find_zero_instant
+from app.scope.scope_curves import RecordingCurves
+from app.scope.scope_model import CURVES_ARE_LIVE, ScopeModel, SidePanel
+from core.access.access_table import ProtectedChange
+from core.message import Message
+from core.records.record import ScopeRecord
+
+
+@dataclass(slots=True)
+class ScopeFiles:
+    """Actions on the files of one scope."""
+
+    scope_model: ScopeModel
+
+    def make_visible_record(self) -> ScopeRecord | None:
+        """Return the record of the visible window, or None with a message while the curves are live."""
+        frozen = self.scope_model.frozen_curves
+        if frozen is None:
+            self.scope_model.desk.say(CURVES_ARE_LIVE)
+            return None
+        begin, end = (
+            frozen.zero_s + self.scope_model.time_window.begin_s,
+            frozen.zero_s + self.scope_model.time_window.end_s,
+        )
+        cut = frozen.record.select_between(begin, end)
+        if not len(cut.times_s):
+            self.scope_model.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
+            return None
+        told = {**cut.about, INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
+        return replace(cut, about=told)
+
+    def save_visible(self) -> None:
+        """Save the visible window as a record."""
+        record = self.make_visible_record()
+        if record is not None:
+            self.scope_model.file_worker.enqueue(
+                lambda: self.scope_model.recording_store.save_named(record),
+                self._written,
+                self.scope_model.desk.show_refusal,
+            )
+
+    def write_csv(self) -> None:
+        """Write the visible window as a CSV table."""
+        record = self.make_visible_record()
+        if record is not None:
+            self.scope_model.file_worker.enqueue(
+                lambda: self.scope_model.recording_store.write_csv(record),
+                self._written,
+                self.scope_model.desk.show_refusal,
+            )
+
+    def _written(self, path: object) -> None:
+        self.scope_model.desk.say(tr(Message("SAVED: {path}", path=path)))
+        self.reload_files()
+
+    def reload_files(self) -> None:
+        """Update the list of files."""
+        self.scope_model.file_worker.enqueue(
+            self.scope_model.recording_store.list_files, self._listed, self.scope_model.desk.show_refusal
+        )
+
+    def _listed(self, files: tuple[RecordingFile, ...]) -> None:
+        self.scope_model.recording_store.recording_files = files
+
+    def open_alarm_recording(self, name: str) -> None:
+        """Open the record of an alarm, which may still be in the process of writing."""
+        recorder = self.scope_model.desk.desk_control.recordings
+        folder, shelf = self.scope_model.recording_store.folder, self.scope_model.recording_store
+        self.scope_model.side_panel = SidePanel.READINGS
+
+        def work() -> ScopeRecord:
+            return (
+                recorder.open_alarm_record(name)
+                if recorder is not None
+                else shelf.read_recording(folder / name)
+            )
+
+        def done(record: ScopeRecord) -> None:
+            self.scope_model.show_recording(record, name)
+
+        self.scope_model.file_worker.enqueue(work, done, self.scope_model.desk.show_refusal)
+
+    def open_file(self, file: RecordingFile) -> None:
+        """Open a record from the disk."""
+        path, shelf = file.path, self.scope_model.recording_store
+
+        def done(record: ScopeRecord) -> None:
+            self.scope_model.side_panel = SidePanel.READINGS
+            self.scope_model.show_recording(record, path.name)
+
+        self.scope_model.file_worker.enqueue(
+            lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
+        )
+
+    def overlay_file(self, file: RecordingFile) -> None:
+        """Overlay an earlier record, aligned at instant 0.
+
+        The same record again removes the overlay.
+        """
+        self.scope_model.desk.clear_prompt_line()
+        if self.scope_model.overlay_name == file.path.name:
+            self.scope_model.overlay_curves, self.scope_model.overlay_name = None, ""
+            return
+        path, shelf = file.path, self.scope_model.recording_store
+
+        def done(record: ScopeRecord) -> None:
+            self.scope_model.overlay_curves, self.scope_model.overlay_name = (
+                RecordingCurves(record, find_zero_instant(record)),
+                path.name,
+            )
+
+        self.scope_model.file_worker.enqueue(
+            lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
+        )
+
+    def delete_file(self, file: RecordingFile) -> None:
+        """Delete a record file after confirmation."""
+        if self.scope_model.desk.is_refused(ProtectedChange.RECORDS):
+            return
+
+        def gone(_nothing: object) -> None:
+            self.scope_model.desk.user_access.persistence.log_change(
+                Message("record {path} deleted", path=file.path.name)
+            )
+            self.scope_model.desk.say(tr(Message("DELETED: {path}", path=file.path.name)))
+            self.reload_files()
+
+        def yes() -> None:
+            self.scope_model.file_worker.enqueue(
+                lambda: self.scope_model.recording_store.delete(file.path),
+                gone,
+                self.scope_model.desk.show_refusal,
+            )
+
+        question = tr(Message("PRESS Y TO DELETE {path}, N TO KEEP IT", path=file.path.name))
+        self.scope_model.desk.ask_operator(question, yes)
+
+    def write_picture(self, render_png: Callable[[], bytes]) -> None:
+        """Save a picture of the page on a worker. ``render_png`` returns its bytes."""
+        shelf = self.scope_model.recording_store
+        self.scope_model.file_worker.enqueue(
+            lambda: shelf.write_picture(render_png()), self._written, self.scope_model.desk.show_refusal
+        )
