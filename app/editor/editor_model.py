@@ -351,6 +351,15 @@ def open_editor(desk: Desk, editor: EditorModel) -> bool:
     return True
 
 
+def find_load_label(desk: Desk, editor: EditorModel, *, is_dirty: bool) -> str:
+    """Return the label of F3, which loads saved changes or a text that is not loaded."""
+    if is_dirty:
+        return "SAV+LOAD"
+    document, now = editor.document, desk.program_loader.loaded
+    other = document is not None and document.path == now.path and desk.storage_state.read_file_difference()
+    return "LOAD" if editor.is_saved_since_open or other or now.path is None else "LEAVE"
+
+
 def _handle_closed(desk: Desk, closed: ClosedProgram) -> None:
     """Load the closed program if F3 requires this, or else report which program remains loaded."""
     path, now = closed.path, desk.program_loader.loaded

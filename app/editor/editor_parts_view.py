@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,6 +15,7 @@ from app.desk.status import formats
 from app.desk.translation import tr
 from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.editor_model import EditorModel
+from app.editor.editor_modes import ASKING_MODES, EditorMode
 from app.editor.live_proof import ProofFindings
 from app.editor.question_view import QuestionLine
 from app.editor.text_view import SEVERITY_COLORS, SEVERITY_NAMES, ProgramTextField, TextSynchronizer
@@ -313,23 +313,6 @@ def make_editor_layout(
     code = Rect(x, findings.bottom + gap, path.w, code_h)
     codes = Rect(x, top, path.w, body.h)
     return EditorLayout(head, text, path, findings, code, codes, ask, keyboard, body)
-
-
-class EditorMode(StrEnum):
-    """Mode of the editor page, which determines the meaning of the keys."""
-
-    TEXT = "text"
-    FIND = "find"
-    LINE_NUMBER = "go to"
-    NAME = "name"
-    HISTORY = "history"
-    NEW_FILE = "offer"
-    CODES = "codes"  # the list of codes is open
-    PATH = "look"  # the path has the keyboard, for measuring
-    PANEL = "panel"  # a form of an optional feature writes the lines
-
-
-ASKING_MODES = frozenset({EditorMode.FIND, EditorMode.LINE_NUMBER, EditorMode.NAME})
 
 
 class EditorParts(Page):

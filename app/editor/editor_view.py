@@ -21,15 +21,9 @@ from app.desk.status.machine_status import MachineStatus
 from app.desk.status.prompt_line import MOVING_STATES
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
-from app.editor.editor_model import EditorModel, EditorStage, open_editor
-from app.editor.editor_parts_view import (
-    ASKING_MODES,
-    EditorHeadLine,
-    EditorMode,
-    EditorParts,
-    EditorPathView,
-    FindingList,
-)
+from app.editor.editor_model import EditorModel, EditorStage, find_load_label, open_editor
+from app.editor.editor_modes import ASKING_MODES, MODE_PROMPTS, EditorMode
+from app.editor.editor_parts_view import EditorHeadLine, EditorParts, EditorPathView, FindingList
 from app.editor.question_view import QuestionLine, TextFinder
 from app.editor.text_view import ProgramTextField, TextSynchronizer
 from app.editor.version_history import VersionHistory
@@ -48,15 +42,6 @@ if TYPE_CHECKING:
 
 ModeKeys = dict[int, FunctionKey]
 KeyActionMap = dict[int, Callable[[], None]]
-
-
-MODE_PROMPTS = {
-    EditorMode.FIND: messages.SEARCH_HINT,
-    EditorMode.LINE_NUMBER: messages.LINE_NUMBER_HINT,
-    EditorMode.HISTORY: messages.VERSION_LIST_HINT,
-    EditorMode.CODES: messages.CODE_LIST_HINT,
-}
-"""What the prompt line says while nothing else is to be said."""
 
 
 class EditorPage(EditorParts):
@@ -252,9 +237,10 @@ class EditorPage(EditorParts):
         }
 
     def _text_keys(self) -> ModeKeys:
+        load_label = find_load_label(self.desk, self.editor, is_dirty=self.typed_text.is_dirty)
         return {
             2: FunctionKey("SAVE", self.save_text),
-            3: FunctionKey(self._find_load_label(), partial(self.save_and_open_page, page_table.AUTOMATIC)),
+            3: FunctionKey(load_label, partial(self.save_and_open_page, page_table.AUTOMATIC)),
             4: FunctionKey("FIND", partial(self.enter_mode, EditorMode.FIND)),
             5: FunctionKey("GO TO", partial(self.enter_mode, EditorMode.LINE_NUMBER)),
             6: FunctionKey("YES", self.confirm_question)
@@ -262,19 +248,6 @@ class EditorPage(EditorParts):
             else FunctionKey("NEXT ERROR", self.select_next_finding),
             7: FunctionKey("HISTORY", partial(self.enter_mode, EditorMode.HISTORY)),
         }
-
-    def _find_load_label(self) -> str:
-        """Return the label of F3, which loads saved changes or a text that is not loaded."""
-        editor, now = self.editor, self.desk.program_loader.loaded
-        if self.typed_text.is_dirty:
-            return "SAV+LOAD"
-        document = editor.document
-        other = (
-            document is not None
-            and document.path == now.path
-            and self.desk.storage_state.read_file_difference()
-        )
-        return "LOAD" if editor.is_saved_since_open or other or now.path is None else "LEAVE"
 
     def enter_mode(self, mode: EditorMode) -> None:
         """Switch to a mode."""

@@ -6,7 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 
-from app.editor.editor_parts_view import EditorMode
+from app.editor.editor_modes import EditorMode
 from app.screen.panel import Panel
 from core.language.code_book import CodeBookEntry
 from tests.screen.editor.writer import Writer

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtCore import Qt
 
-from app.editor.editor_parts_view import EditorMode
+from app.editor.editor_modes import EditorMode
 from app.screen import page_table
 from app.screen.page_base import EditorPanel
 from tests.screen.editor.writer import Writer

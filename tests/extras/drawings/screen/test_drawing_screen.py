@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from app.editor.editor_parts_view import EditorMode
+from app.editor.editor_modes import EditorMode
 from app.extras.drawings.drawing_form import AddedDrawingForm
 from core.extras.drawings import drawing_process
 from tests.extras.drawings.hand import chain, dxf

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.editor.editor_parts_view import EditorMode
+from app.editor.editor_modes import EditorMode
 from app.extras.shapes import shapes_view
 from app.extras.shapes.shapes_view import ShapeLinesPanel, ShapeRowsPanel, _Line
 from app.screen.color_palettes import DARK_PALETTE

@@ -1,0 +1,31 @@
+"""The modes of the editor page, which determine the meaning of the keys, and their prompts."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from app.editor import editor_messages as messages
+
+
+class EditorMode(StrEnum):
+    """Mode of the editor page, which determines the meaning of the keys."""
+
+    TEXT = "text"
+    FIND = "find"
+    LINE_NUMBER = "go to"
+    NAME = "name"
+    HISTORY = "history"
+    NEW_FILE = "offer"
+    CODES = "codes"  # the list of codes is open
+    PATH = "look"  # the path has the keyboard, for measuring
+    PANEL = "panel"  # a form of an optional feature writes the lines
+
+
+ASKING_MODES = frozenset({EditorMode.FIND, EditorMode.LINE_NUMBER, EditorMode.NAME})
+MODE_PROMPTS = {
+    EditorMode.FIND: messages.SEARCH_HINT,
+    EditorMode.LINE_NUMBER: messages.LINE_NUMBER_HINT,
+    EditorMode.HISTORY: messages.VERSION_LIST_HINT,
+    EditorMode.CODES: messages.CODE_LIST_HINT,
+}
+"""What the prompt line says while nothing else is to be said."""
