@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from functools import partial
 from importlib.resources import files
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
@@ -32,6 +31,7 @@ from app.screen.panel import TouchPanel
 from app.screen.screen_theme import ScreenTheme, style_application, use_language
 from app.screen.text_sizes import panel_size
 from app.screen.window.input_times import InputTimes
+from app.screen.window.key_actions import make_key_actions
 from app.screen.window.key_table import (
     AUTOMATIC_KEYS,
     NO_KEY,
@@ -45,6 +45,7 @@ from app.screen.window.key_table import (
 )
 from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
 from app.screen.window.window_frame import ScreenContext, WindowFrame
+from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
 from app.screen.window_layout import MIN_WINDOW_PX
 from core.message import Message
 
@@ -52,18 +53,6 @@ FRAME_MS = 16  # Maximum 60 frames per second.
 IDLE_FRAME_MS = 48  # Interval at rest without recent input, if something new was shown.
 REST_FRAME_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
 IDLE_AFTER_S = 2.0  # Seconds.
-START_SIZE = (1280, 720)
-TITLE_BAR_PX = 60  # Pixels that the title bar of a window manager uses.
-
-
-def show_full_screen(window: QWidget, *, is_frameless: bool = False) -> None:
-    """Show a window on the whole screen. The geometry is set too, in case there is no window manager."""
-    if is_frameless:
-        window.setWindowFlag(Qt.WindowType.FramelessWindowHint)
-    screen = window.screen()
-    if screen is not None:
-        window.setGeometry(screen.geometry())
-    window.showFullScreen()
 
 
 class MainWindow(QWidget):
@@ -105,7 +94,7 @@ class MainWindow(QWidget):
             earlier.close()
         self.page_preloader = PagePreloader(desk, self.frame.find_page)
         desk.page_registry.attach_model(self.page_preloader)
-        self._keys = self._table(desk)
+        self._keys = {**make_key_actions(desk), "T": self.toggle_theme, "Esc": self._handle_escape}
         desk.window_state.connect_window(
             self._wake_from_thread,
             self.keyboard_filter.is_stop_held,
@@ -205,30 +194,6 @@ class MainWindow(QWidget):
             frame.desk.say(tr(Message("{key} HAS NO FUNCTION ON THIS PAGE", key=key_name)))
             self.refresh()
 
-    def _table(self, desk: Desk) -> dict[str, Callable[[], None]]:
-        return {
-            "S": partial(desk.toggle_switch, "single_block"),
-            "O": partial(desk.toggle_switch, "optional_stop"),
-            "C": partial(desk.toggle_switch, "cycle_repeat"),
-            "P": partial(desk.toggle_switch, "no_count"),
-            "/": desk.program_choice.toggle_block_delete,
-            "H": desk.start_feed_hold,
-            "R": desk.reset_control,
-            "D": desk.enable_drives,
-            "E": desk.station_keys.press_estop,
-            "U": desk.station_keys.release_estop,
-            YES_KEY: desk.confirm_if_unchanged,
-            NO_KEY: desk.reject_question,
-            "A": desk.station_keys.toggle_spindle_switch,
-            ",": partial(desk.station_controls.turn_spindle_pot, -1),
-            ".": partial(desk.station_controls.turn_spindle_pot, 1),
-            "+": partial(desk.station_keys.step_override, 1),
-            "-": partial(desk.station_keys.step_override, -1),
-            "T": self.toggle_theme,
-            "Y": desk.confirm_question,
-            "Esc": self._handle_escape,
-        }
-
     def toggle_theme(self) -> None:
         """Switch between the dark and the light theme."""
         if self.frame is not None:
@@ -257,25 +222,8 @@ class MainWindow(QWidget):
             self.showMaximized()
 
     def show_on(self, screen: QScreen) -> None:
-        """Show the window in a size that suits the screen.
-
-        A small screen is filled completely. The title bar of a window manager could otherwise push the
-        function keys off a screen with 600 lines.
-        """
-        room = screen.availableGeometry()
-        self.setMinimumSize(min(MIN_WINDOW_PX[0], room.width()), min(MIN_WINDOW_PX[1], room.height()))
-        if (
-            self.is_kiosk
-            or room.height() < MIN_WINDOW_PX[1] + TITLE_BAR_PX
-            or room.width() <= MIN_WINDOW_PX[0]
-        ):
-            show_full_screen(self, is_frameless=self.is_kiosk)
-        elif room.width() < 2 * START_SIZE[0]:
-            self.setGeometry(room)  # Without a window manager, nothing else sets the geometry.
-            self.showMaximized()
-        else:  # On a large screen, use a quarter of it.
-            self.resize(max(START_SIZE[0], room.width() // 2), max(START_SIZE[1], room.height() // 2))
-            self.show()
+        """Show the window in a size that suits the screen."""
+        show_in_suitable_size(self, screen, is_kiosk=self.is_kiosk)
 
     def _handle_escape(self) -> None:
         """Go one step back: on the page, then a question or feed hold, and finally to the Automatic page."""
