@@ -11,18 +11,17 @@ from app.desk.pages.editor_panel import PanelModel
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import AddedForm, ShapeForm
+from app.extras.shapes.shape_places import find_insertion_line, find_piece, shift_piece
 from core.extras.shapes.editor_shape import Shape
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.extras.shapes.shape_pieces import (
     ShapePiece,
-    ends_program,
     find_damaged_comment,
     find_pieces,
     find_settings,
     has_units,
     insert_shape,
     rewrite_pieces,
-    starts_subroutine,
 )
 from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT, SHAPES_BY_KEY
 from core.extras.shapes.templates import HEAD_SHAPE
@@ -94,8 +93,10 @@ class ShapesModel(PanelModel):
         self.notice, self.pending_action, self.form = "", None, None
         self.shape_table = CALCULATORS_BY_DIALECT[dialect] if helpers else forms
         self._take(text)
-        here = self.find_piece(line - 1)
-        self.cursor_line = self._place(line - 1)
+        here = find_piece(self.pieces, line - 1)
+        self.cursor_line = find_insertion_line(
+            self.program_lines, self.pieces, line - 1, self.initial_settings.dialect
+        )
         if here is not None and self.lists_shapes:
             self._open_piece(here)
         else:
@@ -148,29 +149,6 @@ class ShapesModel(PanelModel):
 
     def _no_shop(self, why: str) -> None:
         self.notice = tr(Message("TOOL DATA CANNOT BE READ: {why}", why=why))
-
-    def find_piece(self, line: int) -> ShapePiece | None:
-        """Return the piece that contains a line, counted from 0, or None."""
-        return next((each for each in self.pieces if each.first_line <= line < each.next_line), None)
-
-    def _place(self, line: int) -> int:
-        """Return the line for a new shape.
-
-        The line is after the piece at the cursor and before the end of the program.
-        """
-        here = self.find_piece(line)
-        at = here.next_line if here is not None else min(line + 1, len(self.program_lines))
-        ends = [
-            n
-            for n, each in enumerate(self.program_lines)
-            if ends_program(each, self.initial_settings.dialect)
-        ]
-        started = [n for n, each in enumerate(self.program_lines) if starts_subroutine(each)]
-        for end in ends:
-            begin = max((n for n in started if n < end), default=-1)
-            if at <= end or end == ends[-1]:
-                return max(min(at, end), begin + 1)
-        return at
 
     # --- list ----------------------------------------------------------------------------------------
 
@@ -408,7 +386,9 @@ class ShapesModel(PanelModel):
         said = ""
         if form.shape.name == HEAD_SHAPE.name and form.replaced_piece is not None:
             grown = len(form.lines) - form.replaced_piece.line_count
-            moved = [_moved(each, grown) for each in self.pieces if each.filled_shape.shape is not form.shape]
+            moved = [
+                shift_piece(each, grown) for each in self.pieces if each.filled_shape.shape is not form.shape
+            ]
             text, stay = rewrite_pieces(text, self.shop_data, moved)
             if stay == 1:
                 said = tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
@@ -503,11 +483,3 @@ def _keys_of(form: ShapeForm) -> str:
     if form.selected_point >= 0:
         return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE")
     return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE")
-
-
-def _moved(piece: ShapePiece, by: int) -> ShapePiece:
-    return replace(
-        piece,
-        first_line=piece.first_line + by,
-        edited_line=piece.edited_line + by if piece.edited_line >= 0 else -1,
-    )

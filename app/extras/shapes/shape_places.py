@@ -1,0 +1,41 @@
+"""The places of shapes in a program: the shape at a line, and the line for a new shape."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from core.extras.shapes.shape_pieces import ShapePiece, ends_program, starts_subroutine
+from core.language.source import Dialect
+
+
+def find_piece(pieces: Sequence[ShapePiece], line: int) -> ShapePiece | None:
+    """Return the piece that contains a line, counted from 0, or None."""
+    return next((each for each in pieces if each.first_line <= line < each.next_line), None)
+
+
+def find_insertion_line(
+    program_lines: Sequence[str], pieces: Sequence[ShapePiece], line: int, dialect: Dialect
+) -> int:
+    """Return the line for a new shape.
+
+    The line is after the piece at the cursor and before the end of the program.
+    """
+    here = find_piece(pieces, line)
+    at = here.next_line if here is not None else min(line + 1, len(program_lines))
+    ends = [n for n, each in enumerate(program_lines) if ends_program(each, dialect)]
+    started = [n for n, each in enumerate(program_lines) if starts_subroutine(each)]
+    for end in ends:
+        begin = max((n for n in started if n < end), default=-1)
+        if at <= end or end == ends[-1]:
+            return max(min(at, end), begin + 1)
+    return at
+
+
+def shift_piece(piece: ShapePiece, by: int) -> ShapePiece:
+    """Return the piece moved down by a number of lines."""
+    return replace(
+        piece,
+        first_line=piece.first_line + by,
+        edited_line=piece.edited_line + by if piece.edited_line >= 0 else -1,
+    )
