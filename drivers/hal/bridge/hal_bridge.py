@@ -21,6 +21,7 @@ from drivers.hal.bridge.packets import (
 )
 from drivers.hal.bridge.row_streams import HalPins, RowStream, RowStreams, SampleStream
 from drivers.hal.bridge.setpoint_player import SetpointPlayer, make_row_function
+from drivers.hal.bridge.spindle_pins import SpindlePins
 from drivers.setpoint_pieces import INFINITY, MotionPiece
 
 DRIVER_TIMEOUT_S = 0.25  # Seconds without a packet of the driver.
@@ -31,7 +32,6 @@ _MAX_CYCLE_SLICE_S = (
 _CHAIN_CLOSE_S = 0.1  # Seconds in which the chain must close.
 _WATCHDOG_RESTART_S = 0.006  # Seconds for which the watchdog is off to restart it.
 _RESET_PULSE_S = 0.05  # Duration of the reset pulse in s.
-_ORIENT_OFF_S = 0.005  # Seconds for which the orient pin is off before a new angle.
 _MAX_SLEW_IN_MOTION = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
 _MAX_SLEW_AT_REST = 0.05
 _CORRECTION_TIME_S = 0.5  # Seconds in which a difference is corrected.
@@ -58,6 +58,7 @@ class HalBridge:
         self.pins = pins
         self.setpoint_player = SetpointPlayer(len(config.axes))
         self.row_streams = RowStreams(streams, pins)
+        self.spindle_pins = SpindlePins(config, pins)
         self._sampler = sampler
         self._now = now
         self._orders: deque[tuple[PacketHead, Sequence[float]]] = deque()
@@ -86,9 +87,6 @@ class HalBridge:
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
-        self._c_at: float | None = None  # Position of C in HAL's count when it was engaged.
-        self._c_from = INFINITY  # Time when the drive changes to position mode.
-        self._orient_from = INFINITY  # Time when the orientation starts.
         self._close_chain()  # The chain is closed in advance for later commands of the control.
         self._acts: Mapping[str, Callable[[PacketHead, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
@@ -99,13 +97,13 @@ class HalBridge:
             "off": lambda _head, _numbers: self._power_off(),
             "ramp-off": lambda _head, _numbers: self._ramp_off(),
             "clear": lambda _head, _numbers: self._clear(),
-            "spindle": self._spindle,
+            "spindle": lambda head, _numbers: self.spindle_pins.set_speed(head),
             "out": self._output,
             "safe": lambda _head, _numbers: self._safe(),
             "homing": self._handle_home,
             "index": self._handle_index,
             "c": self._handle_hold_c,
-            "orient": self._handle_orient,
+            "orient": lambda head, _numbers: self.spindle_pins.orient(head, self._now()),
             "end": self._end,
         }
 
@@ -171,9 +169,8 @@ class HalBridge:
             "parted": self._parted,
             "stands": self._is_thread_stopped,
             "stale": self._is_stale,
-            "orients": "orient" in self.config.spindle and bool(self.pins["spindle.orient"]),
-            # After the drive has changed to position mode.
-            "c_at": self._c_at if self._c_from == INFINITY else None,
+            "orients": self.spindle_pins.is_orienting,
+            "c_at": self.spindle_pins.held_c_position,
         }
         self._latest, self._least = 0.0, INFINITY
         return pack_packet(head, rows)
@@ -282,7 +279,7 @@ class HalBridge:
 
     def _open_chain(self) -> None:
         """Switch spindle and outputs off, so that they stay off when the chain is closed again."""
-        self._spindle_off()
+        self.spindle_pins.switch_off()
         for name, safe in self.config.outputs.items():
             if safe is not None and name not in self.config.lamps:
                 self.pins[f"out.{name}"] = safe
@@ -406,12 +403,7 @@ class HalBridge:
         if self._grant_at <= now:
             self._grant_at, self._granted = INFINITY, now
             self.pins["enable"] = 1
-        if self._c_from <= now:
-            self._c_from = INFINITY
-            self.pins["spindle.position_mode"] = 1
-        if self._orient_from <= now:
-            self._orient_from = INFINITY
-            self.pins["spindle.orient"] = 1
+        self.spindle_pins.update(now)
         if self._off_at <= now:
             self._power_off()
 
@@ -421,7 +413,7 @@ class HalBridge:
         self._grant_at = self._off_at = INFINITY
         self._granted = -INFINITY
         self._homing.clear()
-        self._release_c()
+        self.spindle_pins.release_c()
         self.setpoint_player.reset_to(self._place)
 
     def _ramp_off(self) -> None:
@@ -434,55 +426,18 @@ class HalBridge:
         self.fault = self.fault_code = ""
         self._close_chain()
 
-    def _spindle(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        rpm, on = number(head, "rpm"), head.get("on") is True
-        if on and not self.pins["chain-ok"]:
-            return
-        said = {"speed": rpm, "on": on, "forward": on and rpm >= 0.0, "reverse": on and rpm < 0.0}
-        if on:
-            self._release_c()
-        self._release_angle()
-        for name, value in said.items():
-            if name in self.config.spindle:
-                self.pins[f"spindle.{name}"] = value
-
     def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Set C's setpoint to the position of the spindle, and change the drive when HAL plays it."""
         if head.get("on") is not True:
-            self._release_c()
+            self.spindle_pins.release_c()
         elif self._on:
             place = list(self._target())
             for index, axis in enumerate(self.config.axes):
                 if axis.is_spindle:
-                    place[index] = self._c_at = self._place[index]
+                    place[index] = self.spindle_pins.c_position = self._place[index]
             self.setpoint_player.reset_to(place)
             self._recall(self.row_streams.earliest_recall_time())
-            self._c_from = self.row_streams.last_row_due_s
-
-    def _release_c(self) -> None:
-        self._c_at, self._c_from = None, INFINITY
-        if "position_mode" in self.config.spindle:
-            self.pins["spindle.position_mode"] = 0
-
-    def _handle_orient(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Orient the spindle; ``orient`` falls first, because its rising edge latches the angle."""
-        self._release_angle()
-        if head.get("on") is not True or not self.pins["chain-ok"]:
-            return
-        self.pins["spindle.orient_angle"] = number(head, "angle")
-        self.pins["spindle.orient_mode"] = int(number(head, "mode"))
-        self._orient_from = self._now() + _ORIENT_OFF_S
-
-    def _release_angle(self) -> None:
-        self._orient_from = INFINITY
-        if "orient" in self.config.spindle:
-            self.pins["spindle.orient"] = 0
-
-    def _spindle_off(self) -> None:
-        self._release_c()
-        self._release_angle()
-        for name in self.config.spindle:
-            self.pins[f"spindle.{name}"] = 0
+            self.spindle_pins.request_position_mode(self.row_streams.last_row_due_s)
 
     def _output(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         name, on = text(head, "name"), head.get("on") is True
@@ -522,7 +477,7 @@ class HalBridge:
         if not self._parted:
             self._parted, self._heard = True, min(self._heard, now - DRIVER_TIMEOUT_S)
             self._left_at = now
-            self._spindle_off()
+            self.spindle_pins.switch_off()
             self._safe()
         if self.has_driver_ended:
             self._power_off()
