@@ -7310,6 +7310,16 @@
     </message>
     <message>
       <location filename="app/editor/editor_model.py" />
+      <source>LEAVE</source>
+      <translation>SALIR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_model.py" />
+      <source>LOAD</source>
+      <translation>CARGA</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_model.py" />
       <source>{document} SAVED</source>
       <translation>{document} GUARDADO</translation>
     </message>
@@ -7317,6 +7327,11 @@
       <location filename="app/editor/editor_model.py" />
       <source>{error}. ESC: BACK</source>
       <translation>{error}. ESC: VOLVER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/editor_modes.py" />
+      <source>go to</source>
+      <translation>ir a</translation>
     </message>
     <message>
       <location filename="app/editor/editor_parts_view.py" />
@@ -7379,11 +7394,6 @@
       <translation>ALEJAR</translation>
     </message>
     <message>
-      <location filename="app/editor/editor_parts_view.py" />
-      <source>go to</source>
-      <translation>ir a</translation>
-    </message>
-    <message>
       <location filename="app/editor/editor_view.py" />
       <source>ABORT</source>
       <translation>CANCELAR</translation>
@@ -7435,18 +7445,8 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>LEAVE</source>
-      <translation>SALIR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>LINE {line}: {value} {hint}</source>
       <translation>LÍNEA {line}: {value} {hint}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
-      <source>LOAD</source>
-      <translation>CARGA</translation>
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
@@ -7890,153 +7890,13 @@
     </message>
     <message>
       <location filename="app/extras/analyses/analyses.py" />
-      <source>A dash means that the arc is too short to calculate the value.</source>
-      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ADDED DEPTH</source>
-      <translation>PROF. AÑADIDA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home, X as a radius.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Axis positions are measured from home.</source>
-      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BACKLASH {axis}</source>
-      <translation>JUEGO {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>BALL BAR</source>
-      <translation>BALL BAR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
       <source>CALCULATING …</source>
       <translation>CALCULANDO …</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/analyses.py" />
-      <source>ENTRY ANGLE</source>
-      <translation>ÁNG. DE ENTRADA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Flank infeed shifts the entry angle with the depth.</source>
-      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>LEAD ERROR</source>
-      <translation>ERROR DE PASO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Largest error: {distance}</source>
-      <translation>Error mayor: {distance}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Lead: {lead} per revolution</source>
-      <translation>Paso: {lead} por vuelta</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
-      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PASS</source>
-      <translation>Nº</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH DEVIATION</source>
-      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>PATH ERROR</source>
-      <translation>ERROR DE TRAYECTORIA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>Positive values are to the left of the direction of travel.</source>
-      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RADIUS ERROR</source>
-      <translation>ERROR DE RADIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RESPONSE</source>
-      <translation>RESPUESTA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>REVERSAL SPIKE {axis}</source>
-      <translation>PICO DE INVERSIÓN {axis}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>ROUNDNESS</source>
-      <translation>REDONDEZ</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>RPM DROP</source>
-      <translation>CAÍDA RPM</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SCALE OF {value} RELATIVE TO {v}</source>
-      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>SQUARENESS ERROR</source>
-      <translation>ERROR DE PERPENDICULARIDAD</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>THREAD</source>
-      <translation>ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
       <source>THREAD DEVIATION</source>
       <translation>DESVIACIÓN DE LA ROSCA</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
-      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
-      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The table shows the worst point of each line.</source>
-      <translation>La tabla muestra el peor punto de cada línea.</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>The thread entry angles agree within {angle}°</source>
-      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/analyses.py" />
@@ -8050,16 +7910,6 @@
     </message>
     <message>
       <location filename="app/extras/analyses/analyses.py" />
-      <source>last move: commanded position, actual position and following error over time in seconds</source>
-      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
-      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
       <source>this time range does not contain an arc of 60 degrees or more; cut an arc of this size while recording</source>
       <translation>este intervalo no contiene ningún arco de 60 grados o más; corte un arco de ese tamaño mientras graba</translation>
     </message>
@@ -8067,11 +7917,6 @@
       <location filename="app/extras/analyses/analyses.py" />
       <source>thread passes overlaid by spindle angle: deviation from the thread, and spindle speed</source>
       <translation>pasadas de rosca superpuestas por ángulo del husillo: desviación de la rosca, y velocidad del husillo</translation>
-    </message>
-    <message>
-      <location filename="app/extras/analyses/analyses.py" />
-      <source>{fixed} mm/m</source>
-      <translation>{fixed} mm/m</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/analyses.py" />
@@ -8085,13 +7930,168 @@
     </message>
     <message>
       <location filename="app/extras/analyses/analyses_view.py" />
+      <source>BALL BAR</source>
+      <translation>BALL BAR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
       <source>NEXT ARC</source>
       <translation>OTRO ARC</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/analyses_view.py" />
+      <source>RESPONSE</source>
+      <translation>RESPUESTA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
       <source>TEST</source>
       <translation>PRUEBA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analyses_view.py" />
+      <source>THREAD</source>
+      <translation>ROSCA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_result.py" />
+      <source>PATH ERROR</source>
+      <translation>ERROR DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>A dash means that the arc is too short to calculate the value.</source>
+      <translation>Una raya indica que el arco es demasiado corto para calcular el valor.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>ADDED DEPTH</source>
+      <translation>PROF. AÑADIDA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Axis positions are measured from home, X as a radius.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia, X como radio.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Axis positions are measured from home.</source>
+      <translation>Las posiciones de los ejes se miden desde la referencia.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>BACKLASH {axis}</source>
+      <translation>JUEGO {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>ENTRY ANGLE</source>
+      <translation>ÁNG. DE ENTRADA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Flank infeed shifts the entry angle with the depth.</source>
+      <translation>La penetración por un flanco desplaza el ángulo de entrada según la profundidad.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>LEAD ERROR</source>
+      <translation>ERROR DE PASO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Largest error: {distance}</source>
+      <translation>Error mayor: {distance}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Lead: {lead} per revolution</source>
+      <translation>Paso: {lead} por vuelta</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Line {line}, arc {number} of {count}: radius {radius}, {angle}°</source>
+      <translation>Línea {line}, arco {number} de {count}: radio {radius}, {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>PASS</source>
+      <translation>Nº</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>PATH DEVIATION</source>
+      <translation>DESVIACIÓN DE TRAYECTORIA</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>Positive values are to the left of the direction of travel.</source>
+      <translation>Los valores positivos quedan a la izquierda del sentido de avance.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>RADIUS ERROR</source>
+      <translation>ERROR DE RADIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>REVERSAL SPIKE {axis}</source>
+      <translation>PICO DE INVERSIÓN {axis}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>ROUNDNESS</source>
+      <translation>REDONDEZ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>RPM DROP</source>
+      <translation>CAÍDA RPM</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>SCALE OF {value} RELATIVE TO {v}</source>
+      <translation>ESCALA DE {value} RESPECTO A {v}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>SQUARENESS ERROR</source>
+      <translation>ERROR DE PERPENDICULARIDAD</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>The axis is fast enough to cut this lead at up to {rpm} rpm</source>
+      <translation>El eje es bastante rápido para tallar este paso hasta {rpm} rpm</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>The encoder cannot measure backlash between the encoder and the tool.</source>
+      <translation>El encoder no puede medir el juego entre el encoder y la herramienta.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>The table shows the worst point of each line.</source>
+      <translation>La tabla muestra el peor punto de cada línea.</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>The thread entry angles agree within {angle}°</source>
+      <translation>Los ángulos de entrada de la rosca coinciden en {angle}°</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>last move: commanded position, actual position and following error over time in seconds</source>
+      <translation>último movimiento: posición de consigna, posición real y error de seguimiento en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>last spindle speed change: commanded and actual speed over time in seconds</source>
+      <translation>último cambio de velocidad del husillo: velocidad de consigna y real en segundos</translation>
+    </message>
+    <message>
+      <location filename="app/extras/analyses/analysis_tables.py" />
+      <source>{fixed} mm/m</source>
+      <translation>{fixed} mm/m</translation>
     </message>
     <message>
       <location filename="app/extras/analyses/axis_response.py" />
@@ -10134,6 +10134,16 @@
       <translation>compartir programas con otros controles: publicar, tomar, comparar</translation>
     </message>
     <message>
+      <location filename="app/extras/sharing/local_program_files.py" />
+      <source>the file is larger than {most_bytes} MB</source>
+      <translation>el archivo es mayor de {most_bytes} MB</translation>
+    </message>
+    <message>
+      <location filename="app/extras/sharing/local_program_files.py" />
+      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
+      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
+    </message>
+    <message>
       <location filename="app/extras/sharing/sharing.py" />
       <source>copied from {machine}</source>
       <translation>copiado de {machine}</translation>
@@ -10147,16 +10157,6 @@
       <location filename="app/extras/sharing/sharing.py" />
       <source>shared by {machine}</source>
       <translation>compartido por {machine}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>the file is larger than {most_bytes} MB</source>
-      <translation>el archivo es mayor de {most_bytes} MB</translation>
-    </message>
-    <message>
-      <location filename="app/extras/sharing/sharing.py" />
-      <source>the name of another program on this control differs from the name of this program only in upper and lower case: rename one of the programs</source>
-      <translation>el nombre de otro programa de este control difiere del nombre de este programa solo en mayúsculas y minúsculas: cambie el nombre de uno de los programas</translation>
     </message>
     <message>
       <location filename="app/extras/sharing/sharing.py" />
@@ -10985,11 +10985,6 @@
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
-      <source>, this tool only</source>
-      <translation>, solo esta herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
       <source>AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN</source>
       <translation>EL EJE SE MOVIÓ TRAS EL TOQUE. PULSE ESC Y TOQUE OTRA VEZ</translation>
     </message>
@@ -11012,11 +11007,6 @@
       <location filename="app/jog/tool_setting.py" />
       <source>TOOL NUMBER?</source>
       <translation>¿NÚMERO DE HERRAMIENTA?</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
-      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -11052,41 +11042,6 @@
       <location filename="app/jog/tool_setting.py" />
       <source>no tools</source>
       <translation>ninguna herramienta</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>skim cut Z</source>
-      <translation>pasada de medida Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>skim cut Ø</source>
-      <translation>pasada de medida Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>the {axis} offset would be outside the allowed range</source>
-      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off Z</source>
-      <translation>toque Z</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off of a new tool</source>
-      <translation>toque de una herramienta nueva</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>touch-off Ø</source>
-      <translation>toque Ø</translation>
-    </message>
-    <message>
-      <location filename="app/jog/tool_setting.py" />
-      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
-      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
     </message>
     <message>
       <location filename="app/jog/tool_setting.py" />
@@ -11187,6 +11142,51 @@
       <location filename="app/jog/tool_setting_view.py" />
       <source>zero point from the machine file</source>
       <translation>punto cero del archivo de máquina</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>, this tool only</source>
+      <translation>, solo esta herramienta</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>TOUCH OFF ONLY WITH THE MACHINE STOPPED AND READY</source>
+      <translation>TOQUE SOLO CON LA MÁQUINA PARADA Y LISTA</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>skim cut Z</source>
+      <translation>pasada de medida Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>skim cut Ø</source>
+      <translation>pasada de medida Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>the {axis} offset would be outside the allowed range</source>
+      <translation>el corrector {axis} quedaría fuera del rango permitido</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>touch-off Z</source>
+      <translation>toque Z</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>touch-off of a new tool</source>
+      <translation>toque de una herramienta nueva</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>touch-off Ø</source>
+      <translation>toque Ø</translation>
+    </message>
+    <message>
+      <location filename="app/jog/tool_touch_off.py" />
+      <source>{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST</source>
+      <translation>{axis} NO TIENE REFERENCIA Y SU POSICIÓN NO SE CONOCE. REFERÉNCIELO ANTES</translation>
     </message>
     <message>
       <location filename="app/mdi/mdi_model.py" />
@@ -13269,6 +13269,31 @@
       <translation>{path} NO SE GUARDÓ: DISCO LLENO. BORRE REGISTROS O PROGRAMAS</translation>
     </message>
     <message>
+      <location filename="app/scope/scope_files.py" />
+      <source>DELETED: {path}</source>
+      <translation>BORRADO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_files.py" />
+      <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
+      <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_files.py" />
+      <source>SAVED: {path}</source>
+      <translation>GUARDADO: {path}</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_files.py" />
+      <source>THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE</source>
+      <translation>EL REGISTRO NO CONTIENE MUESTRAS DE ESTE INTERVALO</translation>
+    </message>
+    <message>
+      <location filename="app/scope/scope_files.py" />
+      <source>record {path} deleted</source>
+      <translation>registro {path} borrado</translation>
+    </message>
+    <message>
       <location filename="app/scope/scope_function.py" />
       <source>CHANNELS</source>
       <translation>CANALES</translation>
@@ -13320,28 +13345,8 @@
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
-      <source>DELETED: {path}</source>
-      <translation>BORRADO: {path}</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_model.py" />
       <source>NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD</source>
       <translation>SIN DATOS DEL OSCILOSCOPIO EN ESTA MÁQUINA. F9: ABRIR UN REGISTRO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_model.py" />
-      <source>PRESS Y TO DELETE {path}, N TO KEEP IT</source>
-      <translation>PULSE Y PARA BORRAR {path}, N PARA CONSERVARLO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_model.py" />
-      <source>SAVED: {path}</source>
-      <translation>GUARDADO: {path}</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_model.py" />
-      <source>THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE</source>
-      <translation>EL REGISTRO NO CONTIENE MUESTRAS DE ESTE INTERVALO</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -13352,11 +13357,6 @@
       <location filename="app/scope/scope_model.py" />
       <source>TRIGGERED</source>
       <translation>DISPARADO</translation>
-    </message>
-    <message>
-      <location filename="app/scope/scope_model.py" />
-      <source>record {path} deleted</source>
-      <translation>registro {path} borrado</translation>
     </message>
     <message>
       <location filename="app/scope/scope_model.py" />
@@ -18414,6 +18414,16 @@
       <translation>la velocidad del husillo cambió más rápido de lo que los ejes podían seguir; revise la rosca</translation>
     </message>
     <message>
+      <location filename="core/executor/program_motion/spindle_angle.py" />
+      <source>the spindle does not turn</source>
+      <translation>el husillo no gira</translation>
+    </message>
+    <message>
+      <location filename="core/executor/program_motion/spindle_angle.py" />
+      <source>the spindle encoder does not count</source>
+      <translation>el encoder del husillo no cuenta</translation>
+    </message>
+    <message>
       <location filename="core/executor/program_motion/standstill.py" />
       <source>Cycle Repeat switched off by M31</source>
       <translation>repetir ciclo apagado por M31</translation>
@@ -18715,18 +18725,8 @@
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
-      <source>the spindle does not turn</source>
-      <translation>el husillo no gira</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
       <source>the spindle drive reports a speed that is not a number</source>
       <translation>el variador del husillo da una velocidad que no es un número</translation>
-    </message>
-    <message>
-      <location filename="core/executor/spindle_control.py" />
-      <source>the spindle encoder does not count</source>
-      <translation>el encoder del husillo no cuenta</translation>
     </message>
     <message>
       <location filename="core/executor/spindle_control.py" />
@@ -22089,6 +22089,46 @@
       <translation>{word} {feed} con S{rpm} da un avance de {count}, que supera el máximo.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>LN with 3D compensation (DL, DR, DR2, RL, RR)</source>
+      <translation>LN con compensación 3D (DL, DR, DR2, RL, RR)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>LN with a tool direction vector (TX TY TZ)</source>
+      <translation>LN con un vector de dirección de la herramienta (TX TY TZ)</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the PLANE block.</source>
+      <translation>Posicione los ejes giratorios antes del corte con L A+Q120 C+Q122 R0 FMAX, o escriba TURN en el bloque PLANE.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>Remove the word.</source>
+      <translation>Quite la palabra.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>Start the spindle with M3 or M4.</source>
+      <translation>Arranque el husillo con M3 o M4.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>The position of {off} does not match the plane programmed on line {line}.</source>
+      <translation>La posición de {off} no corresponde al plano programado en la línea {line}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>The spindle is stopped during this feed move.</source>
+      <translation>El husillo está parado durante este movimiento de avance.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/motion/path_checks.py" />
+      <source>This machine has no {axis} axis.</source>
+      <translation>Esta máquina no tiene eje {axis}.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/klartext/motion/path_elements.py" />
       <source>An arc with R {radius} mm cannot connect two points {chord} mm apart.</source>
       <translation>Un arco con R {radius} mm no puede unir dos puntos a {chord} mm de distancia.</translation>
@@ -22220,21 +22260,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>LN with 3D compensation (DL, DR, DR2, RL, RR)</source>
-      <translation>LN con compensación 3D (DL, DR, DR2, RL, RR)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>LN with a tool direction vector (TX TY TZ)</source>
-      <translation>LN con un vector de dirección de la herramienta (TX TY TZ)</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the PLANE block.</source>
-      <translation>Posicione los ejes giratorios antes del corte con L A+Q120 C+Q122 R0 FMAX, o escriba TURN en el bloque PLANE.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>Put RND or CHF between two contour elements.</source>
       <translation>Ponga RND o CHF entre dos elementos del contorno.</translation>
     </message>
@@ -22245,38 +22270,13 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>Remove the word.</source>
-      <translation>Quite la palabra.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>R{compensation} is not allowed while R{side} is active.</source>
       <translation>R{compensation} no está permitido con R{side} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>Start the spindle with M3 or M4.</source>
-      <translation>Arranque el husillo con M3 o M4.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>The position of {off} does not match the plane programmed on line {line}.</source>
-      <translation>La posición de {off} no corresponde al plano programado en la línea {line}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
       <source>The program ends while radius compensation is active.</source>
       <translation>El programa termina con la compensación de radio activa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>The spindle is stopped during this feed move.</source>
-      <translation>El husillo está parado durante este movimiento de avance.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/motion/path_functions.py" />
-      <source>This machine has no {axis} axis.</source>
-      <translation>Esta máquina no tiene eje {axis}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/motion/path_functions.py" />
@@ -25464,6 +25464,26 @@
       <translation>{parameter} de {call} es un parámetro VAR, así que la llamada debe pasar una variable.</translation>
     </message>
     <message>
+      <location filename="core/interpreter/sinumerik/flow/variable_assignments.py" />
+      <source>Shorten the list.</source>
+      <translation>Acorte la lista.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variable_assignments.py" />
+      <source>Write DEF REAL {word} before this block.</source>
+      <translation>Escriba DEF REAL {word} antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variable_assignments.py" />
+      <source>the name {name} is not defined: it is neither a word nor a variable of this program.</source>
+      <translation>el nombre {name} no está definido: no es una palabra ni una variable de este programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/flow/variable_assignments.py" />
+      <source>{word}: the array needs {left} more elements for this list.</source>
+      <translation>{word}: al array le faltan {left} elementos para esta lista.</translation>
+    </message>
+    <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use a variable of type REAL or INT.</source>
       <translation>Use una variable de tipo REAL o INT.</translation>
@@ -25477,11 +25497,6 @@
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
       <source>Use indices from 0; the last element is {letters}[{last}].</source>
       <translation>Use índices desde 0; el último elemento es {letters}[{last}].</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/flow/variables.py" />
-      <source>Write DEF REAL {word} before this block.</source>
-      <translation>Escriba DEF REAL {word} antes de este bloque.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/flow/variables.py" />
@@ -26735,11 +26750,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>Shorten the list.</source>
-      <translation>Acorte la lista.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Use a different function, or correct "control" under [machine] in the machine file.</source>
       <translation>Use otra función, o corrija "control" en [machine] del archivo de máquina.</translation>
     </message>
@@ -26752,11 +26762,6 @@
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>the line is part of a corner or a contour in {transformed}; start before the approach</source>
       <translation>la línea forma parte de una esquina o un contorno en {transformed}; empiece antes de la entrada</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>the name {name} is not defined: it is neither a word nor a variable of this program.</source>
-      <translation>el nombre {name} no está definido: no es una palabra ni una variable de este programa.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
@@ -26777,11 +26782,6 @@
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>{word} is effective only in a block that moves an axis.</source>
       <translation>{word} sólo actúa en un bloque que mueve un eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>{word}: the array needs {left} more elements for this list.</source>
-      <translation>{word}: al array le faltan {left} elementos para esta lista.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_state.py" />
