@@ -21,7 +21,7 @@ _ABORT_PURPOSE = "abort"
 
 
 class GrblBlocks:
-    """``core.ports.BlockController`` of one grblHAL controller.
+    """``core.block_ports.BlockController`` of one grblHAL controller.
 
     Only the thread of the executor may call the methods.
     """

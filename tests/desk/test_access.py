@@ -103,7 +103,7 @@ NO_CHANGE = {
     "programs/atomic_files.py": "how a file is written; who calls it asks",
     "extras/quality/parts_data.py": "readings, to a file of whoever asks",
     "extras/quality/shift_function.py": "a report",
-    "scope/recording_store.py": "how records are kept; asked by scope_model.py",
+    "scope/recording_store.py": "how records are kept; asked by scope_files.py",
     "shopfloor/status_file.py": "what the machine does, for other programs",
     "special/setup_sheet_work.py": "the sheet on paper",
 }
