@@ -1,6 +1,6 @@
-"""Page EDITOR (F3): the text with its margin, the path, and the findings of the proof.
+"""Editor page (F3): the text with its margin, the path, and the findings of the proof.
 
-All functions are available from the keyboard, and every function key is a touch target.
+All functions are available from the keyboard, and every function key is also a touch target.
 """
 
 from __future__ import annotations
@@ -45,9 +45,9 @@ KeyActionMap = dict[int, Callable[[], None]]
 
 
 class EditorPage(EditorParts):
-    """Editor page; opens with the loaded program or with a typed name.
+    """Editor page, which opens with the loaded program or with a program whose name was typed.
 
-    Keys of the question line arrive in ``eventFilter``.
+    The method ``eventFilter`` receives the keys of the question line.
     """
 
     NAME = page_table.EDITOR
@@ -78,18 +78,21 @@ class EditorPage(EditorParts):
     # --- calls of the main window --------------------------------------------------------------------
 
     def can_open(self) -> bool:
-        """Return whether the editor can open. It cannot while a program runs or the spindle turns."""
+        """Return whether the editor can open.
+
+        The editor cannot open while a program runs or the spindle turns.
+        """
         return self.editor.stage is not EditorStage.CLOSED or open_editor(self.desk, self.editor)
 
     def on_open(self) -> None:
-        """Reset the page. The program is being read."""
+        """Reset the page while the program is being read."""
         self._target = page_table.AUTOMATIC
         self.enter_mode(EditorMode.TEXT)
 
     def try_leave(self) -> bool:
         """Start saving and return whether the page can close now.
 
-        Otherwise it closes after saving.
+        If the result is False, the page closes after the file is saved.
         """
         if self.editor.stage is EditorStage.OFFERED:
             self.editor.cancel_offer()
@@ -115,11 +118,18 @@ class EditorPage(EditorParts):
         return found
 
     def is_esc_stop_key(self) -> bool:
-        """Return whether Esc stops the axes during motion, which it does unless a question is pending."""
+        """Return whether Esc stops the axes during motion.
+
+        Esc does not stop the axes while a question is pending.
+        """
         return not self.editor.message and self.editor.stage is not EditorStage.OFFERED
 
     def handle_escape(self) -> bool:
-        """Cancel the question, the mode or the message. Leave the editor without unsaved changes."""
+        """Cancel the question, mode or message, or else close the editor.
+
+        The editor does not close if the text has unsaved changes. During motion, Esc starts a feed hold
+        instead, unless a question is pending. Returns False if the window must handle Esc.
+        """
         if self._moving and self.is_esc_stop_key():
             self.desk.start_feed_hold()  # Esc must do the safe action on every page.
         elif self.editor.stage is EditorStage.OFFERED:
@@ -143,7 +153,7 @@ class EditorPage(EditorParts):
         return self.editor.message if self.editor.pending_action else ""
 
     def prompt_text(self) -> str:
-        """Return the last message, or else the finding in the cursor line."""
+        """Return the last message, or else the finding of the cursor line."""
         if self.editor.message:
             return self.editor.message
         if self._moving:
@@ -250,7 +260,7 @@ class EditorPage(EditorParts):
         }
 
     def enter_mode(self, mode: EditorMode) -> None:
-        """Switch to a mode."""
+        """Switch the page to a mode and show its parts."""
         self.mode = mode
         self._update_question_line()
         self.show_mode()
@@ -281,7 +291,10 @@ class EditorPage(EditorParts):
         self.text_field.setFocus()
 
     def _show_finding(self, found: Diagnostic) -> None:
-        """Move the cursor to a finding. For a finding in the part, show the part after that line."""
+        """Move the cursor to a finding.
+
+        For a finding about the part, the picture shows the part after that line.
+        """
         self.move_cursor_to(found.line, found.column)
         if found.block_number:
             self.path_view.show_part()
@@ -299,16 +312,16 @@ class EditorPage(EditorParts):
         self.editor.save_document(self.typed_text.read_text())
 
     def save_and_open_page(self, page_name: str) -> None:
-        """Save the text and go to another page."""
+        """Save the text and open another page."""
         self._target = page_name
         self.editor.save_and_leave(self.typed_text.read_text(), should_load=page_name == page_table.AUTOMATIC)
 
     def discard_and_leave(self) -> None:
-        """Leave without saving."""
+        """Close the editor without saving."""
         self.editor.discard_and_leave(self.typed_text.read_text())
 
     def confirm_question(self) -> None:
-        """Confirm the editor's question."""
+        """Confirm the pending question of the editor."""
         self.editor.confirm_question(self.typed_text.read_text())
 
     def restore_version(self) -> None:
@@ -318,7 +331,7 @@ class EditorPage(EditorParts):
             self.enter_mode(EditorMode.TEXT)
 
     def complete_code(self) -> None:
-        """Complete the typed code, or look up the code at the cursor."""
+        """Complete the typed code, or show the code at the cursor in the list of codes."""
         if self.editor.stage is not EditorStage.OPEN or self.mode not in {EditorMode.TEXT, EditorMode.CODES}:
             return
         if self.code_list.open_choices():
@@ -327,14 +340,17 @@ class EditorPage(EditorParts):
             self.editor.message = messages.PROOF_PENDING
 
     def focus_path(self) -> None:
-        """Give the keyboard to the path, for measuring and for finding the line of a move."""
+        """Move the keyboard focus to the path, to measure it or to find the line of a move."""
         if self.path_view.has_path:
             self.enter_mode(EditorMode.PATH)
         else:
             self.editor.message = messages.NO_PATH
 
     def open_panel(self, key_name: str = "") -> None:
-        """Open the panel of an optional feature by its key. From the panel, return to the text."""
+        """Open the panel of an optional feature by its key.
+
+        If a panel is already open, return to the text.
+        """
         if self.mode is EditorMode.PANEL:
             self.return_to_text()
         elif self.editor.stage is EditorStage.OPEN and self.mode is EditorMode.TEXT:
@@ -348,14 +364,14 @@ class EditorPage(EditorParts):
                 self.enter_mode(EditorMode.PANEL)
 
     def _make_from_file(self, file: Path) -> None:
-        """Open the form for the file from which this program is generated."""
+        """Open the form for the drawing file from which this program is generated."""
         self.editor.source_drawing = None
         self.open_panel()
         if self.mode is EditorMode.PANEL:
             self.editor_panel.model.open_file(file)
 
     def _update_panel(self) -> None:
-        """Prove the preview of the form, and put the written text into the field."""
+        """Prove the preview of the form, and copy the text that the form has written into the text field."""
         model, (proved, written) = self.editor_panel.model, self._shown_panel
         model.poll()
         if model.write_count != written:
@@ -367,19 +383,19 @@ class EditorPage(EditorParts):
         self.editor_panel.refresh()
 
     def handle_key(self, key: str) -> bool:
-        """Pass a key to the panel's form or list, and return whether it was used."""
+        """Pass a key to the form or list of the panel, and return whether it was used."""
         return self.mode is EditorMode.PANEL and self.editor_panel.model.handle_key(key)
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is text of the form."""
+        """Return whether the form accepts a character as text."""
         return self.mode is EditorMode.PANEL and self.editor_panel.model.accepts_key(key)
 
     def has_text_field(self) -> bool:
-        """Return whether the form has the keyboard."""
+        """Return whether the form has the keyboard focus."""
         return self.mode is EditorMode.PANEL
 
     def _jump_to_line(self) -> None:
-        """Move the cursor to the line whose path is at the crosshair."""
+        """Move the cursor to the line that programs the path at the crosshair."""
         self.editor.message = self.path_view.jump_to_path_line()
 
     # --- question line ---------------------------------------------------------------------------------
@@ -399,7 +415,7 @@ class EditorPage(EditorParts):
             self.question_line.hide()
 
     def _accept_entry(self) -> None:
-        """Accept the entry of the question line."""
+        """Accept the entry in the question line."""
         entry = self.question_line.first_field.text()
         if self.mode is EditorMode.FIND:
             self.text_finder.select_match(1)
@@ -417,7 +433,10 @@ class EditorPage(EditorParts):
     # --- Qt's calls ----------------------------------------------------------------------------------
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Handle keys of the question line. The focused field also receives the drawn keyboard."""
+        """Handle the keys of the question line.
+
+        The field that receives the focus also receives the keys of the drawn keyboard.
+        """
         if event.type() == QEvent.Type.FocusIn and isinstance(watched, QWidget):
             self.letter_pad.set_target_field(watched)
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
@@ -425,7 +444,7 @@ class EditorPage(EditorParts):
         return False
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Handle keys that no field has used, and pass the rest to the main window."""
+        """Handle a key that no field has used, or pass it to the main window."""
         if not self._key(event):
             event.ignore()
 
@@ -436,7 +455,7 @@ class EditorPage(EditorParts):
         return action is not None
 
     def _find_action(self, event: QKeyEvent) -> Callable[[], None] | None:
-        """Return the action of a key other than text and function keys, or None."""
+        """Return the action of a key that is neither text nor a function key, or None."""
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._make_chord_actions().get(key)
@@ -457,7 +476,10 @@ class EditorPage(EditorParts):
         return None
 
     def _make_chord_actions(self) -> KeyActionMap:
-        """Return the actions of Ctrl with a key. Ctrl with arrows pans the path in the path mode."""
+        """Return the actions of the key combinations with Ctrl.
+
+        In the path mode, Ctrl with an arrow key pans the path.
+        """
         find, chords = partial(self.enter_mode, EditorMode.FIND), dict[int, Callable[[], None]]()
         if self.mode is not EditorMode.HISTORY:
             chords = {
@@ -475,7 +497,7 @@ class EditorPage(EditorParts):
         return chords
 
     def _handle_closed(self) -> None:
-        """Show the editor's last message and the requested page after the editor has closed."""
+        """Show the last message of the editor and open the requested page after the editor has closed."""
         if self.editor.message:
             self.desk.say(self.editor.message)
             self.editor.clear_message()

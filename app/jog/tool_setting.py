@@ -1,4 +1,4 @@
-"""Tool setting on the Jog page: selection of a tool, touch-off, and entry of its other fields."""
+"""Tool setting on the Jog page: selecting a tool, touching off, and entering the other fields of the tool."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _NEXT_QUESTIONS = {"wear_x": "wear_z"}  # The question that follows an answer.
 
 @dataclass(slots=True)
 class ToolSetting:
-    """The selected tool with the open question and the entered text."""
+    """Tool setting with the selected tool, the open question and the entered text."""
 
     desk: Desk
     offset_book: OffsetBook
@@ -55,24 +55,24 @@ class ToolSetting:
 
     @property
     def tool_row(self) -> ToolRow | None:
-        """The offset of the selected tool. None if the tool was never set."""
+        """Return the offset of the selected tool, or None if the tool was never set."""
         return self.offset_book.tools.get(self.tool_number)
 
     @property
     def is_master_touched(self) -> bool:
-        """Whether the master tool is being touched off."""
+        """Return whether the master tool is being touched off."""
         return self.question_name in TOUCH_FIELDS and self.tool_row is not None and self.tool_row.master
 
     @property
     def is_setter_result(self) -> bool:
-        """Whether the question is about a measurement of the tool setter."""
+        """Return whether the question is about a measurement of the tool setter."""
         return self.question_name in TOUCH_FIELDS and self.touch_off.measured_value is not None
 
     def ask_setter_result(self, quantity: str, value: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
-        ``value`` is the machine position in mm with the tip on part zero. A suspicious value is asked only
-        once, by the question for suspicious changes.
+        ``value`` is the machine position in mm with the tool tip at part zero. If the value is suspicious,
+        only the question about suspicious changes is asked.
         """
         self.question_name, self.text = quantity, ""
         self.touch_off.set_measurement(quantity, value, reason)
@@ -82,23 +82,26 @@ class ToolSetting:
             self._enter()
 
     def ask_cut_size(self, quantity: str, position: float) -> None:
-        """Ask for the size of a skim cut. ``at`` is the machine position during the cut in mm."""
+        """Ask for the size of a skim cut.
+
+        ``position`` is the machine position in mm during the cut.
+        """
         self.desk.clear_prompt_line()
         self.question_name, self.text = quantity, ""
         self.touch_off.set_cut(quantity, position)
 
     @property
     def offset_change(self) -> float | None:
-        """The measured position minus the present offset with wear in mm.
+        """Return the measured position minus the present offset including wear, in mm.
 
-        None without a measurement of the tool setter or without a present offset.
+        Returns None if there is no measurement of the tool setter or no present offset.
         """
         if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_value is None:
             return None
         return self.touch_off.measured_value - self.tool_row.offset["xz".index(self.touch_off.field_name)]
 
     def question_text(self) -> str:
-        """Return the open question. Empty without a question."""
+        """Return the text of the open question, or an empty string."""
         name = format_edge_name(self.tool_number)
         if self.question_name == TOOL_QUESTION:
             return tr("TOOL NUMBER?")
@@ -117,7 +120,7 @@ class ToolSetting:
         return f"{name}  {translate_field(self.question_name)}?" if self.question_name else ""
 
     def make_note_text(self) -> str:
-        """Return a note that the operator must read before answering. Empty without a note."""
+        """Return the note that the operator must read before answering, or an empty string."""
         number, new = self.tool_number, self.tool_fields.incomplete_tool
         if self.is_master_touched and self.touch_off.skips_followers:
             return tr(
@@ -140,7 +143,7 @@ class ToolSetting:
         return ""
 
     def describe_change(self) -> str:
-        """Return the change that the entry would make, or else the last change."""
+        """Return a description of the change that the entry would make, or else of the last change."""
         if not self.question_name or self.question_name == TOOL_QUESTION:
             return self.history.last_change_text
         mode, name, row = (
@@ -167,21 +170,24 @@ class ToolSetting:
             return f"{title}  {was}  →  …"  # An incomplete expression is not an error yet.
 
     def _format_difference(self, name: str, mode: ValueMode) -> str:
-        """Return the difference between the measured and the present offset as text."""
+        """Return the difference between the measured offset and the present offset as text."""
         if self.offset_change is None:
             return ""
         shown = 2 * self.offset_change if name == "x" and mode.is_diameter else self.offset_change
         return f"   {tr('DIFFERENCE')} {format_signed(shown, mode.is_metric)}"
 
     def find_tip_position(self, snapshot: Snapshot) -> Pair | None:
-        """Return the position of the tip relative to part zero in mm. None if the tool was never set."""
+        """Return the tip position relative to part zero in mm, or None if the tool was never set."""
         if self.tool_row is None:
             return None
         x, z = self.tool_row.offset
         return snapshot.tip[0] - x, snapshot.tip[1] - z
 
     def find_master_difference(self) -> Pair | None:
-        """Return the offset of this tool minus the master's in mm. None unless both are set."""
+        """Return the offset of this tool minus the offset of the master tool in mm.
+
+        Returns None unless both tools are set.
+        """
         master = self.offset_book.tools.get(self.offset_book.master_number)
         if self.tool_row is None or master is None:
             return None
@@ -191,9 +197,9 @@ class ToolSetting:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self, snapshot: Snapshot) -> None:
-        """Select the active tool when it changes; called once a frame.
+        """Select the active tool when it changes.
 
-        A change of the unit discards the entry.
+        A change of the unit discards the entry. This method is called once per frame.
         """
         before = self.history.value_mode
         self.history.update(snapshot)
@@ -213,7 +219,7 @@ class ToolSetting:
     # --- questions -----------------------------------------------------------------------------------
 
     def open_question(self, quantity: str) -> None:
-        """Open a question, or show why this is not possible."""
+        """Open a question, or show the reason why it cannot be opened."""
         snapshot = self.desk.read_snapshot()
         why = "" if quantity == TOOL_QUESTION else self.find_refusal(quantity, snapshot)
         if why:
@@ -227,7 +233,7 @@ class ToolSetting:
             self.touch_off.begin_touch(quantity, snapshot)
 
     def find_refusal(self, quantity: str, snapshot: Snapshot) -> str:
-        """Return why this question cannot be opened now. Empty if it can."""
+        """Return the reason why a question cannot be opened now, or an empty string."""
         why = self.offset_book.lock_reason or find_change_refusal(
             snapshot, is_correction=quantity in CORRECTION_FIELDS[OffsetKind.TOOL]
         )
@@ -245,22 +251,22 @@ class ToolSetting:
         return ""
 
     def close_question(self) -> None:
-        """Close the question."""
+        """Close the question and discard the entered text."""
         self.question_name, self.text = "", ""
 
     def cancel_new_tool(self) -> None:
-        """Close the question, and discard an incomplete new tool."""
+        """Close the question and discard an incomplete new tool."""
         self.close_question()
         self.tool_fields.incomplete_tool.discard()
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character can be entered."""
+        """Return whether a character can be entered in the open question."""
         return self.question_name == "remark" or (
             bool(self.question_name) and not self.is_setter_result and key in EXPRESSION_CHARACTERS
         )
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key while a question is open. Return False if the key has no meaning in an entry."""
+        """Handle a key while a question is open, and return False if the key has no function in an entry."""
         if key == "Enter":
             self._enter()
         elif key in {"Back", "Delete"} or (len(key) == 1 and self.accepts_key(key)):
@@ -283,7 +289,10 @@ class ToolSetting:
             self.desk.say(why)
 
     def _save_answer(self) -> str:
-        """Process the answer. Return why it was rejected, or an empty text. Raises EntryError."""
+        """Process the answer, and return the reason if it is rejected, or an empty string.
+
+        Raises EntryError.
+        """
         if self.question_name == TOOL_QUESTION:
             return self._tool()
         snapshot = self.desk.read_snapshot()
@@ -320,13 +329,16 @@ class ToolSetting:
         return why
 
     def ask_master(self) -> None:
-        """Ask whether the selected tool becomes the master, or whether no tool is if it is the master now."""
+        """Ask whether to make the selected tool the master tool.
+
+        If the selected tool is already the master tool, ask whether to have no master tool.
+        """
         why = self.find_refusal("master", self.desk.read_snapshot())
         self.close_question()
         self.history.show_refusal(why or self.tool_fields.ask_master(self.tool_number))
 
     def ask_undo(self) -> None:
-        """Ask whether the last change of the selected tool is undone."""
+        """Ask whether to undo the last change of the selected tool."""
         self.close_question()
         self.history.show_refusal(
             self.find_undo_refusal()
@@ -334,14 +346,17 @@ class ToolSetting:
         )
 
     def find_undo_refusal(self) -> str:
-        """Return why the last change of the selected tool cannot be undone now. Empty if it can."""
+        """Return the reason why the last change of the tool cannot be undone now, or an empty string."""
         why = self.offset_book.lock_reason or find_change_refusal(
             self.desk.read_snapshot(), is_correction=False
         )
         return why or ("" if self.tool_number else _which_tool())
 
     def handle_escape(self) -> bool:
-        """Close the question, and discard an incomplete new tool. Return False if there was neither."""
+        """Close the question and discard an incomplete new tool.
+
+        Returns False if there was neither a question nor a new tool.
+        """
         was = bool(self.question_name or self.tool_fields.incomplete_tool.tool_number)
         if was and self.tool_number:
             self.desk.say(tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(self.tool_number))))
@@ -354,7 +369,10 @@ def _which_tool() -> str:
 
 
 def _describe_reset_wear(row: ToolRow | None, name: str, mode: ValueMode) -> str:
-    """Return the text of the wear that a touch-off resets to zero, because the new geometry includes it."""
+    """Return a text about the wear that a touch-off sets to zero, or an empty string.
+
+    The wear is set to zero because the new geometry includes it.
+    """
     if row is None or not getattr(row, name):
         return ""
     return (

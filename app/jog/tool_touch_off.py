@@ -21,7 +21,7 @@ MOVE_TOLERANCE_MM = (
 
 
 def find_touch_refusal(quantity: str, snapshot: Snapshot) -> str:
-    """Return why an axis cannot be touched off now. Empty if it can."""
+    """Return the reason why an axis cannot be touched off now, or an empty string."""
     axis = TOUCH_FIELDS[quantity].upper()
     if not snapshot.homed[snapshot.axes.index(axis)]:
         return tr(Message("{axis} IS NOT HOMED AND ITS POSITION IS UNKNOWN. HOME IT FIRST", axis=axis))
@@ -37,10 +37,12 @@ def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
 
 @dataclass(slots=True)
 class TouchOff:
-    """One touch-off of one axis. ``at`` is the machine position at the touch in mm.
+    """Touch-off of one axis.
 
-    ``found`` is the machine position in mm with the tip on part zero, as the tool setter measured it.
-    ``reason`` describes the measurement. Such a value needs no entry, and the axis may move afterwards.
+    ``touch_position`` is the machine position in mm at the touch. ``measured_value`` is the machine
+    position in mm with the tool tip at part zero, as measured with the tool setter, and ``reason``
+    describes the measurement. A measured value requires no entry, and the axis may move after the
+    measurement.
     """
 
     quantity: str = ""
@@ -52,11 +54,11 @@ class TouchOff:
 
     @property
     def field_name(self) -> str:
-        """The field of the tool that the touch-off sets."""
+        """Return the name of the tool field that the touch-off sets."""
         return TOUCH_FIELDS[self.quantity]
 
     def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
-        """Store the present position of the axis as the touch."""
+        """Store the present position of the axis as the touch position."""
         self.quantity, self.touch_position, self.skips_followers = (
             quantity,
             find_axis_position(quantity, snapshot),
@@ -65,12 +67,15 @@ class TouchOff:
         self.measured_value, self.reason, self.is_skim_cut = None, "", False
 
     def set_cut(self, quantity: str, position: float) -> None:
-        """Store the machine position of a skim cut in mm."""
+        """Store the machine position of a skim cut in mm as the touch position."""
         self.quantity, self.touch_position, self.skips_followers = quantity, position, False
         self.measured_value, self.reason, self.is_skim_cut = None, "", True
 
     def set_measurement(self, quantity: str, value: float, reason: str) -> None:
-        """Store a measurement of the tool setter. Other tools do not follow a master in this case."""
+        """Store a measurement of the tool setter.
+
+        Other tools do not follow the master tool after such a measurement.
+        """
         self.quantity, self.measured_value, self.reason, self.skips_followers, self.is_skim_cut = (
             quantity,
             value,
@@ -80,7 +85,10 @@ class TouchOff:
         )
 
     def find_zero_position(self, text: str, mode: ValueMode) -> float:
-        """Return the machine position in mm with the tip on part zero, X as a radius. Raises EntryError."""
+        """Return the machine position in mm with the tool tip at part zero, with X as a radius.
+
+        Raises EntryError.
+        """
         if self.measured_value is not None:
             return self._within(self.measured_value)
         typed = evaluate_expression(text) * (0.5 if self.quantity == TOUCH_X else 1.0)
@@ -99,7 +107,7 @@ class TouchOff:
         return place
 
     def save_touch(self, number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool) -> str:
-        """Save the touch-off. Return why it was rejected, or an empty text.
+        """Save the touch-off, and return the reason if it is rejected, or an empty string.
 
         X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
         """
@@ -128,9 +136,9 @@ class TouchOff:
         return why
 
     def make_touch(self, place: float) -> TouchPosition:
-        """Return the touch of this axis.
+        """Return the touch position of this axis for the offset table.
 
-        ``place`` is the machine position in mm with the tip on part zero.
+        ``place`` is the machine position in mm with the tool tip at part zero.
         """
         return (
             TouchPosition(place, None, self.skips_followers)
@@ -139,11 +147,15 @@ class TouchOff:
         )
 
     def _find_tip_x(self, place: float) -> float | None:
-        """Return X of the tip relative to part zero at the touch in mm. None if X was not touched."""
+        """Return X of the tool tip relative to part zero at the touch in mm, or None if X was not touched."""
         return self.touch_position - place if self.field_name == "x" and self.measured_value is None else None
 
     def has_moved(self, snapshot: Snapshot) -> bool:
-        """Return whether the axis has moved since the touch. A skim cut checks this itself."""
+        """Return whether the axis has moved since the touch.
+
+        The result is always False for a measurement of the tool setter. It is also False for a skim cut,
+        because ``SkimCut`` makes its own check.
+        """
         return (
             self.measured_value is None
             and not self.is_skim_cut
@@ -151,7 +163,7 @@ class TouchOff:
         )
 
     def _make_reason(self, text: str, mode: ValueMode) -> str:
-        """Return the text for the history."""
+        """Return the text that describes the touch-off in the history."""
         if self.reason:
             return f"{self.reason}{tr(', this tool only') if self.skips_followers else ''}"
         unit = "MM " if mode.is_metric else ""

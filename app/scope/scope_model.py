@@ -1,6 +1,6 @@
-"""Model of the scope: live or frozen curves, trigger, cursors and an overlaid record.
+"""Model of the scope, with live or frozen curves, trigger, cursors and an overlaid record.
 
-All curves are calculated on a worker. ``look`` requests the next picture and stores the last one.
+All curves are calculated on a worker. ``poll`` stores the last finished picture and requests the next one.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ NO_SAMPLES = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD")
 
 
 class SidePanel(Enum):
-    """Content of the area next to the curves."""
+    """The contents that the area next to the curves can show."""
 
     READINGS = "readings"
     CURVES = "curves"
@@ -52,7 +52,7 @@ class SidePanel(Enum):
 class ScopeModel:
     """Model of the scope page.
 
-    ``live`` is the ring buffer, or None if only files can be shown.
+    ``live_samples`` is the ring buffer, or None if only files can be shown.
     """
 
     desk: Desk
@@ -91,29 +91,32 @@ class ScopeModel:
 
     @property
     def is_live(self) -> bool:
-        """Whether the curves are live."""
+        """Return whether the curves are live."""
         return self.frozen_curves is None
 
     @property
     def metric(self) -> bool:
-        """Whether lengths are displayed in mm."""
+        """Return whether lengths are displayed in mm."""
         return self.desk.settings_store.display_units.metric(self.desk.read_snapshot().modal.metric)
 
     @property
     def shown(self) -> tuple[ScopeSignal, ...]:
-        """Displayed signals in the order of the list."""
+        """Return the displayed signals in the order of the list."""
         return tuple(each for each in self.signals if each.key in self.selected_keys)
 
     @property
     def selected_signal(self) -> ScopeSignal | None:
-        """Signal on which keys act, or None."""
+        """Return the signal on which the keys act, or None if no signal is displayed."""
         shown = self.shown
         return shown[min(self.marked, len(shown) - 1)] if shown else None
 
     # --- every frame ---------------------------------------------------------------------------------
 
     def poll(self) -> None:
-        """Store the finished picture and request the next one; called once per frame."""
+        """Store the finished picture, and request the next picture.
+
+        This is called once a frame.
+        """
         self.worker.poll()
         self.file_worker.poll()
         if self.worker.is_busy:
@@ -146,7 +149,7 @@ class ScopeModel:
         )
 
     def _request_picture(self, wanted: PictureRequest) -> None:
-        """Request the next live picture, or freeze the curves once the trigger's window is full."""
+        """Request the next live picture, or freeze the curves when the window of the trigger is full."""
         carried, live, overlay = self._carried, self.live_samples, self.overlay_curves
         if carried is None or live is None:
             return
@@ -166,7 +169,7 @@ class ScopeModel:
     def _is_unchanged(self, wanted: PictureRequest) -> bool:
         """Return whether the picture of constant curves is still valid.
 
-        The picture is valid for a short time while the machine state is unchanged.
+        The picture remains valid for a short time if the machine state does not change.
         """
         if self._asked is None or self.picture.constant_values is None or self.is_armed:
             return False
@@ -177,7 +180,7 @@ class ScopeModel:
     def _accept_picture(self, sight: ScopePicture, of: tuple[Trigger, float] | None = None) -> None:
         """Store a picture.
 
-        ``of`` is the trigger of the request, ignored if the trigger has changed since.
+        ``of`` is the trigger of the request. It is ignored if the trigger has changed since the request.
         """
         if sight.is_live is not self.is_live:
             return  # requested before the change between live and frozen
@@ -189,12 +192,12 @@ class ScopeModel:
 
     @property
     def has_samples(self) -> bool:
-        """Whether there are samples to freeze or a frozen record."""
+        """Return whether there are samples that can be frozen, or a frozen record."""
         live = self.live_samples is not None and bool(np.isfinite(self.live_samples.newest_time_s))
         return self.frozen_curves is not None or live
 
     def toggle_frozen(self) -> None:
-        """Freeze the curves, or return to live curves (F2)."""
+        """Handle F2: freeze the curves, or return to live curves."""
         self.desk.clear_prompt_line()
         if self.frozen_curves is not None:
             self.return_to_live()
@@ -204,7 +207,7 @@ class ScopeModel:
             self._freeze_window(None, self.time_window.span_s)
 
     def return_to_live(self) -> None:
-        """Return to live curves and rearm the trigger."""
+        """Return to live curves, and rearm the trigger."""
         if self.live_samples is None:
             self.desk.say(NO_SAMPLES)
             return
@@ -218,7 +221,10 @@ class ScopeModel:
         self._set_signals(list_signals(self.live_samples.channels))
 
     def _freeze_window(self, instant: float | None, span: float) -> None:
-        """Freeze the samples around an instant, or the last samples, copied by the worker."""
+        """Freeze the samples around an instant, or the last samples if there is no instant.
+
+        The worker copies the samples.
+        """
         live = self.live_samples
         assert live is not None
         most = max(MIN_FROZEN_TIME_S, 3.0 * span)
@@ -243,7 +249,7 @@ class ScopeModel:
     ) -> None:
         """Show a record.
 
-        ``window`` is in seconds relative to its instant 0, and None shows everything.
+        ``window`` is in seconds relative to instant 0 of the record. None shows the whole record.
         """
         if not len(record.times_s):
             self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
@@ -259,7 +265,7 @@ class ScopeModel:
         self._set_signals(list_signals(record.channels))
 
     def _set_signals(self, signals: tuple[ScopeSignal, ...]) -> None:
-        """Replace the available signals and remove displayed signals that no longer exist."""
+        """Replace the available signals, and hide displayed signals that no longer exist."""
         self.signals = signals
         there = {each.key for each in signals}
         kept = tuple(each for each in self.selected_keys if each in there)
@@ -269,7 +275,7 @@ class ScopeModel:
     # --- curves --------------------------------------------------------------------------------------
 
     def toggle_curve(self, signal: ScopeSignal) -> None:
-        """Show or hide a curve."""
+        """Show or hide the curve of a signal."""
         self.desk.clear_prompt_line()
         if signal.key in self.selected_keys:
             self.selected_keys = tuple(each for each in self.selected_keys if each != signal.key)
@@ -284,11 +290,14 @@ class ScopeModel:
         self.selected_keys = (*self.selected_keys, signal.key)
 
     def mark(self, number: int) -> None:
-        """Select the curve on which keys act."""
+        """Select the curve on which the keys act."""
         self.marked = max(0, min(number, len(self.shown) - 1))
 
     def stretch_lane(self, steps: int, quantity: Quantity | None = None) -> None:
-        """Magnify the lane of the selected curve around its middle. Negative steps reduce it."""
+        """Magnify the lane of the selected curve around its middle by a number of steps.
+
+        Negative steps reduce the lane.
+        """
         self.magnify_lane(ZOOM_STEP**steps, quantity)
 
     def magnify_lane(self, factor: float, quantity: Quantity | None = None) -> None:
@@ -296,7 +305,7 @@ class ScopeModel:
         self._change_range(quantity, lambda low, high: _about(low, high, 1.0 / factor))
 
     def shift_lane(self, steps: float, quantity: Quantity | None = None) -> None:
-        """Move the range of a lane up by steps of 10 %."""
+        """Move the range of a lane up by a number of steps of 10 %."""
 
         def change(low: float, high: float) -> ValueRange:
             by = PAN_STEP_SHARE * steps * (high - low)
@@ -322,30 +331,33 @@ class ScopeModel:
     # --- the window ----------------------------------------------------------------------------------
 
     def zoom_window(self, steps: int, time_s: float | None = None) -> None:
-        """Zoom in or out by steps, around a time, the selected cursor or the middle."""
+        """Zoom in or out by a number of steps, around a time, the selected cursor or the middle."""
         if time_s is None and self.cursors.shown:
             time_s = self.cursors.times_s[self.cursors.active_cursor]
         self.time_window.zoom_window(steps, 0.0 if self.is_live else time_s)
 
     def magnify_window(self, factor: float, time_s: float) -> None:
-        """Magnify by the factor of a pinch gesture."""
+        """Magnify the window by the factor of a pinch gesture, around a time."""
         self.time_window.magnify(factor, 0.0 if self.is_live else time_s)
 
     def pan_window(self, shift_s: float) -> None:
-        """Move the window by a number of seconds. Live curves are frozen first."""
+        """Move the window by a number of seconds.
+
+        If the curves are live, freeze them instead.
+        """
         if self.is_live:
             self.toggle_frozen()
             return
         self.time_window.pan_window(shift_s)
 
     def pan_steps(self, steps: int) -> None:
-        """Move the window by steps of 10 %."""
+        """Move the window by a number of steps of 10 %."""
         self.pan_window(steps * PAN_STEP_SHARE * self.time_window.span_s)
 
     # --- cursors -------------------------------------------------------------------------------------
 
     def toggle_cursors(self) -> None:
-        """Show or hide the two cursors on frozen curves (F5)."""
+        """Handle F5: show or hide the two cursors on frozen curves."""
         self.desk.clear_prompt_line()
         if self.cursors.shown:
             self.cursors.active_cursor = -1
@@ -355,7 +367,10 @@ class ScopeModel:
             self.cursors.place_in(self.time_window)
 
     def step_cursor(self, step_px: int) -> None:
-        """Move the selected cursor by pixels. The window follows."""
+        """Move the selected cursor by a number of pixels.
+
+        The window then moves as far as necessary to show the cursor.
+        """
         now = self.cursors.times_s[self.cursors.active_cursor]
         to = now + step_px * self.time_window.span_s / max(1, self.width_px)
         self.cursors.move_cursor(max(self.time_window.limits[0], min(to, self.time_window.limits[1])))
@@ -369,14 +384,17 @@ class ScopeModel:
         self._arm_trigger()
 
     def _arm_trigger(self) -> None:
-        """Arm the trigger from the newest sample on. Earlier samples do not fire it."""
+        """Arm the trigger, starting at the newest sample.
+
+        Earlier samples do not fire the trigger.
+        """
         self.is_armed = self.trigger.event is not TriggerEvent.OFF and self.is_live
         self._armed_at = self.live_samples.newest_time_s if self.live_samples is not None else -np.inf
         self._released = None
 
     @property
     def trigger_text(self) -> str:
-        """State of the trigger as text."""
+        """Return the state of the trigger as text."""
         if self.trigger.event is TriggerEvent.OFF:
             return ""
         if self._released is not None:

@@ -7,7 +7,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ColorPalette:
-    """Colors as ``#rrggbb``. ``on_…`` is the text color on a background of that color."""
+    """Colors as ``#rrggbb``.
+
+    A name that starts with ``on_`` is the text color on a background of the color that follows.
+    """
 
     name: str
     ground: str

@@ -1,4 +1,4 @@
-"""Themes, bundled fonts, unit of size and language, for everything that draws on the screen."""
+"""Themes, bundled fonts, unit of size, and language for all parts that draw on the screen."""
 
 from __future__ import annotations
 
@@ -45,9 +45,9 @@ ALIGN_CENTER = Qt.AlignmentFlag.AlignCenter
 
 @cache
 def load_fonts() -> tuple[str, ...]:
-    """Register the bundled fonts with Qt and return their families.
+    """Register the bundled fonts with Qt, and return their families.
 
-    Without them, a system without fonts shows boxes instead of characters.
+    Without these fonts, a system that has no fonts shows boxes instead of characters.
     """
     families: list[str] = []
     for file in sorted(files("resources").joinpath("fonts").iterdir(), key=lambda f: f.name):
@@ -58,7 +58,10 @@ def load_fonts() -> tuple[str, ...]:
 
 
 class ScreenTheme:
-    """Colors, fonts and sizes that all widgets of a window share. ``u`` changes with the window's size."""
+    """Colors, fonts and sizes that all widgets of a window share.
+
+    ``u`` is the unit of size in pixels, which changes with the size of the window.
+    """
 
     def __init__(self, palette: ColorPalette, u: float = 12.0) -> None:
         self.palette = palette
@@ -82,7 +85,7 @@ class ScreenTheme:
         """Return the height of a list row in pixels.
 
         The height is ``height_units`` of the window, but at most ``max_height_mm`` on the screen. A larger
-        screen thus shows more rows. A row for ``is_touchable`` is never lower than a fingertip on the
+        screen thus shows more rows. A row that is touchable is at least as high as a fingertip on the
         smallest screen.
         """
         high = min(height_units * self.u, max_height_mm * self.screen.pixels_per_mm)
@@ -93,14 +96,14 @@ class ScreenTheme:
         )
 
     def find_key_rows_height(self, row_count: int) -> int:
-        """Return the height of a number of rows of touch keys in pixels, each as high as a fingertip."""
+        """Return the height in pixels of a number of rows of touch keys, each as high as a fingertip."""
         return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.u)
 
     def em(self, size: float, role: Role, high: float) -> float:
-        """Return the em height in units of a text in a row that is ``high`` pixels high.
+        """Return the em height, in units, of a text in a row that is ``high`` pixels high.
 
-        The height is at least ``size``. It is larger if the role of the text requires it at the size of this
-        screen, and the row has room.
+        The height is at least ``size``. It is larger if the role of the text requires this on a screen of
+        this size and the row is high enough.
         """
         least = self.screen.least_em(role) / self.u
         room = high / self.u * _ROW_SHARE.get(role, _ALONE)
@@ -108,12 +111,15 @@ class ScreenTheme:
         return max(size, min(least, most))
 
     def set_palette(self, palette: ColorPalette) -> None:
-        """Use the colors of another palette."""
+        """Use the colors of another palette from now on."""
         self.palette = palette
         self._colours.clear()
 
     def color(self, name: str) -> QColor:
-        """Return a copy of a palette color, which the caller may change."""
+        """Return a copy of a palette color.
+
+        The caller may change the copy.
+        """
         if name not in self._colours:
             self._colours[name] = QColor(getattr(self.palette, name))
         return QColor(self._colours[name])
@@ -129,13 +135,17 @@ class ScreenTheme:
         return self._fonts[key]
 
     def make_pen(self, name: str, width: float = 0.12) -> QPen:
-        """Return a pen of a palette color. ``width`` is in units, at least one pixel."""
+        """Return a pen with a palette color.
+
+        ``width`` is in units. The pen is at least one pixel wide.
+        """
         return QPen(self.color(name), max(1.0, width * self.u))
 
     def fit_font(self, text: str, size: float, width: float, *, is_bold: bool = False) -> QFont:
-        """Return the font of this size, or a smaller one in which ``text`` is not wider than ``width``.
+        """Return the font of this size, or a smaller font that makes ``text`` fit.
 
-        The font stays large enough to read. A text that is still too long is elided when it is drawn.
+        ``width`` is the available width in pixels. The font always remains large enough to read. A text
+        that is still too long is elided when it is drawn.
         """
         font = self.make_font(size, is_bold=is_bold)
         wide = measure_text(tr(text), font)
@@ -147,9 +157,9 @@ class ScreenTheme:
 
 
 def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
-    """Draw one line of TurnDesk's own text in the operator's language. See ``draw_raw_text``.
+    """Draw one line of TurnDesk's own text in the operator's language.
 
-    A translation that is too wide is drawn smaller, as far as it remains readable.
+    A translation that is too wide is drawn smaller, but remains readable. See also ``draw_raw_text``.
     """
     shown, font = tr(text), painter.font()
     wide = measure_text(shown, font) if shown != text else 0.0
@@ -166,7 +176,7 @@ def draw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: st
 def draw_raw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text: str) -> None:
     """Draw one line of untranslated text, such as program lines, comments, names and input.
 
-    Its capitals are centered vertically in ``rect``. A text that is too long is elided.
+    Capital letters are centered vertically in ``rect``. A text that is too long is elided.
     """
     font = painter.font()
     if ThemedPainter.records_texts and isinstance(painter, ThemedPainter):
@@ -186,7 +196,7 @@ def draw_raw_text(painter: QPainter, rect: QRectF, flags: Qt.AlignmentFlag, text
 def measure_text(text: str, font: QFont) -> float:
     """Return the width of a line of text in pixels.
 
-    The result is cached, because Qt shapes the text each time.
+    The result is cached, because Qt would shape the text for each call.
     """
     return _width(text, *_face(font))
 
@@ -214,7 +224,7 @@ def _metrics(family: str, pixels: int, bold: bool) -> QFontMetricsF:
 
 
 class ThemedPainter(QPainter):
-    """A painter that uses the colors, fonts and unit of a look."""
+    """A painter that uses the colors, fonts and unit of a theme."""
 
     # Whether all painters record the texts that they draw, for assistive technology.
     records_texts: ClassVar[bool] = False
@@ -244,10 +254,10 @@ class ThemedPainter(QPainter):
     ) -> None:
         """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
 
-        It is larger if its role requires that, see ``ScreenTheme.em``.
+        The text is larger if its role requires this. See ``ScreenTheme.em``.
 
-        The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated,
-        see ``draw_raw_text``. Color and font remain set.
+        The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated.
+        See ``draw_raw_text``. The painter retains the color and font.
         """
         look = self.theme
         room = rect.width() - margin * look.u
@@ -259,7 +269,7 @@ class ThemedPainter(QPainter):
         (draw_raw_text if raw else draw_text)(self, rect, at, text)
 
     def draw_wrapped_text(self, rect: QRectF, flags: int | Qt.AlignmentFlag | Qt.TextFlag, text: str) -> None:
-        """Draw a text with several lines in the present pen and font."""
+        """Draw a text with several lines in the current pen and font."""
         self.drawn_texts.append((QRectF(rect), text))
         self.drawText(rect, int(flags), text)
 
@@ -268,14 +278,17 @@ class ThemedPainter(QPainter):
         self.fillRect(rect, self.theme.color(color))
 
     def draw_box(self, rect: QRectF, line_color: str, width: float, fill_color: str) -> None:
-        """Draw a filled rectangle with an edge ``width`` units wide. An empty ``ground`` leaves it hollow."""
+        """Draw a filled rectangle with an edge that is ``width`` units wide.
+
+        If ``fill_color`` is empty, the rectangle is not filled.
+        """
         self.setPen(self.theme.make_pen(line_color, width))
         self.setBrush(self.theme.color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)
         self.drawRect(rect)
 
 
 def style_application(palette: ColorPalette) -> None:
-    """Use the Fusion style with TurnDesk's palette for the standard widgets.
+    """Apply the Fusion style with TurnDesk's palette to the standard widgets.
 
     Qt's setColorScheme has no effect on a plain X server.
     """
@@ -304,8 +317,8 @@ def style_application(palette: ColorPalette) -> None:
 def draw_state_symbol(painter: QPainter, box: QRectF, tone: Tone, color: QColor) -> None:
     """Draw the symbol of a state.
 
-    Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, ready is a
-    square.
+    Running is a triangle, paused is two bars, waiting is dots, an alarm is a triangle with a bar, and ready
+    is a square.
     """
     side = min(box.width(), box.height())
     square = QRectF(box.center().x() - side / 2, box.center().y() - side / 2, side, side)
@@ -373,16 +386,19 @@ TRANSLATION_CONTEXT = "turndesk"
 
 
 def use_language(language: str) -> None:
-    """Show texts in this language from now on. Raises FileNotFoundError if it has no catalog."""
+    """Show texts in this language from now on.
+
+    Raise FileNotFoundError if the language has no catalog.
+    """
     set_translator(None if language == ENGLISH_CODE else load_catalog(language), language)
 
 
 @cache
 def load_catalog(language: str) -> Translate:
-    """Return the translation function of a language. The catalog is read once.
+    """Return the translation function of a language.
 
-    The function returns an empty text for a text without a translation. Raises FileNotFoundError without a
-    catalog.
+    The catalog is read only once. The function returns an empty string if a text has no translation. Raise
+    FileNotFoundError if there is no catalog.
     """
     folder = files("resources") / "translations"
     translator = QTranslator()

@@ -1,4 +1,4 @@
-"""Server of the driver host, which handles messages and runs the drivers.
+"""The server of the driver host, which handles messages and runs the drivers.
 
 The server stops the machine if the control ends.
 """
@@ -38,7 +38,10 @@ _NO_GEAR = "this driver cannot synchronize the axes with the spindle", "no-gear"
 
 
 def execute_command(ports: MachinePorts, head: Mapping[str, object]) -> None:
-    """Execute one command. Raises DriverError if it is unknown or the drivers reject it."""
+    """Execute one command of the control.
+
+    Raises DriverError if the command is unknown or the drivers reject it.
+    """
     on = head.get("on") is True
     acts: dict[str, Callable[[], None]] = {
         "enable": lambda: ports.axes.enable(on),
@@ -67,7 +70,10 @@ def execute_command(ports: MachinePorts, head: Mapping[str, object]) -> None:
 
 
 def call_station_control(controls: object | None, head: Mapping[str, object]) -> object:
-    """Call a method of the simulated station by its name. Raises DriverError if this is not possible."""
+    """Call a method of the simulated station by its name, and return its result.
+
+    Raises DriverError if this is not possible.
+    """
     name, values = text(head, "name"), head.get("values")
     use = None if name.startswith("_") or controls is None else getattr(controls, name, None)
     if not callable(use) or not isinstance(values, list):
@@ -84,7 +90,10 @@ def call_station_control(controls: object | None, head: Mapping[str, object]) ->
 
 
 def _require_part(part: _Part | None, missing: str, reason: str) -> _Part:
-    """Return an optional part of the machine. Raises DriverError if it is missing."""
+    """Return an optional part of the machine.
+
+    Raises DriverError if the machine does not have this part.
+    """
     if part is None:
         raise DriverError(missing, reason=reason)
     return part
@@ -116,11 +125,13 @@ _SPINDLE_STOP_S = 8.0  # Maximum wait in s for a spindle to brake.
 
 @dataclass(frozen=True, slots=True)
 class DriverBundle:
-    """Set of drivers that one loop owns; ``run_cycle`` is called every few milliseconds and raises no error.
+    """The set of drivers that one loop owns.
 
-    ``hands`` are the controls of a simulated machine or of the station on the screen. ``get_idle_time``
-    returns the seconds without a required cycle, for a sleeping control or not; 0 means unknown.
-    ``has_sent_requests`` returns whether the last cycle has sent requests whose replies the next one reads.
+    ``run_cycle`` is called every few milliseconds and raises no error. ``station_controls`` are the
+    controls of a simulated machine or of the station on the screen. ``get_idle_time`` returns for how many
+    seconds no cycle is required; 0 means unknown. Its argument is True while the control sleeps.
+    ``has_sent_requests`` returns whether the last cycle has sent requests whose replies the next cycle
+    reads.
     """
 
     ports: MachinePorts
@@ -135,12 +146,13 @@ class DriverBundle:
 
 
 class DriverHost:
-    """Driver host that handles messages and runs the drivers, in one thread.
+    """The driver host, which handles messages and runs the drivers in one thread.
 
-    If the control is silent, its queue is played to the end, which is at rest. Then the spindle stops and the
-    outputs change to their safe states. This is a trip: nothing moves or switches on until the control has
-    acknowledged it. ``is_orphaned`` means that the control has ended. The drives are then also switched off
-    at rest, and the driver host is done when the spindle is at standstill.
+    If the control is silent, its queue is executed to the end, where the axes are at rest. Then the spindle
+    stops and the outputs change to their safe states. This is a trip: no axis or spindle moves and no
+    output switches on until the control has acknowledged the trip. ``is_orphaned`` means that the control
+    has ended. The drives are then also switched off at rest, and the driver host ends when the spindle is
+    at standstill.
     """
 
     def __init__(
@@ -150,9 +162,10 @@ class DriverHost:
         refresh_periods: Mapping[str, float] | None = None,
         ring_bell: Callable[[], None] = lambda: None,
     ) -> None:
-        """Create the driver host; ``ring_bell`` wakes a control that sleeps.
+        """Create the driver host.
 
-        ``refresh_periods``: outputs that are switched off after this number of seconds without a message.
+        ``refresh_periods`` contains, for some outputs, the time in seconds without a message after which
+        the output is switched off. ``ring_bell`` wakes a control that sleeps.
         """
         self._ring = ring_bell
         self.is_asleep = False  # The control has reported that it sleeps.
@@ -185,7 +198,10 @@ class DriverHost:
         }
 
     def handle_message(self, message: Message) -> Message:
-        """Handle a message and return the reply; a rejection by the drivers is returned as ``error``."""
+        """Handle a message and return the reply.
+
+        If the drivers reject the request, the reply contains the entry ``error``.
+        """
         self._hear()
         began = self._heard
         what = text(message.head, "do")
@@ -209,7 +225,7 @@ class DriverHost:
             self._answering += self._heard - began
 
     def run_cycle(self) -> None:
-        """Run the drivers, then check whether the control still sends messages."""
+        """Run the drivers, and then check whether the control still sends messages."""
         self._driven.run_cycle()
         for note in self._driven.collect_notes():
             self._note(note)
@@ -222,7 +238,7 @@ class DriverHost:
             self._ring()
 
     def _has_news(self) -> bool:
-        """Return whether a poll would differ from the last one, apart from times."""
+        """Return whether a poll would return a different state than the last poll, apart from times."""
         try:
             return self._told is None or _without_times(self._read_state()) != self._told()
         except DriverError:
@@ -233,9 +249,10 @@ class DriverHost:
         return SLEEP_TIMEOUT_S if self.is_asleep else CONTROL_TIMEOUT_S
 
     def get_next_cycle_time(self, last_cycle_time: float) -> float:
-        """Return the due time of the next cycle, later if the control sleeps and the drivers are idle.
+        """Return the due time of the next cycle.
 
-        ``last_cycle_time`` is the due time of the last cycle.
+        The next cycle is later if the control sleeps and the drivers are idle. ``last_cycle_time`` is the
+        due time of the last cycle.
         """
         set_by_drivers = self._driven.get_next_tick_time()
         if set_by_drivers is not None:
@@ -248,7 +265,10 @@ class DriverHost:
         return max(last_cycle_time + CYCLE_PERIOD_S, now)
 
     def record_wakeup_delay(self, delay_s: float) -> None:
-        """Note the wake-up delay of the loop; each new maximum is reported once."""
+        """Record the wake-up delay of the loop.
+
+        Each new maximum is reported once.
+        """
         slept, self._answering = delay_s - self._answering, 0.0
         if slept > max(self._latest, MAX_WAKEUP_DELAY_S):
             self._latest = slept
@@ -266,7 +286,10 @@ class DriverHost:
         return not axes.sample().moving and is_queue_finished(axes.horizon(), axes.now())
 
     def _is_stopped_on_cam(self) -> bool:
-        """Return whether axes that follow the spindle wait for a stopped spindle, so the queue never ends."""
+        """Return whether axes that follow the spindle are waiting because the spindle is stopped.
+
+        The queue never ends in this state.
+        """
         gear = self._ports.gear
         follows = gear is not None and gear.geared() is not None
         return (
@@ -278,8 +301,8 @@ class DriverHost:
     def _trip(self, silence_s: float, *, spindle: bool = True) -> None:
         """Set the outputs to their safe states, stop the spindle, and record the functions that were on.
 
-        The spindle is not stopped while a tool is in the cut, or while it is oriented. Modules that missed
-        the heartbeat have already changed their outputs.
+        The spindle is not stopped while a tool is in the cut or while the spindle is oriented. Modules that
+        missed the heartbeat have already changed their outputs.
         """
         orientation = self._ports.orientation
         spindle = spindle and not (orientation is not None and orientation.is_oriented())
@@ -301,7 +324,7 @@ class DriverHost:
         self._parted = False
 
     def _expire_outputs(self, silence_s: float) -> None:
-        """Switch off outputs that are not renewed, without waiting for the axes to rest."""
+        """Switch off outputs that the control does not renew, without waiting for the axes to stop."""
         for name, longest in self._refresh.items():
             if silence_s > longest and self._ports.io.outputs().get(name):
                 self._note(
@@ -315,7 +338,7 @@ class DriverHost:
                 self._guard.record_output_off(silence_s, name)
 
     def _supervise_control(self) -> None:
-        """Stop the machine without a control, after the queue has ended at rest."""
+        """Stop the machine if the control is silent, after the queue has ended at rest."""
         axes = self._ports.axes
         if not self._resting():
             if self._is_stopped_on_cam():
@@ -364,7 +387,10 @@ class DriverHost:
         return Message(head, NO_NUMBERS)
 
     def _read_state(self) -> dict[str, object]:
-        """Return the complete observable state. Raises DriverError."""
+        """Return the complete observable state of the machine.
+
+        Raises DriverError if the drivers cannot report the state.
+        """
         ports, sample = self._ports, self._ports.axes.sample()
         station = ports.station.read_state()
         return {
@@ -421,7 +447,10 @@ class DriverHost:
 
 
 def _without_times(state: Mapping[str, object]) -> Mapping[str, object]:
-    """Return a polled state without times; the age of the station is reduced to whether it is silent."""
+    """Return a polled state without times.
+
+    The age of the station is reduced to whether the station is silent.
+    """
     sample, angle, station = state.get("sample"), state.get("angle"), state.get("station")
     assert isinstance(sample, dict)
     assert isinstance(station, dict)

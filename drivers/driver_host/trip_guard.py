@@ -12,7 +12,7 @@ _MOTION_COMMANDS = frozenset(("splice", "mesh"))
 
 
 class TripGuard:
-    """Guard that rejects requests of the control after a trip, until it is acknowledged."""
+    """A guard that rejects requests of the control after a trip until the trip is acknowledged."""
 
     def __init__(self) -> None:
         self.active_trip: DriverHostTrip | None = None
@@ -20,7 +20,10 @@ class TripGuard:
         self._turns = False  # The control has commanded the spindle to turn.
 
     def require_allowed(self, message: Message) -> None:
-        """Raise TrippedError for a motion, start or output while a trip is not acknowledged."""
+        """Raise TrippedError if a trip is not acknowledged and the message requests an action.
+
+        Such actions are a motion, a start of the spindle, and switching on an output.
+        """
         what = text(message.head, "what")
         turns = what == "orient" or (what == "run" and number(message.head, "rpm") != 0.0)
         switches = what == "write" and message.head.get("on") is True
@@ -37,14 +40,17 @@ class TripGuard:
             self._turns = turns
 
     def record_trip(self, silence_s: float, outputs: Sequence[str], *, spindle: bool) -> None:
-        """Record that outputs and the spindle were switched off, unless nothing was on."""
+        """Record that outputs and the spindle were switched off.
+
+        No trip is recorded if none of them was on.
+        """
         turned = self._turns and spindle
         self._turns = self._turns and not spindle
         if turned or outputs:
             self._tripped(silence_s, turned, outputs)
 
     def record_output_off(self, silence_s: float, output: str) -> None:
-        """Record that one output was switched off because it was not renewed."""
+        """Record that one output was switched off because the control did not renew it."""
         self._tripped(silence_s, False, [output])
 
     def update_silence(self, silence_s: float) -> None:
@@ -53,7 +59,10 @@ class TripGuard:
             self.active_trip = self.active_trip._replace(silence_s=max(silence_s, self.active_trip.silence_s))
 
     def acknowledge(self, count: float) -> None:
-        """Clear the trip with this number, but not a later one."""
+        """Clear the trip with this number.
+
+        A later trip remains active.
+        """
         if self.active_trip is not None and self.active_trip.number == count:
             self.active_trip = None
 

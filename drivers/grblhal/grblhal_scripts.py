@@ -1,6 +1,7 @@
 """Scripts for tasks with several requests: connect, verify modes, stop, clear an alarm and home.
 
-Each script is a generator that ``GrblController.pump`` advances. A script raises ScriptError if it fails.
+Each script is a generator, which ``GrblController.update`` advances. A script that fails raises
+ScriptError.
 """
 
 from __future__ import annotations
@@ -29,16 +30,17 @@ _TRIES = 3
 
 
 def request_full_report(controller: GrblController, timeout_s: float = REPLY_TIMEOUT_S) -> Script:
-    """Request a full report and wait for it."""
+    """Request a full status report and wait for it."""
     before = controller.full_report_count
     controller.request_report(full=True)
     yield lambda: controller.full_report_count > before, timeout_s, NO_REPORTS_TEXT
 
 
 def synchronize(controller: GrblController) -> Script:
-    """Synchronize with the controller: clear a partial line and a sticky error, and wait for ``$G``.
+    """Synchronize with the controller.
 
-    Replies are counted again from ``$G`` on.
+    The script clears a partial line and a stored error, and waits for the reply to ``$G``. From this reply
+    on, replies are counted again.
     """
     # The controller reads these lines before ``$G``.
     slow = max(
@@ -60,14 +62,14 @@ def _by(c: GrblController, ask: SentLine, by: float) -> Callable[[], bool]:
 
 
 def _ready_by(c: GrblController, ready: Callable[[], bool], deadline_s: float) -> Callable[[], bool]:
-    """Return a function that is true when ``ready`` is true or the time has passed."""
+    """Return a function that returns true when ``ready`` returns true or the deadline has passed."""
     return lambda: ready() or c.clock.now() >= deadline_s
 
 
 def query_line(
     controller: GrblController, line: str, timeout_s: float = REPLY_TIMEOUT_S
 ) -> Generator[ScriptStep, None, list[str]]:
-    """Send a line, wait for its ``ok`` and return the lines received before it.
+    """Send a line, wait for the reply ``ok``, and return the lines that were received before this reply.
 
     Raises ScriptError if the controller rejects the line.
     """
@@ -83,7 +85,7 @@ def query_line(
 
 
 def send_modes(controller: GrblController) -> Script:
-    """Send the modes, end foreign modes that another host has left active, and verify the result."""
+    """Send the required modes, end other modes that another host has left active, and verify the result."""
     yield from query_line(controller, "".join(grblhal_codes.REQUIRED_MODES))
     told = yield from _read_modes(controller)
     cures = dict.fromkeys(
@@ -116,18 +118,18 @@ def send_modes(controller: GrblController) -> Script:
 
 
 def _mode_stem(word: str) -> str:
-    """Return the basic code of a word: G43 for ``G43.1``, G51 for ``G51:X``."""
+    """Return the basic code of a word, such as G43 for ``G43.1`` and G51 for ``G51:X``."""
     return word.partition(":")[0].partition(".")[0]
 
 
 def _read_modes(c: GrblController) -> Generator[ScriptStep, None, list[str]]:
-    """Request the parser state and return its words, including those that the driver does not use."""
+    """Request the parser state and return all its words, including words that the driver does not use."""
     told = " ".join(line for line in (yield from query_line(c, "$G")) if line.startswith("[GC:"))
     return told.removeprefix("[GC:").rstrip("]").split()
 
 
 def require_hardware(controller: GrblController, identity: ControllerIdentity) -> None:
-    """Raise ScriptError if the controller lacks an axis of the machine file or the E-stop input."""
+    """Raise ScriptError if the controller does not have all axes of the machine file or the E-stop input."""
     missing = [axis.name for axis in controller.wired_axes if axis.name not in identity.axis_letters]
     if missing:
         raise ScriptError(
@@ -165,10 +167,11 @@ _INDEX = 7.0  # Longest duration of that wait in s.
 
 
 def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
-    """Brake, then reset to clear the queue; the position is lost only if an axis does not come to rest.
+    """Brake the axes, and then reset the controller to clear its queue.
 
-    ``in_thread_pass``: a thread pass is running and may wait for its index at rest. In this case, 0x18 would
-    lose the position, but 0x19 acts as a reset. An alarm is not changed.
+    The position is lost only if an axis does not come to rest. ``in_thread_pass`` means that a thread pass
+    is running, which may wait for its index at rest. In this case, byte 18h would lose the position, but
+    byte 19h acts as a reset. An active alarm is not changed.
     """
     if controller.state != "Home":  # Only a reset ends the state Home.
         yield from _brake(controller)
@@ -190,7 +193,7 @@ def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
 
 
 def soft_reset(controller: GrblController) -> Script:
-    """Perform a soft reset and wait for its banner.
+    """Perform a soft reset and wait for the startup message of the controller.
 
     If reports arrive instead, the controller has ignored the reset and the script fails.
     """
@@ -206,7 +209,7 @@ def soft_reset(controller: GrblController) -> Script:
 
 
 def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
-    """Brake until the axes rest, the controller is silent, or the time has passed."""
+    """Brake until the axes are at rest, the controller is silent, or the time has passed."""
     after, began = c.report_count + 1, c.clock.now()  # One earlier report may still arrive.
     by = began + _stopping_time(c)
     c.send_realtime(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
@@ -218,7 +221,10 @@ def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
 
 
 def _stopping_time(c: GrblController) -> float:
-    """Return the seconds that the slowest axis needs to brake, by the controller's settings if reported."""
+    """Return the seconds that the slowest axis needs to brake.
+
+    If the controller has reported its settings, they are used in addition to the machine file.
+    """
     ramps = [axis.vmax / axis.amax for axis in c.wired_axes]
     for axis in c.wired_axes:
         speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
@@ -234,7 +240,7 @@ _LISTED = 6.0  # Seconds for all settings, which are a few hundred lines.
 
 
 def write_settings(controller: GrblController) -> Script:
-    """Write settings that differ from the required values, and read them back."""
+    """Write the settings that differ from the required values, and read them back."""
     there = controller.settings = parse_settings((yield from query_line(controller, "$$", _LISTED)))
     wrong = {
         n: value
@@ -267,13 +273,16 @@ _SINGLE_AXIS_BIT = 2  # Bit of $22: axes can be homed one at a time.
 
 
 def connect_controller(controller: GrblController) -> Script:
-    """Set up a controller after opening; an alarm remains active until the operator clears it."""
+    """Set up a controller after its connection is opened.
+
+    An alarm remains active until the operator clears it.
+    """
     yield from request_full_report(controller, _BOOT)
     yield from _set_up(controller)
 
 
 def reconnect_controller(controller: GrblController) -> Script:
-    """Set up a controller after a lost connection and record the accessories that were still on."""
+    """Set up a controller after a lost connection, and record the accessories that were still on."""
     unheard = controller.clock.now() - controller.last_report_s
     yield from request_full_report(controller, _BOOT)
     yield from check_restart(controller)
@@ -283,10 +292,11 @@ def reconnect_controller(controller: GrblController) -> Script:
 
 
 def check_restart(controller: GrblController) -> Script:
-    """Detect a restart of the controller during the silence.
+    """Detect whether the controller has restarted while it was silent.
 
-    After a reset, the modes differ from those of TurnDesk (G17 by ``gc_init``). A restarted controller counts
-    from 0, so any other position proves that it has not restarted.
+    After a restart, the modes differ from those of TurnDesk, because ``gc_init`` of grblHAL selects G17.
+    The position also counts from 0 after a restart, so any other position proves that the controller has
+    not restarted.
     """
     by = controller.clock.now() + _MODES_TIMEOUT_S
     controller.request_modes()
@@ -323,7 +333,7 @@ def _set_up(c: GrblController) -> Script:
 
 
 def _switch_accessories_off(c: GrblController) -> Script:
-    """Switch off spindle and coolant, which may still be on if the control was killed."""
+    """Switch spindle and coolant off, because they may still be on if the control was killed."""
     for code in grblhal_codes.OFF_CODES:
         yield from query_line(c, code)
     by = c.clock.now() + _COASTING
@@ -333,7 +343,7 @@ def _switch_accessories_off(c: GrblController) -> Script:
 
 
 def _is_spindle_turning(c: GrblController) -> bool:
-    """Return whether the controller's own spindle turns, as measured by its encoder."""
+    """Return whether the encoder shows that the controller's own spindle is turning."""
     measured = c.report.measured if c.report is not None else None
     return c.config.has_own_spindle and (measured or 0.0) > _STANDSTILL_RPM
 
@@ -343,7 +353,7 @@ def _past(c: GrblController, t: float) -> Callable[[], bool]:
 
 
 def verify_modes(controller: GrblController) -> Script:
-    """Send and verify the modes; check that X is a radius and that no offsets are active.
+    """Send and verify the modes, and check that X is a radius and no offset is active.
 
     Raises ScriptError if the check fails.
     """
@@ -374,7 +384,10 @@ def verify_modes(controller: GrblController) -> Script:
 
 
 def abort_and_verify(controller: GrblController) -> Script:
-    """Stop, discard the queue and verify the modes; the position is preserved where possible."""
+    """Stop the motion, discard the queue and verify the modes.
+
+    The position is preserved if this is possible.
+    """
     waits = controller.waits_for_index
     controller.discard_pending()
     if controller.alarm_number:
@@ -389,7 +402,10 @@ def abort_and_verify(controller: GrblController) -> Script:
 
 
 def recover_from_alarm(controller: GrblController) -> Script:
-    """Reset, unlock and verify after the operator has cleared an alarm; the planner is empty afterwards."""
+    """Reset, unlock and verify the controller after the operator has cleared an alarm.
+
+    The planner is empty afterward.
+    """
     controller.discard_pending()
     unheard = controller.is_silent
     yield from request_full_report(controller)
@@ -418,7 +434,7 @@ def recover_from_alarm(controller: GrblController) -> Script:
 
 
 def home_axis(controller: GrblController, letter: str) -> Script:
-    """Home one axis on its switch, or set its home at the present position."""
+    """Home one axis on its switch, or set the home position at the present position."""
     axis = next(axis for axis in controller.config.axes if axis.name == letter)
     yield from synchronize(controller)
     if axis.home_position_mm is not None:
@@ -448,7 +464,10 @@ def _look_for_switch(c: GrblController, letter: str) -> Script:
 
 
 def finish_jog(controller: GrblController) -> Script:
-    """Wait for rest after a canceled jog, then verify the modes to account for discarded lines."""
+    """Wait until the axes are at rest after a canceled jog, and then verify the modes.
+
+    The check is necessary because the controller has discarded lines.
+    """
     began = controller.report_count
     yield (
         lambda: (
@@ -463,7 +482,7 @@ def finish_jog(controller: GrblController) -> Script:
 
 
 def _is_door_open(c: GrblController) -> bool:
-    """Return whether the controller reads no lines because its door is open."""
+    """Return whether the safety door is open, so that the controller does not read lines."""
     return c.report is not None and c.report.state == "Door"
 
 

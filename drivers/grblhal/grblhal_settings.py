@@ -33,7 +33,7 @@ def parse_settings(lines: list[str]) -> dict[int, str]:
 
 
 def is_same_setting(present: str | None, required: float | str) -> bool:
-    """Return whether a setting equals the required value within its reported decimals."""
+    """Return whether a setting is equal to the required value, rounded to the reported decimals."""
     if present is None or isinstance(required, str):
         return present == required
     decimals = len(present.partition(".")[2])
@@ -44,7 +44,7 @@ def is_same_setting(present: str | None, required: float | str) -> bool:
 
 
 def format_setting(value: float | str) -> str:
-    """Return a setting value as text without an exponent, which the controller cannot read."""
+    """Return a setting value as text without an exponent, because the controller cannot read exponents."""
     if isinstance(value, str):
         return value
     return f"{value:.6f}".rstrip("0").rstrip(".")

@@ -1,4 +1,4 @@
-"""Keys of the JSON output of commands, for the reference page and its tests."""
+"""Keys in the JSON output of commands, for the reference page and its tests."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The control inside its process: executor, watchdog, recorder, and the connected screen.
+"""Server in the control process, with executor, watchdog, recorder and connected screen.
 
-The executor never waits for the screen. A new snapshot replaces one that was not sent yet. Events and notes
-wait in order until a screen receives them.
+The executor never waits for the screen. A new snapshot replaces a snapshot that was not sent yet. Events
+and notes wait in order until a screen receives them.
 """
 
 from __future__ import annotations
@@ -96,10 +96,11 @@ _NO_SCREEN_TEXT = Message("TurnDesk, because the screen did not respond")
 
 
 class ControlServer:
-    """The control of one machine, with the connection to its screen.
+    """Server for the control of one machine, with the connection to its screen.
 
-    ``folder`` is the data folder, in which the scope writes its records. ``lock`` is a file that a driver
-    host holds until it has ended. Raises DriverError if the machine cannot be connected.
+    ``folder`` is the data folder, in which the scope writes its records. ``lock`` is the descriptor of a
+    file that a driver host does not close before it ends. Raises DriverError if the machine cannot be
+    connected.
     """
 
     def __init__(
@@ -153,7 +154,7 @@ class ControlServer:
         self._watchdog.start()
 
     def close(self) -> None:
-        """Stop the machine as an E-stop does, and close its drivers."""
+        """Stop the machine as an emergency stop does, and close its drivers."""
         close_in_order(
             (
                 ClosingStep("watchdog", self._watchdog.stop_checks),
@@ -169,7 +170,7 @@ class ControlServer:
         close_in_order([ClosingStep("events", self._save_events)])
 
     def _save_events(self) -> None:
-        """Save the events that no screen has stored, for the next start."""
+        """Save the events that no screen has stored, so that the next start can read them."""
         left = self.outbox.unconfirmed_events if self._screen is None else []
         if left:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
@@ -193,7 +194,10 @@ class ControlServer:
     # --- Screen ---------------------------------------------------------------------------------------
 
     def serve_screen(self, connection: Connection) -> None:
-        """Serve one screen until its connection ends, then close it; a second screen is rejected."""
+        """Serve one screen until its connection ends, and then close the connection.
+
+        A second screen is rejected.
+        """
         with connection:
             if not self._served.acquire(
                 timeout=JOIN_TIMEOUT_S
@@ -283,7 +287,7 @@ class ControlServer:
                 _log.error("the control does not know this message of the screen: %r", message)
 
     def _stop(self, stop: StopPress) -> None:
-        """Carry out a stop key. Called in the thread of its socket."""
+        """Execute a stop key. The method is called in the thread of the key's socket."""
         self._stopped_at = max(self._stopped_at, self._clock.now())
         panel = self._connected.on_screen_station
         if stop.kind is StopKind.ESTOP and panel is not None:
@@ -292,11 +296,12 @@ class ControlServer:
             self.executor.post(FeedHold(stop.kind.source_text, stop.press_number))
 
     def _post_commands(self) -> None:
-        """Send commands to the executor in order, in a separate thread, because reading a program takes time.
+        """Send commands to the executor in order, in a separate thread, because reading a program takes
+        time.
 
-        A stop overtakes them. Commands that start something and were sent before the stop are dropped. With
-        a real-time policy, the thread has the lowest priority, so that reading never delays a tick by a time
-        slice.
+        A stop takes precedence over waiting commands. Commands that start a motion and were sent before the
+        stop are dropped. With a real-time policy, the thread has the lowest priority, so that reading never
+        delays a tick by a time slice.
         """
         lower_thread(READING)
         while not self.closing_event.is_set():
@@ -314,7 +319,7 @@ class ControlServer:
         getattr(self._connected.on_screen_station, hand.name)(*hand.values)
 
     def _release_station(self) -> None:
-        """Release the buttons that the screen has pressed; an E-stop remains pressed."""
+        """Release the buttons that the screen has pressed. An emergency stop remains pressed."""
         if self._connected.on_screen_station is not None:
             for release in ("release_left", "release_right", "release_hold"):
                 getattr(self._connected.on_screen_station, release)()
@@ -327,7 +332,7 @@ class ControlServer:
     def _attach_reading(self, command: Command) -> Command:
         """Return the command with its program already read.
 
-        The executor's thread has no time for reading a program.
+        The executor's thread does not have enough time to read a program.
         """
         if not isinstance(command, LoadJob | ChangeOffsets | PrepareStart) or command.job is None:
             return command
@@ -344,9 +349,11 @@ class ControlServer:
     # --- Screen that is silent or disconnected --------------------------------------------------------
 
     def check_screen(self) -> None:
-        """Check the screen, every ``CHECK_INTERVAL_S`` seconds.
+        """Check whether the screen responds.
 
-        Without a screen, a cut continues or stops, as the machine file specifies.
+        The watchdog calls this method every ``CHECK_INTERVAL_S`` seconds.
+
+        Without a screen, a cut continues or stops as the machine file specifies.
         """
         self._quiet += 1
         self._away = 0 if self._screen is not None else self._away + 1
@@ -367,7 +374,7 @@ class ControlServer:
             self.closing_event.set()
 
     def _run_without_screen(self) -> None:
-        """React to a lost screen, which can no longer stop the machine or count parts."""
+        """React to the loss of the screen, which can no longer stop the machine or count parts."""
         self._saved = NOT_SAVED
         if self._machine.hardware.continues_without_screen:
             self.executor.post(BlockNextPart(_NO_SCREEN_TEXT))
@@ -384,13 +391,13 @@ class ControlServer:
 
 
 def _row(event: LogEvent, began: datetime) -> EventRow:
-    """Return the event as a row of the log; ``began`` is the zero of the control's clock."""
+    """Return the event as a row of the event log. ``began`` is the zero of the control's clock."""
     at = format_utc(began + timedelta(seconds=event.time_s))
     return EventRow(at, event.kind, event.text, event.line, event.record_name)
 
 
 def list_watched_threads() -> tuple[str, ...]:
-    """Return the names of threads in this process whose end is reported to the operator."""
+    """Return the names of the threads in this process whose unexpected end is reported to the operator."""
     return (
         "commands",
         "recorder",

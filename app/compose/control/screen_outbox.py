@@ -27,9 +27,10 @@ NOT_SAVED = object()
 
 
 class ScreenOutbox:
-    """Messages waiting for the screen. Any thread adds messages, and the screen's sender sends them.
+    """Queue of messages for the screen.
 
-    An event waits until the screen confirms that it is stored. Otherwise the next screen receives it again.
+    Any thread adds messages, and the screen's sender thread sends them. An event waits until the screen
+    confirms that the event is stored. Otherwise the next screen receives the event again.
     """
 
     def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
@@ -44,16 +45,16 @@ class ScreenOutbox:
         self._shown: Snapshot | None = None
 
     def request_snapshot(self) -> None:
-        """Request that the newest snapshot is sent."""
+        """Request that the sender sends the newest snapshot."""
         self._ready.set()
 
     def request_changed_snapshot(self) -> None:
-        """Request that the newest snapshot is sent immediately and marked as changed."""
+        """Request that the sender immediately sends the newest snapshot, marked as changed."""
         self._stirred = True
         self._ready.set()
 
     def add_event(self, event: LogEvent) -> None:
-        """Queue an event."""
+        """Add an event to the queue."""
         with self._lock:
             self._number += 1
             self._events.append(EventMessage(self._number, event))
@@ -67,7 +68,7 @@ class ScreenOutbox:
 
     @property
     def unconfirmed_events(self) -> list[EventMessage]:
-        """Events that no screen has confirmed."""
+        """Return the events that no screen has confirmed."""
         with self._lock:
             return list(self._events)
 
@@ -77,17 +78,20 @@ class ScreenOutbox:
         self._ready.set()
 
     def add_thread_end(self, name: str) -> None:
-        """Queue the message that a thread has ended."""
+        """Add the message that a thread has ended unexpectedly."""
         self._ended.append(ThreadEnded(name))
         self._ready.set()
 
     def add_closed(self) -> None:
-        """Request the message that the machine is closed."""
+        """Request that the sender reports that the machine is closed."""
         self._closed = True
         self._ready.set()
 
     def send_messages(self, connection: Connection, screen_gone: threading.Event) -> None:
-        """Send waiting messages to a screen until ``gone`` is set. Raises OSError if its connection ends."""
+        """Send waiting messages to a screen until ``screen_gone`` is set.
+
+        Raises OSError if the connection ends.
+        """
         self._shown, self._sent = None, 0
         while not screen_gone.is_set():
             self._ready.wait(RECHECK_INTERVAL_S)
@@ -98,7 +102,7 @@ class ScreenOutbox:
                 screen_gone.wait(SNAPSHOT_INTERVAL_S)
 
     def _send_all(self, connection: Connection) -> bool:
-        """Send all waiting messages; return whether the machine is closed."""
+        """Send all waiting messages, and return whether the machine is closed."""
         with self._lock:
             events = [each for each in self._events if each.number > self._sent]
         for event in events:

@@ -1,7 +1,7 @@
-"""Analyses of a record: path error, thread passes, ball-bar plot of an arc, response of axis and spindle.
+"""Analyses of a scope record: path error, thread passes, ball-bar plot, and axis and spindle response.
 
-They take what the scope shows frozen, or of live samples the last program that ran. A worker works them out;
-what cannot be told is a sentence.
+An analysis uses the frozen curves of the scope, or else the last program run in the live samples. A worker
+calculates the results. If no result is possible, the reason is shown as a sentence.
 """
 
 from __future__ import annotations
@@ -52,7 +52,11 @@ _WORST = 12
 
 @dataclass(slots=True)
 class AnalysesModel:
-    """``marked`` row of the table, ``magnified`` how many times an error is drawn larger."""
+    """Model of the analyses page.
+
+    ``selected_row`` is the selected row of the table, and ``magnification`` is the factor by which the
+    drawing enlarges errors.
+    """
 
     scope: ScopeModel
     linear_axes: Mapping[str, Axis] = field(default_factory=dict)  # by letter
@@ -67,24 +71,30 @@ class AnalysesModel:
 
     @property
     def desk(self) -> Desk:
-        """Where answers are said."""
+        """Return the desk, which shows messages to the operator."""
         return self.scope.desk
 
     # --- what is asked -------------------------------------------------------------------------------
 
     def opened(self) -> None:
-        """The page comes up: look at what there is now."""
+        """Discard the result and analyze the present data when the page opens."""
         self._of = None
         self.result = None
 
     def choose_analysis(self, kind: AnalysisKind) -> None:
-        """Another analysis; the same again takes newer samples."""
+        """Select an analysis.
+
+        Selecting the same analysis again uses newer samples.
+        """
         self.desk.clear_prompt_line()
         self.kind, self.arc_index, self.selected_row = kind, 0, 0
         self.opened()
 
     def select_next_arc(self) -> None:
-        """The next arc of the record."""
+        """Select the next arc of the record.
+
+        If another analysis is selected, select the ball-bar analysis instead.
+        """
         self.desk.clear_prompt_line()
         if self.kind is not AnalysisKind.BALL_BAR:
             self.choose_analysis(AnalysisKind.BALL_BAR)
@@ -93,12 +103,12 @@ class AnalysesModel:
         self.opened()
 
     def change_magnification(self, steps: int) -> None:
-        """Draw the error larger or smaller."""
+        """Change the magnification of the errors by a number of steps."""
         at = min(range(len(MAGNIFICATIONS)), key=lambda i: abs(MAGNIFICATIONS[i] - self.magnification))
         self.magnification = MAGNIFICATIONS[max(0, min(len(MAGNIFICATIONS) - 1, at + steps))]
 
     def typed(self, key: str) -> bool:
-        """Arrows mark a row."""
+        """Move the selection with an arrow key and return whether the key was used."""
         count = len(self.make_table().rows)
         if key not in ROW_STEPS or not count:
             return False
@@ -106,11 +116,14 @@ class AnalysesModel:
         return True
 
     def select_row(self, row: int) -> None:
-        """The drawing shows where it is."""
+        """Select a row of the table, whose position the drawing then marks."""
         self.selected_row = max(0, min(len(self.make_table().rows) - 1, row))
 
     def update(self) -> None:
-        """Once a frame: what the worker has found; it is asked once."""
+        """Process the result of the worker and start the requested analysis.
+
+        This method is called once per frame. Each analysis is requested only once.
+        """
         self.worker.poll()
         if self._of is None and not self.worker.is_busy:
             kind, arc, drives, spindle = self.kind, self.arc_index, self.linear_axes, self.spindle
@@ -142,13 +155,13 @@ class AnalysesModel:
             self.result = found
 
     def close(self) -> None:
-        """End the worker."""
+        """Stop the worker."""
         self.worker.close()
 
     # --- what is shown -------------------------------------------------------------------------------
 
     def make_drawing(self) -> AnalysisDrawing:
-        """Lines of what was found."""
+        """Return the drawing of the result, which is empty if there is no result."""
         found = self.result
         if found is None or found.missing_reason:
             return AnalysisDrawing()
@@ -161,7 +174,7 @@ class AnalysesModel:
         return _response_drawing(found)
 
     def make_table(self) -> TableContent:
-        """Figures of what was found."""
+        """Return the table of the result."""
         found, metric = self.result, self.scope.metric
         title = tr(self.kind.value)
         if found is None:
@@ -176,7 +189,7 @@ class AnalysesModel:
 
     @property
     def description(self) -> str:
-        """What is looked at, above the drawing."""
+        """Return the description of the analyzed data, which is shown above the drawing."""
         found = self.result
         if found is None:
             return tr("CALCULATING …")
@@ -192,7 +205,10 @@ class AnalysesModel:
 
 
 def find_last_run(record: ScopeRecord) -> ScopeRecord:
-    """Of samples the last stretch in which lines of a program were executed; all of it where none were."""
+    """Return the part of a record in which program lines were last executed.
+
+    If no program line was executed, the whole record is returned.
+    """
     lines = record.values_by_channel.get("line")
     if lines is None or not (lines > 0).any():
         return record
@@ -210,7 +226,10 @@ def analyze(
     linear_axes: Mapping[str, Axis],
     spindle: SpindleModel | None = None,
 ) -> Found:
-    """Work it out; what cannot be is told by ``missing_reason``."""
+    """Return the result of an analysis.
+
+    If the analysis is not possible, ``missing_reason`` of the result contains the reason.
+    """
     try:
         if kind is AnalysisKind.SPINDLE_RESPONSE:
             return Found(kind, spindle_response=find_last_run_up(record, spindle))
@@ -258,7 +277,10 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
 def _analyze_ball_bar(
     slides: tuple[str, ...], setpoints: FloatArray, actual: FloatArray, lines: FloatArray, arc: int
 ) -> Found:
-    """The arc of this number, in whichever plane of two slides it lies."""
+    """Return the ball-bar result of an arc, in whichever plane of two axes the arc is.
+
+    ``arc`` is the number of the arc, from 0. After the last arc, the numbers start again at the first arc.
+    """
     arcs = [
         (cut.start, line, cut, pair)
         for pair in combinations(range(len(slides)), 2)
@@ -285,7 +307,10 @@ def _analyze_ball_bar(
 
 
 def _select_drawn_axes(slides: tuple[str, ...], setpoints: FloatArray) -> tuple[str, str]:
-    """The two slides that went furthest: a path of three is drawn as it is seen along the third."""
+    """Return the two axes with the longest travel.
+
+    A path in three axes is drawn as seen along the third axis.
+    """
     least = int(np.argmin(np.ptp(setpoints, axis=0))) if len(slides) > 2 else -1
     first, second = (each for number, each in enumerate(slides) if number != least)
     return first, second

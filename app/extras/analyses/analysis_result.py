@@ -18,7 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 class AnalysisKind(Enum):
-    """What is looked for."""
+    """Type of analysis."""
 
     PATH = "PATH ERROR"
     THREAD = "THREAD"
@@ -29,7 +29,11 @@ class AnalysisKind(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Found:
-    """What an analysis has found: one of the three, or ``missing_reason`` there is nothing."""
+    """Result of an analysis.
+
+    Only the field of the analysis that was run is set. ``missing_reason`` is the reason if there is no
+    result.
+    """
 
     kind: AnalysisKind
     missing_reason: str = ""

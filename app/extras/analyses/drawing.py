@@ -39,7 +39,11 @@ class AnalysisDrawing:
 
 
 def scale_drawing(drawing: AnalysisDrawing, factor: float) -> AnalysisDrawing:
-    """In another unit of length, both ways of equal axes, else upwards."""
+    """Return the drawing in another unit of length.
+
+    Axes with one scale are both multiplied by ``factor``. Otherwise only a vertical axis that is a length
+    is multiplied.
+    """
     by = np.array([factor if drawing.has_equal_axes else 1.0, factor if drawing.is_length else 1.0])
     marks = tuple((x * by[0], y * by[1], word) for x, y, word in drawing.labeled_points)
     curves = tuple(each * by for each in drawing.curves)

@@ -1,4 +1,4 @@
-"""Model of the shapes in the editor without Qt: the list, the form, and the text with its lines."""
+"""Model of the shapes in the editor without Qt, with the list, the form and the program text."""
 
 from __future__ import annotations
 
@@ -30,16 +30,20 @@ from core.message import Message
 
 
 def supports_shapes(name: str) -> bool:
-    """Return whether shapes can be written into a program of this name: OmniTurn and SINUMERIK only."""
+    """Return whether shapes can be written into a program with this name.
+
+    Only OmniTurn and SINUMERIK programs can contain shapes.
+    """
     return guess_dialect(name) in SHAPES_BY_DIALECT
 
 
 @dataclass(slots=True)
 class ShapesModel(PanelModel):
-    """Model of the shapes panel. ``read_shop_data`` reads machine and tool data from the store on a worker.
+    """Model of the shapes panel.
 
-    ``text`` is the program with the lines of the form. ``cursor_line`` is the line, from 0, before which a
-    new shape is written. ``number`` counts the texts to prove.
+    ``read_shop_data`` reads machine and tool data from the store on a worker. ``text`` is the program with
+    the lines of the form, and ``text_number`` counts the texts to prove. ``cursor_line`` is the line,
+    counted from 0, before which a new shape is written.
     """
 
     read_shop_data: Callable[[], ShopData] = ShopData
@@ -71,7 +75,10 @@ class ShapesModel(PanelModel):
             each.close()
 
     def poll(self) -> None:
-        """Process the results of the workers; called once per frame."""
+        """Process the results of the workers.
+
+        This method is called once per frame.
+        """
         self.worker.poll()
         for each in self.added_forms:
             each.poll()
@@ -79,10 +86,11 @@ class ShapesModel(PanelModel):
     # --- opening -------------------------------------------------------------------------------------
 
     def open(self, name: str, text: str, line: int, *, helpers: bool = False) -> str:
-        """Open the shapes for a text with the cursor on ``line``, from 1.
+        """Open the shapes for a program text.
 
-        Returns a reason if that is not possible, or an empty string. ``helpers`` lists calculators and
-        templates instead, and does not open a piece of the text.
+        ``line`` is the cursor line, counted from 1. ``helpers`` lists calculators and templates instead of
+        shapes, and does not open the piece at the cursor. Returns the reason if opening is not possible, or
+        an empty string.
         """
         if not supports_shapes(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
@@ -105,7 +113,7 @@ class ShapesModel(PanelModel):
         return ""
 
     def _report_unreadable(self, line: int) -> None:
-        """Report lines of a form that can no longer be read."""
+        """Report that the lines of a form can no longer be read."""
         found = (
             find_damaged_comment(self.program_lines, line, self.initial_settings.dialect)
             if self.lists_shapes
@@ -118,17 +126,17 @@ class ShapesModel(PanelModel):
 
     @property
     def lists_shapes(self) -> bool:
-        """Whether the list contains shapes instead of calculators and templates."""
+        """Return whether the list contains shapes and not calculators and templates."""
         return all(self.shape_table is not each for each in CALCULATORS_BY_DIALECT.values())
 
     @property
     def form_keys(self) -> tuple[str, ...]:
-        """Keys that open the forms of the list."""
+        """Return the keys that open the forms of the list."""
         return tuple(self.shape_table)
 
     @property
     def listed_pieces(self) -> list[ShapePiece]:
-        """Pieces of the program that follow the forms in the list."""
+        """Return the pieces of the program that the list shows after the forms."""
         return self.pieces if self.lists_shapes else []
 
     def _take(self, text: str) -> None:
@@ -154,11 +162,11 @@ class ShapesModel(PanelModel):
 
     @property
     def is_list_shown(self) -> bool:
-        """Whether the list is shown."""
+        """Return whether the list is shown instead of a form."""
         return self.form is None
 
     def choose(self, place: int) -> None:
-        """Select a shape of the list or a piece of the program."""
+        """Select a shape in the list or a piece of the program."""
         self.selected_row = max(0, min(place, len(self.shape_table) + len(self.listed_pieces) - 1))
 
     def open_selected(self) -> None:
@@ -199,7 +207,7 @@ class ShapesModel(PanelModel):
         self._preview()
 
     def open_file(self, file: Path) -> None:
-        """Open the form of the feature that makes a program from this file."""
+        """Open the form that makes a program from this file."""
         for each in self.added_forms:
             if each.accepts_file(file.name):
                 self.requested_file = file
@@ -210,11 +218,11 @@ class ShapesModel(PanelModel):
 
     @property
     def _adder(self) -> AddedForm | None:
-        """Form object that the open form belongs to, or None for a shape."""
+        """Return the added form to which the open form belongs, or None for a shape."""
         return self._adder_of(self.form.shape) if self.form is not None else None
 
     def _open_piece(self, piece: ShapePiece) -> None:
-        """Open the form of a piece, and report changes made by hand."""
+        """Open the form of a piece, and report changes that were made by hand."""
         self.notice, self.pending_action = "", None
         if piece.adopted_fields:
             words = ", ".join(
@@ -232,7 +240,7 @@ class ShapesModel(PanelModel):
     # --- form ----------------------------------------------------------------------------------------
 
     def function_keys(self) -> dict[int, FunctionKey]:
-        """Return the function keys."""
+        """Return the function keys of the form or the list."""
         pad = FunctionKey("KEYPAD", self.toggle_pad)
         if self.form is None:
             return {2: FunctionKey("OPEN", self.open_selected), 9: pad}
@@ -259,7 +267,7 @@ class ShapesModel(PanelModel):
         self.is_pad_visible = not self.is_pad_visible
 
     def handle_key(self, key: str) -> bool:
-        """Handle a key. Return False if it has no function here."""
+        """Handle a key, and return False if the key has no function here."""
         if self.form is not None:
             return self._typed_in_form(self.form, key)
         if key.upper() in self.shape_table:
@@ -283,13 +291,16 @@ class ShapesModel(PanelModel):
         return True
 
     def accepts_key(self, key: str) -> bool:
-        """Return whether a character is part of an entry."""
+        """Return whether a character can be entered, or opens a form."""
         if self.form is not None:
             return self.form.accepts_key(key)
         return len(key) == 1 and key.upper() in self.shape_table
 
     def select_touched(self, word: str) -> None:
-        """Select the touched field, point or dimension. A second touch selects the next choice."""
+        """Select the touched field, point or dimension.
+
+        A second touch on a field with choices selects the next choice.
+        """
         form = self.form
         if form is None:
             return
@@ -304,7 +315,7 @@ class ShapesModel(PanelModel):
         self._preview()
 
     def handle_touch(self, point: tuple[float, float]) -> None:
-        """Handle a touch on the drawing outside its dimensions."""
+        """Handle a touch on the sketch outside its dimensions."""
         if self.form is not None:
             self.form.handle_touch(point)
             self._preview()
@@ -315,7 +326,7 @@ class ShapesModel(PanelModel):
             self.form.select_row(len(self.form.fields) + number, column)
 
     def insert_point(self) -> None:
-        """Insert a point (F3)."""
+        """Insert a point before the selected point (F3)."""
         if self.form is not None:
             self.form.insert_point()
             self._preview()
@@ -327,7 +338,7 @@ class ShapesModel(PanelModel):
             self._preview()
 
     def handle_escape(self) -> bool:
-        """Cancel the question or the form. Return False on the list."""
+        """Cancel the question, the calculation or the form, and return False if only the list is shown."""
         if self.pending_action is not None:
             self.pending_action, self.notice = None, ""
         elif self.notice:
@@ -341,12 +352,15 @@ class ShapesModel(PanelModel):
         return True
 
     def return_to_list(self) -> None:
-        """Return to the list and discard unwritten entries."""
+        """Return to the list and discard entries that were not written."""
         self.pending_action, self.notice, self.form = None, "", None
         self._show("\n".join(self.program_lines) + "\n" if self.program_lines else "")
 
     def write_form(self) -> None:
-        """Write the form into the text (F2). Replacing lines edited by hand requires confirmation."""
+        """Write the form into the program text (F2).
+
+        Replacing lines that were edited by hand requires confirmation.
+        """
         form = self.form
         if form is None:
             return
@@ -401,7 +415,7 @@ class ShapesModel(PanelModel):
         self.selected_row = 0 if not self.pieces else max(1, self.selected_row)
 
     def delete_piece(self) -> None:
-        """Delete the piece from the text after confirmation (F5)."""
+        """Ask for confirmation and delete the piece from the program text (F5)."""
         form = self.form
         if form is None or form.replaced_piece is None:
             return
@@ -428,7 +442,10 @@ class ShapesModel(PanelModel):
 
     @property
     def path_line(self) -> int:
-        """Line, from 1, up to which the path is shown: the end of the form, or the insertion line."""
+        """Return the line up to which the path is shown, counted from 1.
+
+        This is the last line of the form, or the insertion line if no form is open.
+        """
         form = self.form
         if form is None:
             return self.cursor_line
@@ -437,7 +454,7 @@ class ShapesModel(PanelModel):
         ) + len(form.lines)
 
     def _preview(self) -> None:
-        """Show the text with the lines of the form, or the unchanged text while the form is incomplete."""
+        """Show the program text with the lines of the form, or unchanged while the form is incomplete."""
         form = self.form
         if form is None:
             return
@@ -452,7 +469,7 @@ class ShapesModel(PanelModel):
         self._show("\n".join(text) + "\n")
 
     def _show_calculated(self, form: ShapeForm) -> str | None:
-        """Show a calculated form and return the text, or None if the form is closed."""
+        """Show a calculated form and return the program text, or None if the form is closed."""
         if self.form is not form:
             return None
         self._preview()
@@ -467,7 +484,7 @@ class ShapesModel(PanelModel):
             self.text_number += 1
 
     def prompt_text(self) -> str:
-        """Return the prompt for the present keys."""
+        """Return the prompt that explains the present keys."""
         if self.notice:
             return self.notice
         if self.form is None and not self.lists_shapes:

@@ -22,7 +22,7 @@ _GRAIN = 2_000_000_000  # ns: a file that was just written can change again with
 
 @dataclass(frozen=True, slots=True)
 class ProgramFile:
-    """Program file with the SHA-256 of its content."""
+    """Program file with the SHA-256 digest of its content."""
 
     name: str
     path: Path
@@ -31,9 +31,9 @@ class ProgramFile:
 
 @dataclass(slots=True)
 class LocalProgramFiles:
-    """Files of the operator's folder.
+    """Program files in the folder of the operator.
 
-    A file is read again only after a change of time or size.
+    A file is read again only if its time or size has changed.
     """
 
     folder: Path
@@ -45,9 +45,9 @@ class LocalProgramFiles:
     _seen: dict[str, _Stamp] = field(default_factory=dict)
 
     def read_files(self, *, is_settled: bool) -> dict[str, ProgramFile]:
-        """Return the files by the key of their program.
+        """Return the program files by program key.
 
-        With ``is_settled``, a file that is still being written is left for the next scan.
+        If ``is_settled`` is set, a file that is still being written is skipped until the next scan.
         """
         found, refused, stamps = dict[str, ProgramFile](), dict[str, str](), dict[str, _Stamp]()
         names = [path.name for path in _program_files(self.folder)]

@@ -1,8 +1,8 @@
-"""Sharing of programs with other machines: publishing local versions, reading and using others.
+"""Sharing of programs with other machines, which publishes local versions and reads remote versions.
 
-The store of this machine is authoritative: every version is stored before it is published, and versions wait
-in the store while the location is not available. Versions of other machines are never copied to the program
-folder without a request.
+The store of this machine is authoritative. Every version is stored before it is published. While the
+location is not available, versions wait in the store. Versions of other machines are copied to the program
+folder only on request.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ _PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead net
 
 
 class SharingThread:
-    """Thread that synchronizes every ``every`` seconds.
+    """Thread that synchronizes shared programs at regular intervals.
 
-    It calls ``heard`` with each result.
+    The ``every`` parameter is the interval in seconds. The ``heard`` parameter is called with each result.
     """
 
     def __init__(
@@ -56,20 +56,29 @@ class SharingThread:
         self._now, self._since = now, -1.0  # start time of the present synchronization, or negative
 
     def start(self) -> None:
-        """Start the thread; to be called once."""
+        """Start the thread.
+
+        This method may be called only once.
+        """
         self._thread.start()
 
     def synchronize_now(self) -> None:
-        """Start a synchronization now; callable from any thread, without waiting."""
+        """Start a synchronization now, without waiting for its end.
+
+        This method can be called from any thread.
+        """
         self._wake.set()
 
     def get_waiting_time(self) -> float:
-        """Return how long the present synchronization has waited for the location, in seconds."""
+        """Return the time in seconds for which the present synchronization has waited for the location."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
 
     def close(self) -> None:
-        """Stop the thread. Unfinished work is repeated after the next start of TurnDesk."""
+        """Stop the thread.
+
+        Unfinished work is repeated when TurnDesk starts again.
+        """
         self._closing.set()
         self._wake.set()
         if self._thread.is_alive():
@@ -90,9 +99,9 @@ _AT_ONCE, _BYTES_AT_ONCE = 200, 8 * 2**20  # versions that are published togethe
 
 
 class VersionCopyError(CodedError):
-    """Error for a version that was not copied.
+    """Error for a version that could not be copied.
 
-    The program is unchanged, and the message states the reason.
+    The program is unchanged. The message states the reason.
     """
 
 
@@ -100,7 +109,7 @@ class VersionCopyError(CodedError):
 class SharingResult:
     """Immutable result of a synchronization.
 
-    ``trouble`` is the reason why the location was not usable.
+    ``error_text`` is the reason if the location could not be used, or else empty.
     """
 
     programs: Mapping[str, ProgramVersions] = field(default_factory=dict)
@@ -123,9 +132,9 @@ class SharingResult:
 
 
 class ProgramSharing:
-    """Sharing of programs.
+    """Synchronization of programs with the shared location.
 
-    Methods can wait for disk and network, and are called on workers only.
+    The methods can wait for disk and network, so only workers may call them.
     """
 
     def __init__(
@@ -139,9 +148,9 @@ class ProgramSharing:
     # --- synchronization -------------------------------------------------------------------------------
 
     def synchronize(self, *, is_settled: bool = False) -> SharingResult:
-        """Read other versions, store local changes and publish them.
+        """Read remote versions, store local changes, and publish local versions.
 
-        An error is set in ``trouble``.
+        If the location cannot be used, ``error_text`` of the result contains the reason.
         """
         with self._lock:
             found, trouble = None, ""
@@ -160,7 +169,10 @@ class ProgramSharing:
             return self.last_result
 
     def preview(self) -> SharingResult:
-        """Return what a synchronization would find, without storing anything. Raises StoreError."""
+        """Return the result that a synchronization would have, without storing anything.
+
+        Raises StoreError.
+        """
         with self._lock:
             store, found, trouble = self._store(), None, ""
             fresh: Sequence[SharedVersion] = ()
@@ -187,7 +199,7 @@ class ProgramSharing:
         return found
 
     def _note(self, store: Store, *, is_settled: bool) -> None:
-        """Store the present files as versions, and mark programs whose file is gone."""
+        """Store the present files as versions, and mark the programs whose file no longer exists."""
         files = self._files.read_files(is_settled=is_settled)
         store.write(partial(self._noted, files)).result()
 
@@ -216,7 +228,7 @@ class ProgramSharing:
         shared_versions.set_local_version(connection, make_program_key(file.name), version.id)
 
     def _publish(self, store: Store, found: Found) -> str:
-        """Publish local versions, and return an error or an empty string."""
+        """Publish local versions, and return an error message or an empty string."""
         others = [each for each in found.machine_states if each.machine_id != self.machine_id]
         if any(make_program_key(each.desk) == make_program_key(self.machine_name) for each in others):
             return str(SharingErrorCause.NAME_TAKEN.make_error(self.location.name, self.machine_name))
@@ -285,7 +297,7 @@ class ProgramSharing:
     # --- requests of the operator ----------------------------------------------------------------------
 
     def read_text(self, version: SharedVersion) -> bytes:
-        """Return the text of a version from the store, or else from the location.
+        """Return the text of a version from the store, or else from the shared location.
 
         Raises SharingError and StoreError.
         """
@@ -294,7 +306,10 @@ class ProgramSharing:
         return self.location.read_text(version) if text is None else text
 
     def read_local_text(self, key: str) -> bytes:
-        """Return the local text of a program, or empty bytes. Raises StoreError."""
+        """Return the local text of a program, or empty bytes if there is no local version.
+
+        Raises StoreError.
+        """
         family = self.last_result.programs.get(key, ProgramVersions())
         here = family.versions.get(family.local_version_id)
         if here is None:
@@ -305,9 +320,9 @@ class ProgramSharing:
     def copy_version(self, version: SharedVersion) -> str:
         """Copy a version into the program folder and return the file name.
 
-        The previous text remains a version. If both sides have changed the program, the new version follows
-        both, so that other machines see the conflict as resolved. Raises TakeError, SharingError and
-        StoreError. The program is then unchanged.
+        The previous text remains stored as a version. If both sides have changed the program, the new
+        version follows both versions, so other machines detect that the conflict is resolved. Raises
+        VersionCopyError, SharingError and StoreError; the program is then unchanged.
         """
         text = self.read_text(version)
         with self._lock:
@@ -340,7 +355,10 @@ class ProgramSharing:
             return name
 
     def resolve_with_local(self, key: str) -> None:
-        """Resolve a conflict in favor of the local version. Raises TakeError and StoreError."""
+        """Resolve a conflict in favor of the local version.
+
+        Raises VersionCopyError and StoreError.
+        """
         with self._lock:
             store = self._store()
             self._note(store, is_settled=False)
@@ -370,9 +388,10 @@ class ProgramSharing:
             self._tell(store, None, self.last_result.error_text)
 
     def _free_name(self, version: SharedVersion) -> str:
-        """Return the name of the local file that differs only in case, or else the version's name.
+        """Return the file name to which a version is copied.
 
-        Raises TakeError.
+        If a local file has the same name except for case, this is the name of that file. Otherwise it is
+        the name of the version. Raises VersionCopyError.
         """
         names = [each for each in self._files.rejected_files if make_program_key(each) == version.program_key]
         if names:

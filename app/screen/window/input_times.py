@@ -32,16 +32,16 @@ class InputTimes:
 
     @property
     def is_screen_seen(self) -> bool:
-        """Whether the operator has seen the present screen since the last stall."""
+        """Return whether the operator has seen the current screen since the last stall."""
         return self._frames >= FRAMES_AFTER_STALL
 
     def frame(self) -> None:
-        """Note that a frame is shown."""
+        """Record that a frame is shown."""
         self._lives(self.clock())
         self._frames += 1
 
     def note_input(self) -> None:
-        """Note an input event, before its time is checked."""
+        """Record an input event before its time is checked."""
         self.touch_time = self.clock()
         self._lives(self.touch_time)
         self.on_wake()
@@ -52,9 +52,10 @@ class InputTimes:
         self._alive = now
 
     def find_event_time(self, time_ms: int, event_source: str = "") -> float:
-        """Return the time of an event in seconds of the screen's clock. An event without a stamp happens now.
+        """Return the time of an event in seconds of the screen's clock.
 
-        ``time_ms`` is in ms of the clock ``event_source``. Each clock has its own offset.
+        An event without a time stamp is treated as occurring now. ``time_ms`` is in ms of the clock
+        ``event_source``. Each clock has its own offset.
         """
         now = self.clock()
         if not time_ms:
@@ -68,14 +69,14 @@ class InputTimes:
         return min(now, time_ms / 1000 + offset)
 
     def was_delayed(self, time_ms: int, event_source: str = "") -> bool:
-        """Return whether an event waited during a stall of the screen or on its path to the screen."""
+        """Return whether an event waited during a stall of the screen, or before it reached the screen."""
         if not time_ms:
             return False
         at = self.find_event_time(time_ms, event_source)
         return at <= self._behind or not self.is_screen_seen or self.clock() - at > STALL_TIME_S
 
     def note_dropped(self, time_ms: int, event_source: str = "") -> None:
-        """Note that an answer was dropped, so that the presses that follow are dropped, too."""
+        """Record that an answer was dropped, so that the presses that follow are dropped, too."""
         self._dropped = max(self._dropped, self.find_event_time(time_ms, event_source))
 
     def follows_dropped(self, time_ms: int, event_source: str = "") -> bool:

@@ -2,10 +2,11 @@
 
 Pause starts feed hold and Scroll Lock is the E-stop, with any modifier, lock and keyboard layout. H, Space
 and E do the same if no caret is visible. Esc starts feed hold while the machine moves, unless the page uses
-Esc. The filter tracks which other keys are really down. A repeat is not a press. A key that was pressed while
-another window had the keyboard is dead until its release. A press that waited during a stall of the screen is
-executed in order but starts nothing (``app.desk.late_presses``). If an answer is dropped for this reason, the
-presses that follow without a pause are also dropped, because they relied on the answer.
+Esc. The filter tracks which other keys are really down. A repeat is not a press. A key that was pressed
+while another window had the keyboard focus is ignored until it is released. A press that waited during a
+stall of the screen is executed in order but starts nothing (``app.desk.late_presses``). If an answer is
+dropped for this reason, the presses that follow without a pause are also dropped, because they relied on
+the answer.
 """
 
 from __future__ import annotations
@@ -56,13 +57,16 @@ _KEY_EVENTS = frozenset({QEvent.Type.KeyPress, QEvent.Type.KeyRelease})
 
 
 class StopFunction(Protocol):
-    """A function that stops the machine. ``press`` is the number of the key press."""
+    """A function that stops the machine.
+
+    ``press`` is the number of the key press.
+    """
 
     def __call__(self, *, press: int) -> None: ...
 
 
 class KeyboardTarget(Protocol):
-    """Interface of the main window as the keyboard uses it."""
+    """Interface through which the keyboard filter uses the main window."""
 
     def start_feed_hold(self, source: str = "", press: int = 0) -> None: ...
 
@@ -88,7 +92,10 @@ class KeyboardTarget(Protocol):
 
 
 def find_letter(event: QKeyEvent) -> str:
-    """Return the letter of a key in its layout, or on a PC keyboard if the layout has no Latin letters."""
+    """Return the letter of a key in its layout.
+
+    If the layout has no Latin letters, return the letter at this position of a PC keyboard.
+    """
     key = event.key()
     if Key.Key_A <= key <= Key.Key_Z:
         return chr(key)
@@ -98,13 +105,19 @@ def find_letter(event: QKeyEvent) -> str:
 
 
 def find_key_code(event: QKeyEvent) -> int:
-    """Return Qt's code of a key, with the Latin letter of its place in a layout without Latin letters."""
+    """Return Qt's code of a key.
+
+    In a layout without Latin letters, this is the code of the Latin letter at the same position.
+    """
     letter = find_letter(event)
     return ord(letter) if letter else event.key()
 
 
 class KeyboardFilter(QObject):
-    """The event filter on the windows of the application. See the module's docstring."""
+    """The event filter on the windows of the application.
+
+    See the docstring of the module.
+    """
 
     def __init__(self, target: KeyboardTarget, input_times: InputTimes) -> None:
         super().__init__()
@@ -132,7 +145,7 @@ class KeyboardFilter(QObject):
             self._server = open_x_server()
 
     def start_key_watcher(self, open_stop_channel: OpenStopChannel) -> KeyWatcherClient | None:
-        """Start the key watcher, or return None if the key watcher is not possible.
+        """Start the key watcher, or return None if this is not possible.
 
         The key watcher needs an X server and a control in a separate process.
         """
@@ -142,18 +155,18 @@ class KeyboardFilter(QObject):
 
     @property
     def delay_s(self) -> float:
-        """The time in seconds that the present event waited, or the duration of the stall."""
+        """Return the time in seconds that the current event waited, or the duration of the stall."""
         return self.input_times.find_delay(self._stamp, self._whose)
 
     @property
     def event_time_s(self) -> float:
-        """The time of the present event in monotonic seconds."""
+        """Return the time of the current event in monotonic seconds."""
         return self.input_times.find_event_time(self._stamp, self._whose)
 
     # --- pressed keys --------------------------------------------------------------------------------
 
     def is_only_key(self, event: QKeyEvent) -> bool:
-        """Return whether no key is down except the key of this event and modifiers."""
+        """Return whether no other key is down except modifiers."""
         return not {key for code, key in self._down.items() if code != find_scan_code(event)} - _MODIFIER_KEYS
 
     def is_stop_held(self) -> bool:
@@ -166,9 +179,9 @@ class KeyboardFilter(QObject):
         self._dead |= self._down.keys()
 
     def read_pressed(self) -> None:
-        """Read which keys are down after the window has got the keyboard.
+        """Read which keys are down after the window has received the keyboard focus.
 
-        They were pressed elsewhere, and are ignored until they are released.
+        These keys were pressed in another window, and are ignored until they are released.
         """
         if self._server is None:
             return
@@ -177,9 +190,9 @@ class KeyboardFilter(QObject):
         self._dead = set(held)
 
     def update(self) -> None:
-        """Process stops of the key watcher and key releases that were lost; called once a frame.
+        """Process stops of the key watcher and key releases that were lost.
 
-        The X server reports which keys are really down.
+        This is called once a frame. The X server reports which keys are really down.
         """
         self._stamp = 0
         windows = QGuiApplication.topLevelWindows()
@@ -224,7 +237,7 @@ class KeyboardFilter(QObject):
         return pressed and self._handle_screen_press(event)
 
     def _read_event_time(self, event: QInputEvent) -> None:
-        """Note the time of an event, and whether it is late."""
+        """Record the time of an event, and whether it is late."""
         self.input_times.note_input()
         self._stamp, self._whose = event.timestamp(), _find_clock(event)
         self._late = self.input_times.was_delayed(self._stamp, self._whose)
@@ -273,7 +286,7 @@ class KeyboardFilter(QObject):
         return self._is_shift_latched(event) and self._send(_copy_event(event, repeat=repeat, shift=False))
 
     def _is_repeat_overtaken(self, code: int) -> bool:
-        """Return whether a press is older than the X server's report that its key is up.
+        """Return whether a press is older than the report of the X server that its key is up.
 
         Such a press is a delayed repeat.
         """
@@ -286,7 +299,10 @@ class KeyboardFilter(QObject):
         return False
 
     def _is_shift_latched(self, event: QKeyEvent) -> bool:
-        """Return whether Shift is locked or sticky and not pressed. Keys without text ignore such a Shift."""
+        """Return whether Shift is locked or sticky, but not pressed.
+
+        Keys without text ignore such a Shift.
+        """
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self._server is None or not shift or event.text():
             return False
@@ -319,7 +335,10 @@ class KeyboardFilter(QObject):
         return False
 
     def _is_paired(self, code: int) -> bool:
-        """Return whether a press and the release before it are a repeat, as some X servers send them."""
+        """Return whether a press and the release before it are a repeat.
+
+        Some X servers send repeats in this form.
+        """
         tells = self._server is not None and self._server.reports_repeats
         return (
             not tells and bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= REPEAT_TIME_MS
@@ -347,14 +366,17 @@ class KeyboardFilter(QObject):
         return self._watched is not None and self._watched.was_sent(press)
 
     def _stops_with(self, key_of_stop: bool) -> bool:
-        """Return whether a character stops the machine. If a caret is visible, every character is text."""
+        """Return whether a character stops the machine.
+
+        If a caret is visible, every character is text.
+        """
         return key_of_stop and not self._behind.has_text_field()
 
     def _relies_on_dropped(self) -> bool:
         return self.input_times.follows_dropped(self._stamp, self._whose)
 
     def note_answer_dropped(self) -> None:
-        """Note that the present press was an answer to a question and was dropped."""
+        """Record that the current press was an answer to a question and was dropped."""
         self.input_times.note_dropped(self._stamp, self._whose)
 
     def _forget(self, starting: StartingAction) -> bool:
@@ -371,7 +393,10 @@ class KeyboardFilter(QObject):
         return event.key() in _EDITING_KEYS and _find_focus_field() is not None
 
     def _send_repeat(self, event: QKeyEvent) -> bool:
-        """Send a key as a repeat. In a standard field, only editing keys repeat."""
+        """Send a key as a repeat.
+
+        In a standard field, only editing keys repeat.
+        """
         field = _find_focus_field()
         if field is not None and not (
             event.key() in _EDITING_KEYS or self._is_writing(event) or _inserts_break(field, event)
@@ -391,7 +416,7 @@ class KeyboardFilter(QObject):
 
 
 def _copy_event(event: QKeyEvent, *, repeat: bool, shift: bool) -> QKeyEvent:
-    """Return a copy of a key event, with its repeat flag set and with or without Shift."""
+    """Return a copy of a key event, with or without its repeat flag and Shift."""
     modifiers = event.modifiers()
     if not shift:
         modifiers &= ~Qt.KeyboardModifier.ShiftModifier
@@ -405,12 +430,15 @@ def find_scan_code(event: QKeyEvent) -> int:
 
 
 def _find_clock(event: QInputEvent) -> str:
-    """Return the name of the clock of an event's time stamp. Touches may use a different clock."""
+    """Return the name of the clock of an event's time stamp.
+
+    Touches may use a different clock.
+    """
     return "touch" if event.deviceType() is QInputDevice.DeviceType.TouchScreen else ""
 
 
 def _find_focus_field() -> QWidget | None:
-    """Return the standard text field that has the keyboard, or None."""
+    """Return the standard text field that has the keyboard focus, or None."""
     at = QApplication.focusWidget()
     return at if isinstance(at, QLineEdit | QPlainTextEdit) and shiboken6.isValid(at) else None
 

@@ -1,4 +1,4 @@
-"""The main window: handles keys, polls the snapshot once a frame, and releases keys that are held down."""
+"""The main window, which handles keys, polls the snapshot once a frame, and releases keys held down."""
 
 from __future__ import annotations
 
@@ -56,7 +56,10 @@ IDLE_AFTER_S = 2.0  # Seconds.
 
 
 class MainWindow(QWidget):
-    """The main window, with one page at a time. Without a model, it shows that TurnDesk is starting."""
+    """The main window, with one page at a time.
+
+    Without a model, it shows that TurnDesk is starting.
+    """
 
     machine_changed = Signal()  # The machine has changed. Any thread may emit this signal.
 
@@ -87,7 +90,7 @@ class MainWindow(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
 
     def show_model(self, desk: Desk) -> None:
-        """Show the model on the screen and begin to poll it."""
+        """Show the model on the screen, and start polling it."""
         self.frame = WindowFrame(self.theme, desk, self.press_key, self)
         # It belongs to another window of this model.
         if (earlier := desk.page_registry.find(PagePreloader)) is not None:
@@ -115,7 +118,7 @@ class MainWindow(QWidget):
         self._timer.start(FRAME_MS)
 
     def _handle_tick(self) -> None:
-        """Refresh the screen at the full rate, or at rest only if something has changed."""
+        """Refresh the screen at the full rate, or only after a change while the machine is at rest."""
         known, frame = self.input_times.is_screen_seen, self.frame
         self.input_times.frame()
         known = (
@@ -137,7 +140,7 @@ class MainWindow(QWidget):
         )
 
     def _is_animating(self, frame: WindowFrame) -> bool:
-        """Return whether the full frame rate is needed, because of motion, animation or recent input."""
+        """Return whether the full frame rate is needed because of motion, animation or recent input."""
         played = frame.current_page.is_animating() and not self.isMinimized()
         return (
             not frame.is_at_rest
@@ -146,12 +149,15 @@ class MainWindow(QWidget):
         )
 
     def _wake_from_thread(self) -> None:
-        """Wake the window from any thread. A closed window ignores the call."""
+        """Wake the window from any thread.
+
+        A closed window ignores the call.
+        """
         with suppress(RuntimeError):
             self.machine_changed.emit()
 
     def _resume_polling(self) -> None:
-        """Return to the full frame rate at the first event or change of the machine."""
+        """Return to the full frame rate at the first event or change of the machine state."""
         self._pace(FRAME_MS)
 
     def _pace(self, interval: int) -> None:
@@ -159,7 +165,7 @@ class MainWindow(QWidget):
             self._timer.setInterval(interval)
 
     def refresh(self) -> None:
-        """Poll one snapshot and show it in all parts."""
+        """Poll one snapshot, and show it in all parts."""
         if self.frame is not None:
             with self.frame.desk.window_state.late_presses.suspend_check():
                 self._check_held_inputs(self.frame)
@@ -180,7 +186,10 @@ class MainWindow(QWidget):
                 panel.release_mouse()
 
     def press_key(self, key_name: str) -> None:
-        """Execute the action of a key. Touch targets call this, too."""
+        """Execute the action of a key.
+
+        Touch targets also call this.
+        """
         frame = self.frame
         action = (frame.key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
         if action is not None:
@@ -222,17 +231,28 @@ class MainWindow(QWidget):
             self.showMaximized()
 
     def show_on(self, screen: QScreen) -> None:
-        """Show the window in a size that suits the screen."""
+        """Show the window in a size that suits the screen.
+
+        A small screen is filled completely. Otherwise the title bar of a window manager could push the
+        function keys off a screen with 600 lines.
+        """
         show_in_suitable_size(self, screen, is_kiosk=self.is_kiosk)
 
     def _handle_escape(self) -> None:
-        """Go one step back: on the page, then a question or feed hold, and finally to the Automatic page."""
+        """Handle Esc.
+
+        Esc goes back one step on the page. If there is no step, it closes a question or starts feed hold.
+        Otherwise it opens the Automatic page.
+        """
         frame = self.frame
         if frame is not None and not (frame.handle_escape() or frame.desk.handle_escape()):
             frame.open_page(AUTOMATIC)
 
     def close_silently(self) -> None:
-        """Stop polling and delete the window without asking. For scripts that only read the screen."""
+        """Stop polling, and delete the window without asking.
+
+        Use this only in scripts that just read the screen.
+        """
         self._timer.stop()
         self.hide()
         self.deleteLater()
@@ -240,26 +260,32 @@ class MainWindow(QWidget):
     # --- functions for the keyboard ------------------------------------------------------------------
 
     def start_feed_hold(self, source: str = "", press: int = 0) -> None:
-        """Start feed hold on any page, field or question. ``source`` names the key in the log."""
+        """Start feed hold on any page, and in any field or question.
+
+        ``source`` names the key in the log.
+        """
         if self.frame is not None:
             self.frame.current_page.end_held_actions()
             self.frame.desk.start_feed_hold(source or SOURCE_SCREEN, press)
             self.refresh()
 
     def press_estop(self, press: int = 0) -> None:
-        """Press the E-stop on any page, field or question."""
+        """Press the E-stop on any page, and in any field or question."""
         if self.frame is not None:
             self.frame.current_page.end_held_actions()
             self.frame.desk.station_keys.press_estop(press)
             self.refresh()
 
     def show_estop_pressed(self) -> None:
-        """Show the simulated E-stop as pressed, after the key watcher has pressed it."""
+        """Show the simulated E-stop as pressed after the key watcher has pressed it."""
         if self.frame is not None and self.frame.desk.desk_control.station_panel is not None:
             self.frame.desk.station_keys.press_estop()
 
     def is_esc_stop_key(self) -> bool:
-        """Return whether Esc starts feed hold now: the machine moves, and Esc has no other function."""
+        """Return whether Esc starts feed hold now.
+
+        It does if the machine moves and Esc has no other function.
+        """
         frame = self.frame
         return (
             frame is not None
@@ -268,11 +294,11 @@ class MainWindow(QWidget):
         )
 
     def has_text_field(self) -> bool:
-        """Return whether an input field has the keyboard and thus gets all characters."""
+        """Return whether an input field has the keyboard focus and therefore gets all characters."""
         return self.frame is not None and self.frame.has_text_field()
 
     def note_activity(self) -> None:
-        """Note that the signed-in user pressed a key or touched the screen."""
+        """Record that the signed-in user pressed a key or touched the screen."""
         if self.frame is not None:
             self.frame.desk.user_access.note_activity()
 
@@ -281,12 +307,15 @@ class MainWindow(QWidget):
         return self.frame is not None and self.frame.accepts_text(key)
 
     def set_late(self, *, is_late: bool) -> None:
-        """Set whether the present event waited during a stall and therefore must not start anything."""
+        """Set whether the current event waited during a stall and therefore must not start anything."""
         if self.frame is not None:
             self.frame.desk.window_state.late_presses.is_late = is_late
 
     def has_screen_changed(self, time_s: float) -> bool:
-        """Return whether the screen showed something else at this time, which the touch was meant for."""
+        """Return whether the screen has changed since this time.
+
+        A touch at that time was meant for the previous screen.
+        """
         seen = [face for since, face in self._faces if since <= time_s]
         return bool(seen) and self.frame is not None and seen[-1] != self.frame.screen_context
 
@@ -327,7 +356,10 @@ class MainWindow(QWidget):
             self.theme.screen = panel_size(size.width(), size.height(), real.width(), real.height())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Handle a key press. A repeat counts only for keys that may repeat."""
+        """Handle a key press.
+
+        A repeat is accepted only for keys that may repeat.
+        """
         frame = self.frame
         if frame is None or self._handle_answer(frame, event):
             return
@@ -352,7 +384,10 @@ class MainWindow(QWidget):
             self.press_key(name)
 
     def _is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
-        """Return whether the key belongs to the Automatic page but another page is open, and show this."""
+        """Return whether the key works only on the Automatic page while another page is open.
+
+        Show a message if so.
+        """
         if (
             name not in AUTOMATIC_KEYS
             or frame.current_page is frame.automatic_page
@@ -364,7 +399,10 @@ class MainWindow(QWidget):
         return True
 
     def _handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the key answered a question. Yes needs a single key with all others released."""
+        """Return whether the key answered a question.
+
+        Yes is accepted only from a single key with all other keys released.
+        """
         typed = {find_letter(event), find_typed_text(event)} - {""}
         if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
             return False
@@ -375,9 +413,10 @@ class MainWindow(QWidget):
         return True
 
     def _is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether an input field rejects the character, so that the key has no other function.
+        """Return whether an input field rejects the character.
 
-        Ctrl+H, Ctrl+Space and Ctrl+E do not stop the machine there either.
+        The key then has no other function. Ctrl+H, Ctrl+Space and Ctrl+E also do not stop the machine in an
+        input field.
         """
         text = event.text()
         if not text.isprintable() or not text or not frame.has_text_field():
@@ -405,7 +444,7 @@ class MainWindow(QWidget):
         return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        """Release a palm button, or a key of the page."""
+        """Release a palm button or a key of the page."""
         if self.frame is not None:
             self.frame.current_page.handle_key_release(event)
         if not event.isAutoRepeat() and event.key() in PALM_KEYS:
@@ -421,7 +460,10 @@ class MainWindow(QWidget):
             self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:
-        """Release all buttons when the window loses the keyboard, because it gets no release events."""
+        """Release all buttons when the window loses the keyboard focus.
+
+        No release events will arrive after this.
+        """
         if event.type() == QEvent.Type.ActivationChange:
             self._tell_keyboard()
             if self.isActiveWindow():
@@ -444,7 +486,7 @@ class MainWindow(QWidget):
             self.frame.current_page.release_all()
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
-        """Let the frame fill the window."""
+        """Resize the frame so that it fills the window."""
         if self.frame is not None:
             self.frame.setGeometry(self.rect())
 
@@ -452,12 +494,12 @@ class MainWindow(QWidget):
         return self._meant or frame.desk.can_close(self._close_window)
 
     def _close_window(self) -> None:
-        """Close the window although data will be lost."""
+        """Close the window even though data will be lost."""
         self._meant = True
         self.close()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        """Refuse to close while a program is running, in kiosk mode, or if the page prevents it."""
+        """Refuse to close while a program is running, in kiosk mode, or if the page prevents closing."""
         frame = self.frame
         if self.is_kiosk and frame is not None and not self._meant:
             frame.desk.say(tr("KIOSK MODE: SHUT DOWN THE COMPUTER TO CLOSE TURNDESK"))

@@ -13,7 +13,10 @@ TITLE_BAR_PX = 60  # Pixels that the title bar of a window manager uses.
 
 
 def show_full_screen(window: QWidget, *, is_frameless: bool = False) -> None:
-    """Show a window on the whole screen. The geometry is set too, in case there is no window manager."""
+    """Show a window on the whole screen.
+
+    The geometry is also set, because there may be no window manager.
+    """
     if is_frameless:
         window.setWindowFlag(Qt.WindowType.FramelessWindowHint)
     screen = window.screen()

@@ -11,7 +11,7 @@ ON_PATH_MM = 0.1  # mm; a tool within this distance of a path is on the path
 
 
 def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
-    """Return the distance of a point from a row, in mm."""
+    """Return the distance of a point from the move of a row, in mm."""
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
@@ -19,20 +19,22 @@ def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> fl
 
 
 def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
-    """Return the point of a row that is nearest to (x, z), in mm; None if the start of the row is unknown."""
+    """Return the point of a row that is nearest to (x, z) in mm, or None if the start of the row is
+    unknown.
+    """
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     length = hypot(x1 - x0, z1 - z0)
     return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
 
 
 def distance_from_segment(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
-    """Return the distance of a point from the straight piece (x0, z0) to (x1, z1), in mm."""
+    """Return the distance of a point from the segment from (x0, z0) to (x1, z1), in mm."""
     foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
     return hypot(foot_x - x, foot_z - z)
 
 
 def _foot(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> tuple[float, float]:
-    """Return the point of a straight piece that is nearest to (x, z)."""
+    """Return the point of a segment that is nearest to (x, z)."""
     dx, dz = x1 - x0, z1 - z0
     size = dx * dx + dz * dz
     share = max(0.0, min(1.0, ((x - x0) * dx + (z - z0) * dz) / size)) if size > 0.0 else 0.0

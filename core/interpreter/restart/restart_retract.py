@@ -1,8 +1,8 @@
-"""Retract of a tool from the part and, reversed, its approach, along moves that do not cross material.
+"""Retract of a tool from the part along moves that do not cross material.
 
-Known free space is where this tool has been since the collet was last opened, outside the largest cut radius,
-and in front of the face. Other moves are safe only if the program itself makes the same retract. The rules
-are in docs/decisions/0021-restart.md.
+The reversed retract is the approach of the tool. Space is known to be free where this tool has been since
+the collet was last opened, outside the largest cut radius, and in front of the face. Other moves are safe
+only if the program itself makes the same retract. The rules are in docs/decisions/0021-restart.md.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class _Segment(NamedTuple):
 
 
 def plan_retract(cut_record: CutRecord, position: ToolPosition, last_complete_block: int) -> Retract:
-    """Return the retract from this position; the blocks up to ``last_complete_block`` have been cut."""
+    """Return the retract from this position, after the blocks up to ``last_complete_block`` were cut."""
     row = cut_record.find_last_row(position.block_number)
     if row >= 0 and int(cut_record.tool_number[row]) == position.tool_number:
         row, on = _nearest_row(cut_record, row, position)
@@ -68,7 +68,7 @@ def _clear(cut: CutRecord, place: ToolPosition) -> bool:
 
 
 def _nearest_row(cut_record: CutRecord, row: int, position: ToolPosition) -> tuple[int, bool]:
-    """Return the row of the block that is nearest to the tool, and whether the tool is on it."""
+    """Return the row of the block that is nearest to the tool, and whether the tool is on that row."""
     rows = range(cut_record.find_first_row(row), row + 1)
     best = min(
         rows, key=lambda each: (round(distance_from_row(cut_record, each, position.x, position.z), 4), -each)
@@ -121,7 +121,7 @@ class _Search:
     # --- retract as in the program ------------------------------------------------------------------------
 
     def _following_segments(self) -> Iterator[_Segment]:
-        """Yield the next segments with this tool and this bar, beginning with the rest of the row."""
+        """Yield the next segments of this tool on this bar section, starting with the rest of the row."""
         cut, row = self.cut_record, self.row
         if self.is_inside_row:
             yield _Segment(self.x, self.z, float(cut.x[row]), float(cut.z[row]), self.move_kind, row)
@@ -135,7 +135,9 @@ class _Search:
         return _Segment(*self.cut_record.get_end_points(row), int(self.cut_record.move_kind[row]), row)
 
     def _next_rapids(self) -> Retract | None:
-        """Return the next rapids of the program as a retract if they lead out of the part; otherwise None."""
+        """Return the next rapids of the program as a retract if they lead out of the part, or None
+        otherwise.
+        """
         legs: list[RetractLeg] = []
         for segment in self._following_segments():
             if segment.move_kind & FEED or len(legs) >= _LEGS:
@@ -146,9 +148,10 @@ class _Search:
         return None
 
     def _crosswise_retract(self) -> Retract | None:
-        """Return a move along X to the program's next rapid toward Z+, and that rapid; or None.
+        """Return a retract that moves along X to the program's next rapid toward Z+ and then follows this
+        rapid.
 
-        The result is None if earlier cuts may still have to make room for this rapid.
+        Returns None if earlier cuts may not yet have cleared the path of this rapid.
         """
         level, first = self.z + _PARALLEL_TOLERANCE_MM, self.row + 1
         grew = shrank = False
@@ -178,9 +181,9 @@ class _Search:
         return self._out_with(self._segment(crossing), steps, grew=grew, shrank=shrank)
 
     def _remaining_travel(self, level: float) -> float | None:
-        """Return the outward travel of the rest of this row in mm, 0 in a thread.
+        """Return the outward travel of the rest of this row in mm, or 0 in a thread.
 
-        The result is None if the rest of the row is itself an obstacle.
+        Returns None if the rest of the row is itself an obstacle.
         """
         x, z = float(self.cut_record.x[self.row]), float(self.cut_record.z[self.row])
         sideways = 0.0 if self.move_kind & THREAD else abs(x) - abs(self.x)
@@ -188,7 +191,7 @@ class _Search:
         return None if here or z > level else sideways
 
     def _same_tool_rows(self, first: int) -> slice:
-        """Return the rows from here on with this tool and this bar, up to a limit."""
+        """Return the rows from ``first`` on that use this tool and this bar section, up to a limit."""
         cut = self.cut_record
         far = slice(first, first + _MAX_SEARCH_ROWS)
         other = (cut.tool_number[far] != cut.tool_number[self.row]) | (
@@ -198,7 +201,7 @@ class _Search:
         return slice(first, first + (int(ends[0]) if len(ends) else len(other)))
 
     def _is_obstructed(self, rows: slice, level: float) -> bool:
-        """Return whether a cut among these rows reaches this Z or moves along X at it."""
+        """Return whether a cut in these rows reaches this Z or moves along X at this Z."""
         cut = self.cut_record
         feeds = (cut.move_kind[rows] & FEED) != 0
         upper = np.maximum(cut.z[rows], cut.z0[rows])
@@ -209,7 +212,7 @@ class _Search:
         return bool((feeds & ((upper > level) | here | held)).any())
 
     def _outward_travels(self, rows: slice) -> FloatArray:
-        """Return the outward travel of each cut among these rows in mm; 0 for threads and rapids."""
+        """Return the outward travel of each cut in these rows in mm, with 0 for threads and rapids."""
         cut = self.cut_record
         out = np.abs(cut.x[rows]) - np.abs(cut.x0[rows])
         return np.where((cut.move_kind[rows] & (FEED | THREAD)) == FEED, out, 0.0)
@@ -242,7 +245,7 @@ class _Search:
         return self._made(legs)
 
     def _has_left_part(self, leg: RetractLeg) -> bool:
-        """Return whether a rapid that ends here has left the part."""
+        """Return whether a rapid that ends at this point has left the part."""
         return (
             leg.z >= self.cut_record.max_cut_start_z - SAME_POINT_MM
             or self.cut_record.is_outside_material(leg.x, leg.z, self.position.tool_number)
@@ -281,9 +284,9 @@ class _Search:
         return False
 
     def _drawoff_radius(self, row: int, side: float) -> float:
-        """Return the radius from which the cut before this rapid moved out to its level.
+        """Return the radius from which the cut before this rapid moved outward to the level of the rapid.
 
-        The result is inf if no such cut exists.
+        The radius is inf if such a cut does not exist.
         """
         cut = self.cut_record
         before = row - 1
@@ -303,9 +306,10 @@ class _Search:
     # --- retract along the entry path ---------------------------------------------------------------------
 
     def _entry_retract(self) -> Retract:
-        """Return the retract along the entry path, until the program's retract is safe or the tool is clear.
+        """Return the retract along the entry path.
 
-        It does not pass through a thread, an opened collet or another tool.
+        The retract ends where the program's retract is safe or the tool is clear. It does not pass through
+        a thread, the opening of the collet or a tool change.
         """
         points = [RetractLeg(self.x, self.z)]
         for segment in self._earlier_segments():
@@ -323,7 +327,7 @@ class _Search:
         return self._direction_only()
 
     def _earlier_segments(self) -> Iterator[_Segment]:
-        """Yield the earlier segments with this tool and this bar, the last one first."""
+        """Yield the earlier segments of this tool on this bar section, from the last to the first."""
         cut, row = self.cut_record, self.row
         tool, bar = int(cut.tool_number[row]), int(cut.bar_section[row])
         before: _Segment | None = None
@@ -345,9 +349,10 @@ class _Search:
     def _step_back(
         self, segment: _Segment, at: RetractLeg
     ) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
-        """Return a short move back along a cut toward Z-, and the program's retract from there.
+        """Return a short move back along a cut toward Z-, and the program's retract from the end of this
+        move.
 
-        The result is None if this is not safe.
+        Returns None if these moves are not safe.
         """
         length = hypot(segment.x0 - at.x, segment.z0 - at.z)
         if (
@@ -365,7 +370,7 @@ class _Search:
         return None if found is None or not found.legs else (leg, found.legs)
 
     def _is_approach_rapid(self, row: int) -> bool:
-        """Return whether the row is the rapid that brings the tool to the part after its T, from outside."""
+        """Return whether the row is the rapid that moves the tool from outside to the part after its T."""
         cut = self.cut_record
         if row < 0 or cut.move_kind[row] & FEED or isnan(cut.x[row]) or isnan(cut.z[row]):
             return False
@@ -376,7 +381,7 @@ class _Search:
         return first and cut.is_clear_after_rapid(float(cut.x[row]), float(cut.z[row]))
 
     def _direction_only(self) -> Retract:
-        """Return a retract with only the direction, from the next rapid or from the entry path."""
+        """Return a retract without legs, whose direction comes from the next rapid or from the entry path."""
         cut, row = self.cut_record, self.row
         rapids = (segment for segment in self._following_segments() if not segment.move_kind & FEED)
         ways = [(segment.x - segment.x0, segment.z - segment.z0) for segment in rapids]
@@ -387,7 +392,9 @@ class _Search:
     # --- threads, taps, mills -----------------------------------------------------------------------------
 
     def _is_tapping(self) -> bool:
-        """Return whether the tool is in a hole from which the program feeds with the spindle reversed."""
+        """Return whether the tool is in a hole that the program leaves at a feed with the
+        spindle reversed.
+        """
         if (
             abs(self.x) > _CENTERLINE_TOLERANCE_MM
             or not self.move_kind & PER_REV
@@ -409,14 +416,14 @@ class _Search:
         )
 
     def _thread_exit_direction(self) -> tuple[int, int]:
-        """Return the direction away from the thread, from the next rapid along X."""
+        """Return the direction away from the thread, which is the direction of the next rapid along X."""
         for segment in self._following_segments():
             if abs(segment.x - self.x) > _PARALLEL_TOLERANCE_MM and not segment.move_kind & FEED:
                 return _sign(segment.x - self.x), 0
         return 0, 0
 
     def _mill_retract(self, axis: int) -> Retract:
-        """Return the retract of a mill along its axis: along Z on the face, along X on the side."""
+        """Return the retract of a mill along its axis, which is Z on the face and X on the side."""
         low, high = self.cut_record.machine_x_range_by_tool[self.position.tool_number]
         offset = self.cut_record.tool_offsets[self.position.tool_number][0]
         far = low - offset if self.x < 0.0 else high - offset
@@ -437,7 +444,7 @@ class _Search:
         return face if face < inf else float(np.nanmax(self.cut_record.z[own]))
 
     def _mill_axis(self) -> int:
-        """Return FACE or SIDE, from the plane switching, from the next rapid or from the entry."""
+        """Return FACE or SIDE, as determined from the plane switching, the next rapid or the entry."""
         cut, row = self.cut_record, self.row
         near = slice(max(0, row - _BACK), row + _AHEAD)
         own = cut.move_kind[near][cut.tool_number[near] == self.position.tool_number]

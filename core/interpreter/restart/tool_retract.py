@@ -8,7 +8,10 @@ from typing import NamedTuple
 
 
 class ToolSituation(Enum):
-    """Situation of a tool: clear of the part, or in the part, and how it can leave."""
+    """Situation of a tool, which is either clear of the part or in the part.
+
+    For a tool in the part, the situation determines how the tool can leave the part.
+    """
 
     CLEAR = "clear"
     IN_PART = "work"
@@ -20,7 +23,7 @@ class ToolSituation(Enum):
 
 
 class RetractLeg(NamedTuple):
-    """A straight move of the tip to a point, in mm."""
+    """The end point of a straight move of the tip, in mm."""
 
     x: float
     z: float
@@ -28,10 +31,11 @@ class RetractLeg(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Retract:
-    """Retract of a tool. ``legs`` lead from its position out of the material; empty if clear or not known.
+    """The retract of a tool.
 
-    ``direction`` is the direction in which the tool leaves in any case, as the signs of (x, z) of the first
-    move; (0, 0) if unknown.
+    ``legs`` lead from the tool position out of the material. They are empty if the tool is clear or the
+    path is unknown. ``direction`` is the direction in which the tool leaves in any case, as the signs of
+    (x, z) of the first move, or (0, 0) if it is unknown.
     """
 
     situation: ToolSituation
@@ -40,12 +44,14 @@ class Retract:
 
     @property
     def is_known(self) -> bool:
-        """Whether the tool is clear, or its path out of the part is known."""
+        """Return whether the tool is clear or its path out of the part is known."""
         return self.situation is ToolSituation.CLEAR or bool(self.legs)
 
 
 class ToolPosition(NamedTuple):
-    """Position in a program: at or within ``block_number``, with the tip of ``tool_number`` at (x, z)."""
+    """A position in a program, at the end of or within ``block_number``, with the tool tip at
+    (x, z) in mm.
+    """
 
     block_number: int
     tool_number: int

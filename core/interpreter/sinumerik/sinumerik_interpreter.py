@@ -1,4 +1,7 @@
-"""Interpreter of SINUMERIK turning programs: generates the elementary blocks of a program for a setup."""
+"""Interpreter of SINUMERIK turning programs.
+
+The interpreter generates the elementary blocks of a program for a setup.
+"""
 
 from __future__ import annotations
 
@@ -112,7 +115,7 @@ class Interpreter(LinePass[LexedBlock]):
 
     @cached_property
     def source_block_count(self) -> int:
-        """Number of lines that contain more than a comment."""
+        """Return the number of program lines that contain more than a comment."""
         return sum(
             bool(line.split(";", 1)[0].strip()) and HEADER_PATTERN.fullmatch(line) is None
             for line in self._source.lines
@@ -120,11 +123,11 @@ class Interpreter(LinePass[LexedBlock]):
 
     @property
     def modal(self) -> ModalState:
-        """Modal state after the last generated block."""
+        """Return the modal state after the last generated block."""
         return self._state.modal
 
     def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
-        """Return an iterator that generates the elementary blocks. Call this method once."""
+        """Generate the elementary blocks of the program. Call this method only once."""
         yield from self._approach
         for block in self._pass():
             if not self._stopped:
@@ -139,19 +142,22 @@ class Interpreter(LinePass[LexedBlock]):
 
     @property
     def checkpoint(self) -> Checkpoint:
-        """State that the next block inherits."""
+        """Return the state that the next block inherits, as a checkpoint."""
         parts = InterpreterParts(self._state, self._corners, self._flow, self._taken)
         return make_checkpoint(parts, (self._setup, self._log, *self._flow.routines), self._made)
 
     @property
     def _active_transformation(self) -> ActiveTransformation | None:
-        """The active TRANSMIT or TRACYL, or None."""
+        """Return the active TRANSMIT or TRACYL transformation, or None."""
         plane = self._state.transformation
         return plane if isinstance(plane, ActiveTransformation) else None
 
     @property
     def blocking_reason(self) -> str:
-        """Reason why no other pass can continue from here; empty if one can."""
+        """Return the reason why another pass cannot continue from the present block.
+
+        The text is empty if another pass can continue.
+        """
         if self._active_transformation is not None:
             where = Message(
                 "the line is part of a corner or a contour in {transformed}; start before the approach",
@@ -163,7 +169,7 @@ class Interpreter(LinePass[LexedBlock]):
         return "the previous block is part of an unfinished corner" if self._corners.has_buffered_move else ""
 
     def _restore_from(self, pass_start: PassStart) -> None:
-        """Restore the state that the block of ``begin`` inherits."""
+        """Restore the state that the start block inherits."""
         kept = pass_start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
@@ -201,7 +207,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._last_blocks()
 
     def _line(self, line: LexedBlock) -> Iterator[Block]:
-        """Yield the blocks of a line; no blocks follow an error."""
+        """Yield the blocks of a line, up to the first error."""
         for found in line.errors:
             self._log_error(found)
         if line.errors:
@@ -230,7 +236,7 @@ class Interpreter(LinePass[LexedBlock]):
         self._execute_program_end(line, is_program_end=ends)
 
     def _check_control(self, line: LexedBlock) -> None:
-        """Raise ProgramError for a function that the control of the machine file lacks."""
+        """Raise ProgramError for a function that the control specified in the machine file lacks."""
         control = self._setup.limits.control_model
         if found := find_missing_function(control, line):
             name, column = found
@@ -245,7 +251,7 @@ class Interpreter(LinePass[LexedBlock]):
     def _call(self, line: LexedBlock, *, modal: bool = False) -> Iterator[Block]:
         """Yield the blocks of a cycle, or enter a subprogram.
 
-        MCALL only stores the call. Raises ProgramError.
+        MCALL only stores the call. Raises ProgramError for an invalid call.
         """
         if line.is_modal_call and not modal:
             self._state.modal_call_line = line if line.called_name else None
@@ -264,9 +270,9 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._apply_stages(block if place == line.number else replace(block, line=place), None)
 
     def _note_ineffective_cycle(self, line: LexedBlock) -> None:
-        """Note once that a cycle has no effect here.
+        """Log a note, once, that a cycle has no effect on this machine.
 
-        Raises ProgramError if its parameters are not supported.
+        Raises ProgramError if the parameters of the cycle are not supported.
         """
         if line.called_name == SWIVEL_CYCLE and any(each.is_specified for each in line.arguments or ()):
             text = "CYCLE800: this lathe has no swivel head."
@@ -284,7 +290,10 @@ class Interpreter(LinePass[LexedBlock]):
             self._log.add(replace(found, severity=Severity.NOTE))
 
     def _pattern(self, line: LexedBlock) -> Iterator[Block]:
-        """Yield the blocks of HOLES1 or HOLES2: the cycle of MCALL at each position. Raises ProgramError."""
+        """Yield the blocks of HOLES1 or HOLES2, which execute the MCALL cycle at each position.
+
+        Raises ProgramError for invalid parameters.
+        """
         state, called = self._state, self._state.modal_call_line
         if (
             called is None
@@ -298,7 +307,10 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._call(called, modal=True)
 
     def _modal_call(self, statement: Statement) -> LexedBlock | None:
-        """Return the line of MCALL that acts after this block; None without MCALL or without a motion."""
+        """Return the line of the MCALL that is executed after this block.
+
+        Returns None if no MCALL is active or the block has no motion.
+        """
         return (
             None if self._flow.is_in_modal_call or not statement.axis_names else self._state.modal_call_line
         )
@@ -327,7 +339,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._apply_stages(block if place == number else replace(block, line=place), corner)
 
     def _apply_stages(self, block: Block, corner: Corner | None) -> Iterator[Block]:
-        """Yield the results of a block after the corner and compensation stages of the active plane."""
+        """Yield the blocks that result from the corner and compensation stages of the active plane."""
         if self._active_transformation is not None:
             yield from self._active_transformation.accept(block, corner)
             return
@@ -335,7 +347,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._compensation.accept(cut)
 
     def _flush(self) -> Iterator[Block]:
-        """Yield the buffered blocks, because no move follows for their corner."""
+        """Yield the buffered blocks if no move follows their corner."""
         if self._active_transformation is not None:
             yield from self._active_transformation.flush()
             return
@@ -343,7 +355,10 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._compensation.accept(cut)
 
     def _blocks(self, statement: Statement) -> Iterator[Block]:
-        """Yield the blocks of a statement in the order of execution: modes, tool, spindle, motion, stops."""
+        """Yield the blocks of a statement in the order of execution.
+
+        The order is modes, tool, spindle, motion and stops.
+        """
         state = self._state
         set_parameters(state, statement)
         check_y_word(state, statement)
@@ -386,7 +401,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield from self._lathe_motion(statement)
 
     def _lathe_motion(self, statement: Statement) -> Iterator[Block]:
-        """Yield the move of a statement with the lathe's axes, without a transformation."""
+        """Yield the move of a statement with the axes of the lathe, without a transformation."""
         state = self._state
         if execute_frame_block(state, statement):
             return
@@ -440,7 +455,7 @@ class Interpreter(LinePass[LexedBlock]):
             yield state.action(line.number, f"M{code}", ProgramEnd(reset=True))
 
     def _last_blocks(self) -> Iterator[Block]:
-        """Yield the last blocks after the last line."""
+        """Yield the buffered blocks after the last line."""
         try:
             yield from self._flush()
             if self._active_transformation is not None:
@@ -464,7 +479,7 @@ class Interpreter(LinePass[LexedBlock]):
     def _is_axis_reported(self, finding: Diagnostic) -> bool:
         """Return whether a finding reports a missing axis that was already reported.
 
-        A program for a mill names this axis in many lines. J belongs to arcs in Y.
+        A program for a mill uses the missing axis in many lines. J belongs to arcs in Y.
         """
         match = _NO_AXIS.search(finding.message)
         axis = "Y" if _ARC_IN_Y.search(finding.message) else match[1] if match else ""

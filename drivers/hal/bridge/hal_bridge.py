@@ -1,8 +1,9 @@
-"""Bridge that writes setpoints into HAL and reports samples, and stops motion without a control.
+"""The bridge, which writes setpoints to HAL, reports samples, and stops motion if the control is silent.
 
 ``queue_packet`` queues a packet of the driver, ``run_cycle`` must be called every few milliseconds, and
-``encode_report`` returns the state. If the driver is silent, its queue is played to the end, which is at
-rest; then spindle and outputs are switched off. If the driver has ended, the drives are also switched off.
+``encode_report`` returns the state. If the driver is silent, its queue is executed to the end, where the
+axes are at rest. Then the spindle and the outputs are switched off. If the driver has ended, the drives are
+also switched off.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ _STANDSTILL_MM_PER_S = 1e-3  # mm/s
 
 
 class HalBridge:
-    """Bridge between one driver and one HAL, used by one thread."""
+    """The bridge between one driver and one HAL, used by one thread."""
 
     def __init__(
         self,
@@ -110,12 +111,12 @@ class HalBridge:
     # --- cycles -------------------------------------------------------------------------------------------
 
     def queue_packet(self, head: PacketHead, numbers: Sequence[float]) -> None:
-        """Queue one packet, which the next cycle executes."""
+        """Queue one packet, which is executed in the next cycle."""
         self._heard = self._now()
         self._orders.append((head, numbers))
 
     def run_cycle(self, delay_s: float = 0.0) -> None:
-        """Run one cycle: read samples, supervise, execute commands, and write rows for HAL.
+        """Run one cycle: read samples, monitor driver and HAL, execute commands, and write rows for HAL.
 
         ``delay_s`` is the delay of the cycle in seconds.
         """
@@ -248,7 +249,11 @@ class HalBridge:
             self._open_chain()
 
     def _handle_empty_queue(self) -> None:
-        """Handle missing rows: ignore them at rest; in motion, trip, because HAL's limit has braked."""
+        """Handle missing setpoint rows.
+
+        At rest, missing rows are ignored. In motion, they cause a trip, because HAL's limit component has
+        already braked the axes.
+        """
         if any(
             abs(v) > _STANDSTILL_MM_PER_S
             for v in self.setpoint_player.get_motion_at(self.row_streams.played_row_due_s)[1]
@@ -269,16 +274,16 @@ class HalBridge:
 
     @property
     def _is_thread_stopped(self) -> bool:
-        """Whether HAL's servo thread has stopped, so that its pins are old."""
+        """Return whether HAL's servo thread has stopped, so that its pins have old values."""
         return self._sampled and self._quiet > _SAMPLE_TIMEOUT_S
 
     @property
     def _is_stale(self) -> bool:
-        """Whether the board's inputs are old, as hal.link_fault reports."""
+        """Return whether hal.link_fault reports that the board's inputs are old."""
         return "link-fault" in self.config.bits and bool(self.pins["link-fault"])
 
     def _open_chain(self) -> None:
-        """Switch spindle and outputs off, so that they stay off when the chain is closed again."""
+        """Switch off the spindle and the outputs, so that they remain off when the chain is closed again."""
         self.spindle_pins.switch_off()
         for name, safe in self.config.outputs.items():
             if safe is not None and name not in self.config.lamps:
@@ -359,7 +364,7 @@ class HalBridge:
         self._recall(0.5 * (t + until), until)
 
     def _brake_axes(self) -> float:
-        """Brake on the path to rest as soon as rows can be recalled, and return the end time."""
+        """Brake to rest on the path as soon as rows can be recalled, and return the end time in seconds."""
         t = self.row_streams.earliest_recall_time()
         pieces = self.setpoint_player.brake_to_rest(t, [axis.amax for axis in self.config.axes])
         self._braked = list(
@@ -397,7 +402,10 @@ class HalBridge:
             self._reset_until = now + _RESET_PULSE_S
 
     def _update_power(self, now: float) -> None:
-        """End the reset pulse of the chain, and switch power on when HAL plays the present axis positions."""
+        """End the reset pulse of the chain, and switch on the power.
+
+        The power is switched on when HAL plays the present axis positions.
+        """
         self.pins["watch"] = now >= self._watch_from
         self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
         if self._grant_at <= now:
@@ -427,7 +435,10 @@ class HalBridge:
         self._close_chain()
 
     def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Set C's setpoint to the position of the spindle, and change the drive when HAL plays it."""
+        """Set C's setpoint to the position of the spindle.
+
+        The drive is switched to C when HAL plays this setpoint.
+        """
         if head.get("on") is not True:
             self.spindle_pins.release_c()
         elif self._on:
@@ -450,12 +461,15 @@ class HalBridge:
                 self.pins[f"out.{name}"] = safe
 
     def _handle_home(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Ignore the limit switch of an axis during its homing."""
+        """Ignore the limit switch of an axis while the axis is homing."""
         name = text(head, "axis")
         (self._homing.add if head.get("on") is True else self._homing.discard)(name)
 
     def _handle_index(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        """Request the index of an encoder, whose pin falls when the index passes."""
+        """Request the index of an encoder.
+
+        The pin of the request turns off when the index passes.
+        """
         self.pins[text(head, "pin")] = head.get("on") is True
 
     def _end(self, _head: PacketHead, _numbers: Sequence[float]) -> None:

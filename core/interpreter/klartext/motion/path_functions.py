@@ -1,7 +1,8 @@
-"""Execution of path functions, with buffered elements.
+"""Execution of path functions, with a buffer of path elements.
 
-RND and CHF need the next element, APPR needs the first element of the contour, and compensation (RL, RR)
-needs all elements up to R0 or DEP. Until then, the elements are buffered with the blocks between them.
+RND and CHF need the next element, and APPR needs the first element of the contour. Compensation (RL, RR)
+needs all elements up to R0 or DEP. Until the needed elements are known, the elements are buffered with the
+blocks between them.
 """
 
 from __future__ import annotations
@@ -47,7 +48,10 @@ BlockGenerator = Callable[[], Iterator[Block]]
 
 @dataclass(slots=True)
 class _InsertedEvent:
-    """Blocks between buffered elements, such as M functions, with ``line`` and ``text`` of their block."""
+    """The blocks of an event between buffered elements, such as an M function.
+
+    ``line`` and ``text`` are the line and the text of the event's block.
+    """
 
     event: BlockGenerator
     line: int
@@ -56,7 +60,7 @@ class _InsertedEvent:
 
 @dataclass(slots=True)
 class _Approach:
-    """APPR, or the block that turns compensation on; the contour begins at its end."""
+    """An APPR block, or a block that turns compensation on; the contour starts at its end point."""
 
     node: PathFunction
     element: PathElement
@@ -69,7 +73,8 @@ _CORNER_HINT = "Put RND or CHF between two contour elements."
 class PathRunner:
     """Generator of the blocks of path functions.
 
-    ``datum`` in ``move`` has the machine positions to which M91 and M92 refer; None without them.
+    The argument ``datum`` of ``execute_move`` contains the machine positions to which M91 and M92 refer. It
+    is None without M91 and M92.
     """
 
     def __init__(self, state: State) -> None:
@@ -83,18 +88,24 @@ class PathRunner:
 
     @property
     def blocking_reason(self) -> str:
-        """Reason why elements are buffered, so that no pass can begin here; empty without one."""
+        """Return the reason why elements are buffered, so that no pass can start here.
+
+        The text is empty if no elements are buffered.
+        """
         if self._side:
             return "radius compensation is active"
         return "the previous block is part of an unfinished corner" if self._waiting or self._corner else ""
 
     @property
     def path_end(self) -> Vector:
-        """End of the path in program coordinates, in mm; under compensation, of the contour."""
+        """Return the end of the path in program coordinates, in mm.
+
+        While compensation is active, it is the end of the contour.
+        """
         return self._state.programmed_position if self._end is None else self._end
 
     def set_pole(self, node: Pole) -> None:
-        """Set the pole of CC; without axes, it is the end of the path."""
+        """Set the pole of CC to its axis words, or to the end of the path if CC has no axis words."""
         here = dict(zip(LINEAR_AXES, self.path_end, strict=True))
         for word in node.axes:
             value = word_values.evaluate_coordinate(self._state, word)
@@ -104,7 +115,7 @@ class PathRunner:
         self._state.pole = first, second
 
     def add_corner(self, node: CornerBlock) -> None:
-        """Add RND or CHF to the buffered element. Raises ProgramError without a buffered element."""
+        """Add RND or CHF to the buffered element. Raises ProgramError if no element is buffered."""
         last = next((each for each in reversed(self._waiting) if isinstance(each, PathElement)), None)
         if last is None or last.planar_element is None or self._corner is not None:
             text = "{form} must follow a path in the working plane."
@@ -114,15 +125,18 @@ class PathRunner:
         self._corner, self._corner_line = node, self._state.line_number
 
     def execute_between_elements(self, event: BlockGenerator) -> Iterator[Block]:
-        """Execute an event between two elements, immediately if no element is buffered."""
+        """Yield the blocks of an event between two elements, or buffer the event if an element
+        is buffered.
+        """
         if not self._waiting:
             yield from event()
             return
         self._waiting.append(_InsertedEvent(event, self._state.line_number, self._state.text))
 
     def flush_before(self, column: int, next_function: str) -> Iterator[Block]:
-        """Yield all buffered blocks before ``next_function``. Raises ProgramError while compensation is
-        active.
+        """Yield all buffered blocks before ``next_function`` is executed.
+
+        Raises ProgramError if compensation is active.
         """
         text = "{what} is not allowed while radius compensation is active."
         hint = "End the contour with R0 or DEP before this block."
@@ -130,7 +144,9 @@ class PathRunner:
         yield from self._release()
 
     def finish_program(self) -> Iterator[Block]:
-        """Yield the remaining blocks at the end of the program, with a warning if compensation is active."""
+        """Yield the buffered blocks at the end of the program, and log a warning if compensation
+        is active.
+        """
         if self._side:
             text = "The program ends while radius compensation is active."
             hint = "End the contour with R0 or DEP."
@@ -143,7 +159,10 @@ class PathRunner:
     def execute_move(
         self, node: PathFunction, *, datum: Mapping[str, float] | None, has_corner_after: bool
     ) -> Iterator[Block]:
-        """Yield the blocks of a path function and of earlier buffered elements. Raises ProgramError."""
+        """Yield the blocks of a path function and of the elements buffered earlier.
+
+        Raises ProgramError for an invalid path function.
+        """
         if not node.axes and not node.words and node.function_name == "L":
             if node.feed is not None:
                 self._set_block_feed(node)
@@ -200,7 +219,7 @@ class PathRunner:
         yield from (replace(each, feed=_reduced_feed(state, each)) for each in made)
 
     def _add(self, elements: list[PathElement], *, hold: bool) -> Iterator[Block]:
-        """Append elements to the buffer, and yield all blocks unless an element must wait."""
+        """Append elements to the buffer, and yield all blocks unless an element must remain buffered."""
         if self._corner is not None and elements:
             elements[0] = self._insert_corner(elements[0])
         self._waiting += elements
@@ -261,14 +280,14 @@ class PathRunner:
         raise self._state.make_error(node.column, COMPENSATION_NOT_PERMITTED, text, hint)
 
     def _switch_compensation(self, node: PathFunction) -> Iterator[Block]:
-        """Yield the blocks of an L without axes, which may end compensation."""
+        """Yield the blocks of an L block without axes, which may end compensation."""
         if node.compensation == "0" and self._side:
             yield from self._close(None)
 
     # --- corners ------------------------------------------------------------------------------------------
 
     def _insert_corner(self, after: PathElement) -> PathElement:
-        """Insert the buffered corner between the last element and this one, and return this one trimmed."""
+        """Insert the buffered corner before the element ``after``, and return ``after`` trimmed."""
         corner, self._corner = self._corner, None
         assert corner is not None
         at = next(i for i in reversed(range(len(self._waiting))) if isinstance(self._waiting[i], PathElement))
@@ -301,7 +320,7 @@ class PathRunner:
     # --- from elements to blocks --------------------------------------------------------------------------
 
     def _release(self) -> Iterator[Block]:
-        """Yield all buffered blocks without compensation."""
+        """Yield all buffered blocks, without compensation."""
         self._check_no_corner()
         waiting, self._waiting, self._end = self._waiting, [], None
         for index, each in enumerate(waiting):
@@ -321,7 +340,7 @@ class PathRunner:
                 yield from self._enter(each, first, "", 0.0)
 
     def _check_no_corner(self) -> None:
-        """Raise ProgramError if a corner still waits for the next element."""
+        """Raise ProgramError if a corner has no next element yet."""
         corner, self._corner = self._corner, None
         if corner is not None:
             text = Message("{form} must be followed by a path in the working plane.", form=corner.kind)
@@ -332,7 +351,7 @@ class PathRunner:
         return self._state.make_error(corner.column, ROUNDING_NOT_POSSIBLE, text, hint, self._corner_line)
 
     def _close(self, leave: PathFunction | None) -> Iterator[Block]:
-        """Yield the compensated contour, and the departure of DEP if there is one."""
+        """Yield the compensated contour, and the departure if the contour ends with DEP."""
         self._check_no_corner()
         side, self._side = self._side, ""
         waiting, self._waiting, self._end = self._waiting, [], None
@@ -358,7 +377,10 @@ class PathRunner:
             )
 
     def _enter(self, each: _Approach, first: Element | None, side: str, radius: float) -> Iterator[Block]:
-        """Yield the approach to the contour: a straight line to the offset start, or the form of APPR."""
+        """Yield the approach to the contour.
+
+        The approach is a straight line to the offset start point, or the path that APPR defines.
+        """
         state = self._state
         entry = ContourEntry(
             each.node, state.programmed_position, each.element.end, each.element.feed, side, radius
@@ -381,7 +403,7 @@ class PathRunner:
             yield from self._emit(each)
 
     def _emit(self, each: PathElement) -> Iterator[Block]:
-        """Yield the block of one element, converted to plane and machine coordinates."""
+        """Yield the block of one element, with its points converted to the plane and to machine positions."""
         state = self._state
         line, text = state.line_number, state.text
         state.line_number, state.text = each.line_number, each.block_text
@@ -389,7 +411,10 @@ class PathRunner:
         state.line_number, state.text = line, text
 
     def _move_in_machine_frame(self, node: PathFunction, datum: Mapping[str, float]) -> Iterator[Block]:
-        """Yield the move with M91 or M92, whose words refer to machine zero or the second machine datum."""
+        """Yield the move of a block with M91 or M92.
+
+        The words of the block refer to machine zero (M91) or to the second machine datum (M92).
+        """
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
             warn_before_cut(state, node)
@@ -410,7 +435,10 @@ class PathRunner:
     # --- words --------------------------------------------------------------------------------------------
 
     def _set_block_feed(self, node: PathFunction) -> float | None:
-        """Set the feed of the block and return it; None for a rapid, which applies only to this block."""
+        """Set the feed of the block and return it, or return None for a rapid.
+
+        A rapid applies only to this block.
+        """
         state = self._state
         column = node.axes[0].column if node.axes else node.column
         found = word_values.read_programmed_feed(state, node.feed, column)
@@ -424,7 +452,7 @@ class PathRunner:
 
 
 def _reduced_feed(state: State, each: PathElement) -> float | None:
-    """Return the feed of an element, which M103 reduces for downward moves."""
+    """Return the feed of an element, which M103 reduces if the element leads downward."""
     if state.plunging_feed_factor is None:
         return each.feed
     down = each.start[2] - each.end[2]
@@ -436,16 +464,18 @@ def _reduced_feed(state: State, each: PathElement) -> float | None:
 
 
 def _replace_points(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
-    """Return the element between other points of the working plane."""
+    """Return the element moved to the points of ``flat`` in the working plane, from height ``z0`` to
+    ``z1``.
+    """
     arc = flat if isinstance(flat, Arc) else None
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
 
 
 def _rotary(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict[str, float]:
-    """Return the targets of the rotary axes; modulo axes move the shorter distance.
+    """Return the target angles of the rotary axes; modulo axes move the shorter distance.
 
     Words are relative to ``zero``. With M127, the travel is the difference of the displayed angles. An
-    incremental word is the travel itself.
+    incremental word specifies the travel directly.
     """
     found = {}
     for axis in state.kinematics.rotary_axes:

@@ -262,6 +262,10 @@ class _ThreadBlockGenerator:
 
 
 def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
+    """Log a warning, once, for a cut with a wrong table position or with the spindle stopped.
+
+    The table position is wrong if it is not the position of the active plane.
+    """
     if thread.pass_count > MANY_PASSES_LIMIT:
         text = "The thread takes {passes} passes."
         hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."

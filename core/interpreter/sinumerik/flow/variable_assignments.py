@@ -35,7 +35,10 @@ def _no_place(state: State, statement: Statement, word: Word, name: str) -> Prog
 
 
 def _execute_set(state: State, statement: Statement, word: Word, name: str) -> None:
-    """Execute SET and REP from an element on. Raises ProgramError if the array is too short."""
+    """Execute SET or REP, starting at an element of an array.
+
+    Raises ProgramError if the array is too short.
+    """
     letters = "R" if word.name == "R0" else word.name
     if name not in state.variables.variable_scope.numbers and letters != "R":
         raise _no_place(state, statement, word, name)
@@ -53,7 +56,7 @@ def _execute_set(state: State, statement: Statement, word: Word, name: str) -> N
 
 
 def _variable_name(state: State, statement: Statement, word: Word) -> str:
-    """Return the name that the word assigns: R7, LENGTH, or an element of an array."""
+    """Return the name of the variable that the word assigns, such as R7, LENGTH or an array element."""
     if word.element_index is None:
         return word.name
     refuse = partial(statement.make_error, word)
