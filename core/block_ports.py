@@ -1,4 +1,4 @@
-"""The interface of a controller with its own planner, and the operations of the blocks that it receives."""
+"""Interface of a controller with its own planner, and the operations that it receives for blocks."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple, Protocol
 
 
 class RapidOperation(NamedTuple):
-    """Straight to ``x z``, as fast as the rapid rate in force allows."""
+    """A straight rapid move to ``x z`` as fast as the active rapid rate allows."""
 
     x: float
     z: float
@@ -14,7 +14,7 @@ class RapidOperation(NamedTuple):
 
 
 class LineOperation(NamedTuple):
-    """Straight to ``x z`` at a feed."""
+    """A straight move to ``x z`` at a feed."""
 
     x: float
     z: float
@@ -22,9 +22,9 @@ class LineOperation(NamedTuple):
 
 
 class ArcOperation(NamedTuple):
-    """On a circle about ``cx cz`` to ``x z``. ``clockwise`` as elementary blocks say it: from Z+ to X+.
+    """An arc from ``x0 z0`` to ``x z`` around the center ``cx cz``.
 
-    ``x0 z0`` is where it begins.
+    ``clockwise`` has the same meaning as in elementary blocks: the direction from Z+ to X+.
     """
 
     x0: float
@@ -38,9 +38,9 @@ class ArcOperation(NamedTuple):
 
 
 class ThreadOperation(NamedTuple):
-    """One pass of a thread from ``x0 z0`` to ``x z``, tied to the spindle's index.
+    """One thread pass from ``x0 z0`` to ``x z``, synchronized with the spindle's index pulse.
 
-    ``lead`` is mm a turn along Z.
+    ``lead`` is the travel along Z per revolution, in millimeters.
     """
 
     x0: float
@@ -54,9 +54,10 @@ BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
 
 
 class BlockState(NamedTuple):
-    """What the controller does with its blocks at one instant.
+    """The state of a block controller and its block queue at one instant.
 
-    ``start_refusal`` says in words why nothing may be begun, such as modes that are still being verified.
+    ``start_refusal`` is the reason why no motion can start, such as modes that are still being verified.
+    The text is empty if motion can start.
     """
 
     last_done_ticket: int  # every ticket up to this one has been moved to its end
@@ -67,11 +68,12 @@ class BlockState(NamedTuple):
 
 
 class BlockController(Protocol):
-    """A controller with a planner of its own. Nothing here waits.
+    """A motion controller with its own planner. None of its functions wait.
 
-    ``capabilities`` tells what it can do of ``core.interpreter.shared.machine_requirements``; what it cannot
-    is refused before the start. ``max_lead_s`` is how many seconds of motion it may be given beyond the block
-    that it moves: it goes on by itself when the host is lost.
+    ``capabilities`` contains the supported names from ``core.interpreter.shared.machine_requirements``. A
+    program that needs an unsupported function is rejected before the start. ``max_lead_s`` is the maximum
+    time of motion, in seconds, that may be queued after the active block. The controller continues this
+    motion on its own if it loses the host.
     """
 
     max_lead_s: float
@@ -80,59 +82,69 @@ class BlockController(Protocol):
     )
 
     def prepare_css(self, max_rpm: float) -> None:
-        """Up to so many rpm the spindle will have to follow the radius; 0: its speed is constant. Said before
-        each speed, so that a driver whose spindle has steps can choose what they count from.
+        """Announce the highest rpm that constant surface speed may require, or 0 for a constant spindle
+        speed.
+
+        The spindle speed then follows the radius up to this rpm. The function is called before each speed
+        command, so that a driver whose spindle speed has steps can select the range of the steps.
         """
         ...
 
     def max_line_speed(self, dx: float, dz: float) -> float:
-        """mm/s of a straight way in this direction on which no slide is faster than controller and machine
-        file allow it.
+        """Return the highest speed along a straight line in this direction, in mm/s.
+
+        At this speed no axis exceeds the limits of the controller and of the machine file.
         """
         ...
 
     @property
     def capabilities(self) -> frozenset[str]:
-        """What it can do, by the names of ``machine_requirements``."""
+        """Return the supported functions, as names from ``machine_requirements``."""
         ...
 
     def submit_block(self, operation: BlockOperation) -> int | None:
-        """Hand a block over: its ticket, or None while it takes no more. Raises DriverError."""
-        ...
-
-    def state(self) -> BlockState:
-        """How far it has come, as last told; from memory, at once."""
-        ...
-
-    def hold_on_path(self) -> None:
-        """Come to rest on the path; a thread pass first ends."""
-        ...
-
-    def resume(self) -> None:
-        """Go on from a hold. Never starts a spindle."""
-        ...
-
-    def abort_blocks(self) -> None:
-        """Come to rest and forget every block; ``state().resting`` once that is done."""
-        ...
-
-    def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
-        """Fractions of the programmed speeds, above 0; verified by the driver."""
-        ...
-
-    def start_jog(
-        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
-    ) -> bool:
-        """Begin or renew: no way is queued beyond the lease. False when there is none before ``limits``.
+        """Submit a block; return its ticket, or None if the controller cannot accept a block now.
 
         Raises DriverError.
         """
         ...
 
+    def state(self) -> BlockState:
+        """Return the last reported state from memory, without waiting."""
+        ...
+
+    def hold_on_path(self) -> None:
+        """Stop on the path; a thread pass is finished first."""
+        ...
+
+    def resume(self) -> None:
+        """Resume motion after a hold. This function never starts the spindle."""
+        ...
+
+    def abort_blocks(self) -> None:
+        """Stop and discard all blocks; ``state().is_at_rest`` is True when this is complete."""
+        ...
+
+    def set_overrides(self, feed_fraction: float, rapid_fraction: float) -> None:
+        """Set the overrides as fractions of the programmed speeds, greater than 0.
+
+        The driver verifies that the controller has accepted them.
+        """
+        ...
+
+    def start_jog(
+        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
+    ) -> bool:
+        """Start a jog or renew its lease; return False if no travel remains before ``limits``.
+
+        No motion is queued beyond the end of the lease. Raises DriverError.
+        """
+        ...
+
     def step_to(self, axis: str, target: float, speed: float) -> None:
-        """One step from rest to rest. Raises DriverError."""
+        """Move an axis to ``target`` in one step that starts and ends at rest. Raises DriverError."""
         ...
 
     def stop_jog(self) -> None:
-        """Come to rest at once."""
+        """Stop the jog immediately."""
         ...

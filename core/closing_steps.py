@@ -1,7 +1,7 @@
-"""Independent closing steps: a step that fails or hangs does not prevent the other steps.
+"""Independent closing steps that run when TurnDesk closes.
 
-Each step runs in its own daemon thread for a limited time. A step that takes longer continues until the
-process ends.
+A step that fails or hangs does not prevent the other steps. Each step runs in its own daemon thread for a
+limited time. A step that exceeds its limit continues until the process ends.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ WaitFunction = Callable[[str, threading.Event, float], bool]
 
 
 def wait_for_end(_name: str, end_event: threading.Event, seconds: float) -> bool:
-    """Wait for the end of a step in real time; return whether the step has ended."""
+    """Wait for the end of a step in real time; return whether the step has ended within ``seconds``."""
     return end_event.wait(seconds)
 
 
 class ClosingStep(NamedTuple):
-    """A function that closes one thing, with its name for the log and its time limit in seconds."""
+    """A function that runs when TurnDesk closes, with its name for the log and its time limit in seconds."""
 
     name: str
     run: Callable[[], object]
@@ -32,14 +32,14 @@ class ClosingStep(NamedTuple):
 
 
 def close_in_order(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
-    """Run the steps one after the other; return the names of the steps that failed or did not end."""
+    """Run the steps one after another; return the names of the steps that failed or did not end."""
     return [step.name for step in steps if not _RunningStep(step).wait_for_success(step.timeout_s, wait)]
 
 
 def close_together(steps: Iterable[ClosingStep], wait: WaitFunction = wait_for_end) -> list[str]:
     """Run all steps at the same time; return the names of the steps that failed or did not end.
 
-    Several steps that hang thus cost the time limit of only one.
+    If several steps hang, the total wait is the longest time limit, not the sum of the limits.
     """
     begun = [_RunningStep(step) for step in steps]
     failed: list[str] = []
@@ -63,11 +63,11 @@ class _RunningStep:
 
     @property
     def ended(self) -> bool:
-        """Whether the step has ended, successfully or not."""
+        """Return whether the step has ended, successfully or not."""
         return self._done.is_set()
 
     def wait_for_success(self, seconds: float, wait: WaitFunction) -> bool:
-        """Return whether the step ends successfully within this time."""
+        """Wait for the step to end; return whether it succeeds within this time."""
         if not wait(self.step.name, self._done, seconds):
             _log.error("closing: %s does not end within %g s", self.step.name, self.step.timeout_s)
             return False

@@ -1,4 +1,4 @@
-"""Faults that drivers report, with the codes of their alarms, and trips of a driver host.
+"""Faults that drivers report with their alarm codes, and trips of a driver host.
 
 Every code has an entry in the alarm catalog (``core.alarms``) with its number, likely causes and remedy.
 """
@@ -61,26 +61,26 @@ FaultCode = Literal[
 
 
 class Fault(str):
-    """An active fault: a message with the alarm's code. An empty string means no fault.
+    """An active fault: a message with the code of its alarm. An empty string means that there is no fault.
 
-    Because a fault is a string, a driver without details can return ``""``, and a driver with several faults
-    can join them with ``or``.
+    Because a fault is a string, a driver without details can return ``""``, and a driver with several
+    possible faults can join them with ``or``.
     """
 
     __slots__ = ("code",)
     code: FaultCode
 
     def __new__(cls, text: str, code: FaultCode, **values: object) -> Fault:
-        """Create a fault.
+        """Create a fault from its text and the code of its alarm.
 
-        ``text`` names the drive, wire or terminal and the symptom; ``values`` fill its fields.
+        ``text`` names the drive, wire or terminal and the symptom. ``values`` fill the fields of the text.
         """
         made = super().__new__(cls, Message(text, **values) if values else text)
         made.code = code
         return made
 
     def __reduce__(self) -> tuple[type[Fault], tuple[str, FaultCode]]:
-        """Return the data for a copy, including the code."""
+        """Return the data from which pickle and copy recreate the fault, including its code."""
         return Fault, (str(self), self.code)
 
 
@@ -90,11 +90,12 @@ def get_fault_code(fault: str, default: FaultCode) -> FaultCode:
 
 
 class DriverError(CodedError):
-    """A driver cannot do a requested operation. The text has the fault, the device and a remedy.
+    """An error that a driver raises when it cannot perform a requested operation.
 
-    ``values`` fill the fields of the text, as in ``Message``. ``code`` is the code of the alarm that results
-    if the error is not handled. If ``text`` is a ``Fault``, its code is used. ``reason`` distinguishes causes
-    with the same code, in lower case with hyphens; it is empty if the code is sufficient.
+    The text states the fault, the device and a remedy. ``values`` fill the fields of the text, as in
+    ``Message``. ``code`` is the code of the alarm that results if the error is not handled. If ``text`` is
+    a ``Fault``, its code is used. ``reason`` distinguishes causes with the same code, in lower case with
+    hyphens; it is empty if the code is sufficient.
     """
 
     def __init__(
@@ -106,14 +107,15 @@ class DriverError(CodedError):
 
     @property
     def fault(self) -> Fault:
-        """The error as an active fault."""
+        """Return the error as an active fault."""
         return Fault(str(self), self.code)
 
 
 class TrippedError(DriverError):
-    """The driver host has switched something off and rejects commands until the trip is acknowledged.
+    """An error raised because the driver host has tripped and rejects commands.
 
-    See ``TrippingDriverHost``.
+    The driver host has switched something off and rejects commands until the trip is acknowledged. See
+    ``TrippingDriverHost``.
     """
 
     def __init__(self, text: str) -> None:
@@ -121,11 +123,11 @@ class TrippedError(DriverError):
 
 
 class DriverHostTrip(NamedTuple):
-    """Functions that the driver host has switched off because it received no messages from the control.
+    """A shutdown by the driver host because it received no messages from the control.
 
-    ``silence_s`` is the time without messages, in seconds. ``spindle`` means that the spindle was commanded
-    to turn. ``active_outputs`` are the outputs that were on. ``was_connection_lost`` means that the machine
-    was out of contact instead, and that these functions remained on.
+    ``silence_s`` is the time without messages, in seconds. ``spindle`` is True if the spindle was commanded
+    to turn. ``active_outputs`` are the outputs that were on. If ``was_connection_lost`` is True, the driver
+    host had lost contact with the machine instead, and these functions remained on.
     """
 
     number: int
@@ -136,14 +138,14 @@ class DriverHostTrip(NamedTuple):
 
 
 class TrippingDriverHost(Protocol):
-    """A driver host that stops the spindle and the outputs when the control is silent.
+    """A driver host that stops the spindle and switches off the outputs when the control is silent.
 
-    It then raises TrippedError for setpoints and for commands that switch something on, until the control
-    acknowledges the trip.
+    The driver host then raises TrippedError for setpoints and for commands that switch something on, until
+    the control acknowledges the trip.
     """
 
     def get_active_trip(self) -> DriverHostTrip | None:
-        """Return the trip that is not acknowledged yet, or None."""
+        """Return the trip that has not been acknowledged, or None."""
         ...
 
     def acknowledge(self, trip: DriverHostTrip) -> None:

@@ -23,9 +23,10 @@ _BESIDE = ("-journal", "-wal", "-shm")  # files that SQLite creates for a copy o
 
 
 def lock_file(file: int) -> None:
-    """Lock the file without waiting, for as long as it is open.
+    """Lock the file without waiting; the lock lasts as long as the file is open.
 
-    Raises OSError if another process has locked the file. Systems without locks are ignored.
+    Raises OSError if another process has locked the file. On systems without file locks the function does
+    nothing.
     """
     if sys.platform == "win32":
         import msvcrt  # noqa: PLC0415
@@ -58,10 +59,11 @@ def mark_locked(file: int) -> None:
 
 
 def is_locked(file: int) -> bool:
-    """Return whether another open file has locked ``file``, without locking it if possible.
+    """Return whether the file is locked through another open file.
 
-    Linux reports record locks of open files, but has no query for ``flock``. On other systems the file is
-    locked for an instant, so a process that tries to lock it at that instant must try again.
+    Linux reports record locks without taking the lock, but has no query for ``flock``. On other systems the
+    function locks the file for an instant, so a process that tries to lock the file at that instant must
+    try again.
     """
     found = _read_lock_info(file)
     if found is not None:
@@ -74,7 +76,7 @@ def is_locked(file: int) -> bool:
 
 
 def _read_lock_info(file: int) -> bool | None:
-    """Return the system's information about the lock; None if the system has none."""
+    """Return whether the system reports a lock on the file, or None if the system has no such query."""
     if sys.platform == "win32":
         return None
     try:
@@ -97,9 +99,9 @@ def _record(kind: int) -> bytes:
 
 @contextmanager
 def create_unfinished_file(target: Path) -> Iterator[Path]:
-    """Create an empty temporary file next to ``target``, to be written and renamed; delete it afterwards.
+    """Create an empty temporary file next to ``target``, and delete it at the end of the context.
 
-    Raises OSError if the file cannot be created.
+    The caller writes the file and renames it to ``target``. Raises OSError if the file cannot be created.
     """
     remove_abandoned_files(target.parent)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
@@ -115,9 +117,10 @@ def create_unfinished_file(target: Path) -> Iterator[Path]:
 
 @contextmanager
 def create_unfinished_folder(target: Path) -> Iterator[Path]:
-    """Create a temporary folder next to ``target``, to be filled and renamed; delete it afterwards.
+    """Create a temporary folder next to ``target``, and delete it at the end of the context.
 
-    Raises OSError if the folder cannot be created.
+    The caller fills the folder and renames it to ``target``. Raises OSError if the folder cannot be
+    created.
     """
     remove_abandoned_files(target.parent)
     folder = tempfile.mkdtemp(prefix=f".{target.name}.", suffix=_ENDING, dir=target.parent)
@@ -129,7 +132,10 @@ def create_unfinished_folder(target: Path) -> Iterator[Path]:
 
 
 def remove_abandoned_files(folder: Path) -> None:
-    """Remove the temporary files of killed writers from a folder. Files that are being written remain."""
+    """Remove from a folder the temporary files of processes that were killed.
+
+    Files that another process is still writing remain.
+    """
     if sys.platform == "win32":
         return
     with suppress(OSError):
@@ -162,7 +168,7 @@ def _locked(handle: int) -> Iterator[None]:
 
 
 def _is_written_elsewhere(path: Path) -> bool:
-    """Return whether another process is writing the file; True if this is unknown."""
+    """Return whether another process is writing the file, or True if this is unknown."""
     handle = _opened(path)
     if handle < 0:
         return True

@@ -1,4 +1,4 @@
-"""Atomic replacement of files and folders, syncing to the disk, and access rights of private files."""
+"""Atomic replacement of files and folders, syncing to disk, and access restriction of private files."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ _OWNER = 0o700
 def replace_atomically(finished: Path, path: Path) -> None:
     """Rename ``finished`` to ``path`` in one step that survives a power failure.
 
-    The data is on the disk before the rename, and the new name is on the disk afterwards. Raises OSError,
-    also if ``path`` is a device or a pipe.
+    The data is on the disk before the rename, and the new name is on the disk when the function returns.
+    Raises OSError, also if ``path`` is a device or a pipe.
     """
     if path.exists() and not path.is_file() and not path.is_dir():
         raise OSError(errno.EINVAL, "this path is a device or a pipe, not a file", str(path))
@@ -29,8 +29,8 @@ def replace_atomically(finished: Path, path: Path) -> None:
 def write_atomically(path: Path, data: bytes) -> None:
     """Write ``data`` to a file in one step; create its folder if necessary.
 
-    At any time ``path`` is either the old file or the new file. A failed write leaves no file. Raises
-    OSError.
+    ``path`` always refers to either the complete old file or the complete new file. A failed write leaves
+    no temporary file. Raises OSError.
     """
     create_synced_folder(path.parent)
     unfinished = path.with_name(f".{path.name}.new")
@@ -44,7 +44,10 @@ def write_atomically(path: Path, data: bytes) -> None:
 
 
 def place_folder(finished: Path, folder: Path) -> None:
-    """Rename a complete folder to ``folder``, which must be missing or empty, and sync it. Raises OSError."""
+    """Rename a complete folder to ``folder`` and sync it to the disk.
+
+    ``folder`` must be missing or empty. Raises OSError.
+    """
     for inside in (*finished.rglob("*"), finished):
         if inside.is_dir():
             sync_folder(inside)
@@ -64,7 +67,7 @@ def create_synced_folder(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Sync the names in a folder to the disk. Raises OSError."""
+    """Sync the file names in a folder to the disk. Raises OSError."""
     if sys.platform == "win32":
         return  # Windows cannot open folders, but journals their names
     handle = os.open(folder, os.O_RDONLY)
@@ -75,7 +78,10 @@ def sync_folder(folder: Path) -> None:
 
 
 def sync_all_files() -> None:
-    """Sync all written files to the disk, except on Windows, which does not support it."""
+    """Sync all written files to the disk.
+
+    The function does nothing on Windows, which does not support this.
+    """
     if hasattr(os, "sync"):
         os.sync()
 
@@ -90,7 +96,8 @@ def sync_file(path: Path) -> None:
 def restrict_access(path: Path) -> None:
     """Remove the access rights of all other users from a file or folder.
 
-    A file of another owner remains unchanged, and so does a folder like /tmp, to which all users may write.
+    A file of another owner remains unchanged. A folder to which all users may write, such as /tmp, also
+    remains unchanged.
     """
     with suppress(OSError):
         mode = stat.S_IMODE(path.stat().st_mode)
@@ -99,7 +106,10 @@ def restrict_access(path: Path) -> None:
 
 
 def restrict_folder_access(folder: Path) -> None:
-    """Restrict a folder and the files directly in it. A missing folder is ignored."""
+    """Remove the access rights of all other users from a folder and the files directly in it.
+
+    A missing folder is ignored.
+    """
     if not folder.is_dir():
         return
     restrict_access(folder)

@@ -1,4 +1,4 @@
-"""Reading of input files: regular files of limited size, uniform errors, and TOML.
+"""Functions that read input files of limited size, with uniform errors, and parse TOML.
 
 A reader calls ``read_input_bytes``, which raises only OSError, and parses the data within
 ``convert_exceptions``, which converts all exceptions of the parser into the reader's own error.
@@ -23,17 +23,18 @@ _FLAGS = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0)
 
 
 class NotAFileError(OSError):
-    """The path is a folder, a device, a pipe or a socket."""
+    """An error raised if the path is a folder, a device, a pipe or a socket."""
 
 
 class TooLargeError(OSError):
-    """The file is larger than the limit for its kind."""
+    """An error raised if the file is larger than the limit for its kind."""
 
 
 def open_input_file(path: Path, max_bytes: int | None = None) -> BufferedReader:
-    """Open a regular file of at most ``most`` bytes without blocking. Raises only OSError.
+    """Open a regular file of at most ``max_bytes`` bytes without blocking.
 
-    None as ``most`` permits any size, for callers that read only part of the file.
+    If ``max_bytes`` is None, any size is permitted, for callers that read only part of the file. Raises
+    only OSError.
     """
     try:
         file = open(path, "rb", opener=lambda name, flags: os.open(name, flags | _FLAGS))  # noqa: SIM115
@@ -57,7 +58,7 @@ def _check(path: Path, status: os.stat_result, most: int | None) -> None:
 
 
 def read_input_bytes(path: Path, max_bytes: int) -> bytes:
-    """Return the contents of a regular file of at most ``most`` bytes. Raises only OSError."""
+    """Return the contents of a regular file of at most ``max_bytes`` bytes. Raises only OSError."""
     with open_input_file(path, max_bytes) as file:
         data = file.read(max_bytes + 1)
     # another process is still writing the file, or its file system does not report its size
@@ -81,9 +82,7 @@ def _too_large(path: Path, most: int) -> TooLargeError:
 
 @contextmanager
 def convert_exceptions(make_error: Callable[[Exception], Exception]) -> Iterator[None]:
-    """Convert every exception of a parser into ``make_error(error)``, except exceptions of type
-    CodedError.
-    """
+    """Convert every exception of a parser except ``CodedError`` into ``make_error(error)``."""
     try:
         yield
     except CodedError:

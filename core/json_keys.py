@@ -13,8 +13,8 @@ _TYPES = {str: "string", int: "integer", float: "number", bool: "boolean", NoneT
 class JsonKey(NamedTuple):
     """A key of a JSON output.
 
-    ``name`` is the path of the key: ``.`` leads into an object, ``[]`` into a list, and ``*`` matches any
-    key. ``type`` is string, number, integer, boolean, object, list or null, or several of them joined by
+    ``name`` is the path of the key: ``.`` leads into an object, ``[]`` leads into a list, and ``*`` matches
+    any key. ``type`` is string, number, integer, boolean, object, list or null. Several types are joined by
     "or".
     """
 
@@ -33,7 +33,7 @@ class JsonOutput(NamedTuple):
 
 
 def declare_keys(text: str) -> tuple[JsonKey, ...]:
-    """Return the keys declared by a table of text with lines ``name | type | unit | meaning``.
+    """Return the keys declared by a text table with lines ``name | type | unit | meaning``.
 
     An indented line continues the line above.
     """
@@ -43,9 +43,10 @@ def declare_keys(text: str) -> tuple[JsonKey, ...]:
 def declare_row_keys(
     path: str, row: type[tuple[object, ...]] | type[object], text: str
 ) -> tuple[JsonKey, ...]:
-    """Return the keys of a row type below ``path``; ``text`` has lines ``name | unit | meaning``.
+    """Return the keys of a row type below ``path``, described by a text table.
 
-    Raises ValueError if ``text`` does not have exactly the fields of the type, in their order.
+    The lines of ``text`` are ``name | unit | meaning``. Raises ValueError if ``text`` does not have exactly
+    the fields of the type in the same order.
     """
     hints = get_type_hints(row)
     told = {name: (unit, meaning) for name, unit, meaning in (_cells(line, 3) for line in _lines(text))}
@@ -55,7 +56,7 @@ def declare_row_keys(
 
 
 def prefix_keys(path: str, keys: Collection[JsonKey]) -> tuple[JsonKey, ...]:
-    """Return keys with a path put in front of their names."""
+    """Return the keys with ``path`` put in front of their names."""
     return tuple(key._replace(name=f"{path}{key.name}") for key in keys)
 
 

@@ -1,4 +1,4 @@
-"""Declaration of machine-file keys on the attributes that hold their values."""
+"""Declaration of the keys of the machine file on the attributes that store their values."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ MM_PER_INCH = 25.4
 
 
 class FileUnit(StrEnum):
-    """Unit of a number in the machine file, as shown in findings; ``len`` means in or mm."""
+    """Unit of a number in the machine file, as shown in findings.
+
+    ``len`` represents inches or millimeters, depending on the unit of the file.
+    """
 
     UNITLESS = ""
     LENGTH = "len"
@@ -46,25 +49,28 @@ LENGTH_UNITS = frozenset((FileUnit.LENGTH, FileUnit.FEED, FileUnit.ACCELERATION)
 
 
 def convert_to_model(value: float, unit: FileUnit, is_inch: bool) -> float:
-    """Return a number of the machine file in the unit of the model."""
+    """Convert a number from the unit of the machine file to the unit of the model."""
     length = value * MM_PER_INCH if is_inch and unit in LENGTH_UNITS else value
     return length * _MULTIPLIER.get(unit, 1.0) / _DIVISOR.get(unit, 1.0)
 
 
 def convert_to_file(value: float, unit: FileUnit, is_inch: bool) -> float:
-    """Return a number of the model in the unit of the machine file."""
+    """Convert a number from the unit of the model to the unit of the machine file."""
     number = value * _DIVISOR.get(unit, 1.0) / _MULTIPLIER.get(unit, 1.0)
     return number / MM_PER_INCH if is_inch and unit in LENGTH_UNITS else number
 
 
 def make_unit_text(unit: FileUnit, is_inch: bool) -> str:
-    """Return the unit as text with a space in front, with in or mm for lengths; empty for plain numbers."""
+    """Return the text of a unit with a leading space, with in or mm for lengths.
+
+    The text is empty for numbers without a unit.
+    """
     text = unit.value.replace("len", "in" if is_inch else "mm")
     return f" {text}" if text else ""
 
 
 def format_value(value: float, unit: FileUnit, is_inch: bool) -> str:
-    """Return a number of the model as text with the unit of the machine file."""
+    """Return a number of the model as text, converted to the unit of the machine file."""
     return f"{convert_to_file(value, unit, is_inch):.6g}{make_unit_text(unit, is_inch)}"
 
 
@@ -75,7 +81,7 @@ Words = str  # a list of words, stored as one text separated by spaces
 
 
 class ValueKind(Enum):
-    """Kinds of values, with their descriptions in findings."""
+    """Kinds of values, with the descriptions that findings show."""
 
     NUMBER = "a number"
     INTEGER = "a whole number"
@@ -90,10 +96,10 @@ class ValueKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class KeyField:
-    """A key of the machine file: its kind, unit, range in the model's unit, and default.
+    """A key of the machine file, with its kind, unit, range in the model's unit, and default.
 
-    The key is required if ``default`` is None. ``attribute`` is the attribute that holds the value.
-    ``derived`` means that the default depends on other values of the file (``machine_defaults.py``).
+    The key is required if ``default`` is None. ``attribute`` is the attribute that stores the value. If
+    ``is_derived`` is True, the default depends on other values of the file (``machine_defaults.py``).
     ``meaning`` is the text of the reference page.
     """
 
@@ -121,7 +127,10 @@ class KeyRange(NamedTuple):
 
 
 class _Key(NamedTuple):
-    """A declared key before its class exists; an empty ``name`` means the name of the attribute."""
+    """A key declared on an attribute of a class that does not exist yet.
+
+    If ``name`` is empty, the key has the name of the attribute.
+    """
 
     range: KeyRange
     meaning: str
@@ -142,7 +151,7 @@ def declare_key(
     derived: bool = False,
     secret: bool = False,
 ) -> Any:
-    """Declare a key on an attribute of a class. The annotation of the attribute is the kind of the value.
+    """Declare a key on an attribute of a class, with the attribute's annotation as the kind of value.
 
     ``name`` is the key in the file if it differs from the attribute's name. A ``secret`` value is not
     printed. The other arguments are described in ``KeyField``.

@@ -1,4 +1,4 @@
-"""Texts for users as templates with named values, errors with codes, and search for similar words."""
+"""User texts made of a template and named values, errors with codes, and a search for similar words."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ LETTER_CASES: dict[str, Callable[[str], str]] = {
 
 
 class Message(str):
-    """A text in English that retains its template and its values, for translation.
+    """An English text that retains its template and its values for translation.
 
-    For code that only reads it, a message is an ordinary ``str``. ``template`` has fields as for
+    For code that only reads the text, a message is an ordinary ``str``. ``template`` has fields as for
     ``str.format``, without format specifications. ``values`` are the values of the fields by name; a value
-    may be a ``Message``. ``case`` is the change of capitals, one of ``LETTER_CASES`` or empty.
+    may be a ``Message``. ``case`` is the change of letter case, one of ``LETTER_CASES``, or empty.
     """
 
     __slots__ = ("case", "template", "values")
@@ -30,7 +30,10 @@ class Message(str):
     case: str
 
     def __new__(cls, template: str, /, **values: object) -> Self:
-        """Fill the template with the values. A value that is not text or a number becomes ``str(value)``."""
+        """Fill the template with the values.
+
+        A value that is neither text nor a number is converted with ``str(value)``.
+        """
         named = ((name, values[name]) for name in _names_of(template))
         known = {name: each if isinstance(each, MessageValue) else str(each) for name, each in named}
         made = super().__new__(cls, template.format(**known))
@@ -38,11 +41,11 @@ class Message(str):
         return made
 
     def __str__(self) -> str:
-        """Return the message itself, so that the text of an exception retains template and values."""
+        """Return the message itself, so that the text of an exception retains its template and values."""
         return self
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the data with which another process recreates the message."""
+        """Return the data from which another process recreates the message."""
         return make_message, (self.template, self.values, self.case)
 
     def upper(self) -> Message:
@@ -68,7 +71,7 @@ class Message(str):
 
 
 def fill_template(text: str, values: Mapping[str, object]) -> str:
-    """Fill a text with values, formatting floats with at most six digits.
+    """Fill a text with values; floats are formatted with at most six digits.
 
     A ``Message``, or a text without values, is returned unchanged.
     """
@@ -85,22 +88,25 @@ def _names_of(template: str) -> tuple[str, ...]:
 
 
 def make_message(template: str, values: dict[str, MessageValue], case: str = "") -> Message:
-    """Return the message with this template, these values and case. Raises KeyError if a value is missing."""
+    """Return a message with the given template, values and letter case.
+
+    Raises KeyError if a value is missing.
+    """
     made = Message(template, **values)
     return made._in_case(case) if case else made
 
 
 def join_messages(separator: str, parts: Iterable[str]) -> Message:
-    """Return the parts joined by a separator; each part is translated separately."""
+    """Join the parts with a separator into one message; each part is translated separately."""
     values = {f"part{number}": part for number, part in enumerate(parts)}
     between = separator.replace("{", "{{").replace("}", "}}")
     return Message(between.join(f"{{{name}}}" for name in values), **values)
 
 
 def collect_values(text: str) -> dict[str, MessageValue]:
-    """Return the values of a message and of the messages inside it, by name; {} for a plain text.
+    """Return the values of a message and of the messages inside it by name, or {} for a plain text.
 
-    If two values have the same name, the outer value is returned.
+    If an outer and an inner value have the same name, the outer value is returned.
     """
     if not isinstance(text, Message):
         return {}
@@ -114,14 +120,20 @@ def _plain(value: MessageValue) -> MessageValue:
 
 
 def pack_message(text: str) -> str:
-    """Return template, values and case of a message as JSON for storage; empty for a plain text."""
+    """Return the template, values and case of a message as JSON for storage.
+
+    The result is empty for a plain text.
+    """
     import json  # noqa: PLC0415  only what is stored is packed
 
     return json.dumps(_packed(text), ensure_ascii=False) if isinstance(text, Message) else ""
 
 
 def unpack_message(packed: str, text: str) -> str:
-    """Return the message packed as JSON, or ``text`` if ``packed`` is empty, invalid or a different text."""
+    """Return the message packed as JSON, or ``text`` if the message cannot be used.
+
+    A packed message cannot be used if it is empty or invalid, or if its text differs from ``text``.
+    """
     if not packed:
         return text
     import json  # noqa: PLC0415  only what is stored is packed
@@ -153,7 +165,8 @@ def _unpacked(stored: object) -> Any:
 class CodedError(Exception):
     """An error with a text for users and a code for programs and tests.
 
-    ``code`` identifies the fault in kebab case, such as ``disk-full``. It is empty if no code is needed.
+    ``code`` identifies the fault in kebab case, such as ``disk-full``. ``code`` is empty if no code is
+    needed.
     """
 
     def __init__(self, text: str = "", code: str = "") -> None:
@@ -162,12 +175,15 @@ class CodedError(Exception):
 
 
 def get_error_code(error: BaseException) -> str:
-    """Return the code of an error, for an error that replaces it; empty if the error has no code."""
+    """Return the code of an error, or an empty text if the error has no code.
+
+    Callers give this code to the error that replaces the original one.
+    """
     return error.code if isinstance(error, CodedError) else ""
 
 
 def find_nearest(word: str, known_words: Iterable[str]) -> str:
-    """Return the known word most similar to ``word``; empty if none is similar."""
+    """Return the known word most similar to ``word``, or an empty text if no word is similar."""
     from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
 
     return next(iter(get_close_matches(word, list(known_words), n=1)), "")

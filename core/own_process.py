@@ -1,4 +1,4 @@
-"""Environment of the further Python processes that TurnDesk starts, such as that of the control."""
+"""Environment of the other Python processes that TurnDesk starts, such as the control process."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _FOLDER = str(Path(__file__).parents[1])
 
 
 def module_environment(**more: str) -> Mapping[str, str]:
-    """Return the environment in which ``python -m`` finds the modules of this TurnDesk first.
+    """Return an environment in which ``python -m`` finds the modules of this TurnDesk first.
 
     An installed TurnDesk has its packages in a folder that is not in the module path of other programs.
     """

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 
 def make_anchor(title: str) -> str:
-    """Return the anchor of a heading: lower case, words joined by hyphens, without punctuation."""
+    """Return the anchor of a heading, in lower case, with hyphens between words and without punctuation."""
     plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", title.strip())
     return re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
 

@@ -1,14 +1,15 @@
-"""Base class of the small immutable values of which a start needs dozens of classes.
+"""Base class of small immutable values that are created quickly at startup.
 
-Python compiles six functions for each frozen dataclass, which takes 0.3 ms. A class that writes its own
-``__init__`` needs almost no time. Its attributes are ``Final``, so that mypy rejects a change.
+A start of TurnDesk loads dozens of these classes. Python compiles six functions for each frozen dataclass,
+which takes 0.3 ms. A class with an explicit ``__init__`` needs almost no time. Its attributes are
+``Final``, so mypy rejects assignments to them.
 """
 
 from __future__ import annotations
 
 
 class PlainValue:
-    """A value that is equal to another one if the class and all attributes, ``__slots__``, are equal."""
+    """A value that equals another value of the same class if all attributes in ``__slots__`` are equal."""
 
     __slots__: tuple[str, ...] = ()
 

@@ -1,6 +1,6 @@
-"""What a driver must offer.
+"""Interfaces that drivers implement for the executor.
 
-Times are seconds of one monotonic clock; lengths are mm (X a radius), C is degrees.
+Times are in seconds of one monotonic clock. Lengths are in millimeters, X is a radius, and C is in degrees.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ALL_UNKNOWN_PARTS = faults.ALL_UNKNOWN_PARTS
 
 
 class StopMode(StrEnum):
-    """How to come to rest: at once and unpowered, braked then unpowered, or braked and held."""
+    """Stop modes: power off at once, brake and power off, or brake and hold position."""
 
     OFF = "off"
     RAMP_OFF = "ramp-off"
@@ -34,10 +34,11 @@ class StopMode(StrEnum):
 
 
 class Segments(NamedTuple):
-    """Motion of all axes together in pieces of constant acceleration.
+    """Motion of all axes as a sequence of segments with constant acceleration.
 
-    ``t`` (n,) start times, ``dt`` (n,) lengths, ``p v a`` (n, axes) position, velocity and acceleration at
-    the start of each piece. At rest after the last piece.
+    ``t`` (n,) contains the start times and ``dt`` (n,) the durations. ``p``, ``v`` and ``a`` (n, axes)
+    contain the position, velocity and acceleration at the start of each segment. The axes are at rest after
+    the last segment.
     """
 
     t: FloatArray
@@ -48,7 +49,10 @@ class Segments(NamedTuple):
 
     @classmethod
     def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> Segments:
-        """At this place from ``t`` on: they cut off whatever was queued behind."""
+        """Return segments that hold this position from ``start_time_s`` on.
+
+        A splice with these segments discards all motion that was queued after this time.
+        """
         still = np.zeros((1, len(position)))
         return cls(
             np.array([start_time_s]), np.zeros(1), np.array([position], dtype=np.float64), still, still
@@ -59,12 +63,15 @@ _NO_MOTION = 1e-6  # s; what rounding may leave of a last piece, on a clock of h
 
 
 def is_queue_finished(queue_end: float, now: float) -> bool:
-    """Whether what was queued is over: one rule for whoever asks, with a tolerance for rounding."""
+    """Return whether the queue has ended, with a tolerance for rounding.
+
+    All callers use this function, so that they apply the same rule.
+    """
     return queue_end <= now + _NO_MOTION
 
 
 class AxisSample(NamedTuple):
-    """What the axes do at one instant; tuples in the sink's order of axes."""
+    """State of the axes at one instant; tuples are in the sink's order of axes."""
 
     t: float
     demand: tuple[float, ...]
@@ -77,129 +84,143 @@ class AxisSample(NamedTuple):
 
 
 class SampleSource(Protocol):
-    """What a driver has sampled at its own rate, for the scope. The executor asks for it once a tick.
+    """Source of the samples that a driver records at its own rate, for the scope.
 
-    A row is flat: time, demand of each axis, actual of each, load of each (per cent of what its drive can),
-    spindle speed (rpm), spindle turns (counted), spindle load (per cent), and for how long the queue goes on
-    (s). What is not told is nan. Times rise; while nothing at all changes rows may be further apart.
+    The executor reads the samples once per tick. A row is flat: time, demand of each axis, actual position
+    of each axis, load of each axis (percent of what its drive can deliver), spindle speed (rpm), spindle
+    revolutions (counted), spindle load (percent), and remaining time of the queue (s). A value that is not
+    reported is nan. Times increase; while no value changes, rows may be further apart.
     """
 
     sample_rate_hz: float  # samples a second while something moves
 
     def take(self, max_rows: int = 8192) -> FloatArray:
-        """What has been sampled since it was last taken, (n, 5 + 3 axes), the oldest first and ``max_rows``
-        at a time; where nobody takes them the oldest are lost.
+        """Return and remove the samples since the last call, as an array (n, 5 + 3 axes), oldest first.
+
+        A call returns at most ``max_rows`` rows. If samples are not read in time, the oldest ones are lost.
         """
         ...
 
 
 class AxisSink(Protocol):
-    """Where setpoints go. A queue is always a complete trajectory that ends at rest."""
+    """Destination of setpoints. A queue is always a complete trajectory that ends at rest."""
 
     axes: tuple[str, ...]
     commit: float  # nothing before now() + commit can be changed any more
 
     def now(self) -> float:
-        """Seconds of the driver's clock, by which setpoints are played."""
+        """Return the time of the clock by which the driver executes setpoints, in seconds."""
         ...
 
     def horizon(self) -> float:
-        """End of what is queued; not before now() when something is queued."""
+        """Return the end time of the queue; the time is not before now() if motion is queued."""
         ...
 
     def splice(self, segments: Segments) -> None:
-        """Replace everything from ``segments.t[0]`` on.
+        """Replace all queued motion from ``segments.t[0]`` on.
 
-        Raises DriverError unless it starts at or after now() + commit, continues position and velocity of
-        what stays, and ends at rest.
+        Raises DriverError unless the segments start at or after now() + commit, continue the position and
+        velocity of the remaining queue, and end at rest.
         """
         ...
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Queued position and velocity at ``t``; what a splice at ``t`` has to continue."""
+        """Return the queued position and velocity at ``time_s``.
+
+        A splice at this time must continue both.
+        """
         ...
 
     def sample(self) -> AxisSample:
-        """What is known of the axes now; from memory, at once."""
+        """Return the present state of the axes from memory, without waiting."""
         ...
 
     def enable(self, on: bool) -> None:
-        """Switch the drives of all axes on or off. Raises DriverError; a drive that then fails is a fault."""
+        """Switch the drives of all axes on or off.
+
+        Raises DriverError. A drive that fails later reports a fault.
+        """
         ...
 
     def stop(self, mode: StopMode) -> None:
-        """Drop the queue and come to rest in this way. Raises DriverError."""
+        """Discard the queue and stop in the given mode. Raises DriverError."""
         ...
 
     def home(self, axis: str) -> None:
-        """Begin to home this axis; ``sample`` tells when it is done. Raises DriverError."""
+        """Start homing an axis; ``sample`` reports when the axis is homed. Raises DriverError."""
         ...
 
     def clear_fault(self) -> None:
-        """Ask for a way out of a fault; ``sample`` tells whether there was one. Raises DriverError."""
+        """Request that a fault is cleared; ``sample`` reports whether this succeeded. Raises DriverError."""
         ...
 
 
 class Spindle(Protocol):
-    """The main spindle; rpm is signed, positive as M03 turns."""
+    """The main spindle. Its speed in rpm is signed; M03 is positive."""
 
     def run_at(self, rpm: float) -> None: ...
 
     def coast(self) -> None: ...
 
     def speed(self) -> float:
-        """Measured rpm, signed."""
+        """Return the measured, signed speed in rpm."""
         ...
 
     def read_angle(self) -> tuple[float, float] | None:
-        """(time, revolutions counted since power-up) from the encoder, or None without one."""
+        """Return the time and the revolutions since power-up from the encoder, or None without an encoder."""
         ...
 
     def read_fault(self) -> str: ...
 
 
 class SpindleCAxis(Protocol):
-    """The spindle's drive as C, where it is the same drive: changed over at standstill."""
+    """A spindle drive that also serves as the C axis; the mode is changed at standstill."""
 
     def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
-        """Ask for it to be held as C, or to turn again; C keeps its count.
+        """Request C-axis mode or spindle mode; C retains its count.
 
-        ``orient``: it turns by the short way until its count is also its place from the index, in whole
-        turns. Raises DriverError while it turns or has no power.
+        If ``orient`` is True, the spindle turns by the shortest path until its count equals its position
+        from the index, apart from whole revolutions. Raises DriverError while the spindle turns or has no
+        power.
         """
         ...
 
     def is_c_ready(self) -> bool:
-        """Whether C may move, and stays where it is put."""
+        """Return whether the C axis can move and holds its position."""
         ...
 
 
 class OrientingSpindle(Protocol):
-    """The spindle's drive stops it at an angle and holds it there, until it is to turn or is let go."""
+    """A spindle whose drive can stop it at an angle and hold it there.
+
+    The drive holds the spindle until it is commanded to turn or is released.
+    """
 
     def orient_spindle(self, angle: float, direction: int = 0) -> None:
-        """Bring it to ``angle``, degrees from its index, 0 to under 360 and rising as M03 turns.
+        """Turn the spindle to ``angle`` in degrees from its index, from 0 to less than 360.
 
-        ``direction``: 1 it turns there as M03 does, -1 as M04, 0 by the short way. Raises DriverError while
-        it turns, without power or with a fault.
+        The angle increases in the direction of M03. ``direction`` is 1 for the direction of M03, -1 for the
+        direction of M04, or 0 for the shortest path. Raises DriverError while the spindle turns, has no
+        power or has a fault.
         """
         ...
 
     def release_spindle(self) -> None:
-        """Hold it no longer; on its way to an angle it comes to rest."""
+        """Release the spindle; if it is still turning to an angle, it stops."""
         ...
 
     def is_oriented(self) -> bool:
-        """Whether it stands at the angle that was asked for last, and is held there."""
+        """Return whether the drive holds the spindle at the last requested angle."""
         ...
 
 
 class Cam(NamedTuple):
-    """Motion over the turns of the spindle instead of over time.
+    """Motion as a function of spindle revolutions instead of time.
 
-    ``way.t`` and ``way.dt`` are turns from the encoder's count ``start_revolutions`` on, in the direction
-    ``sign`` in which the spindle turns; ``way.v`` and ``way.a`` are per turn. At rest until it begins and
-    behind its end. ``following_segments`` goes on from that end by time; its ``t`` are seconds from there.
+    ``way.t`` and ``way.dt`` are revolutions from the encoder count ``start_revolutions`` on, in the
+    direction ``sign`` in which the spindle turns. ``way.v`` and ``way.a`` are per revolution. The axes are
+    at rest before the start and after the end of the cam. ``following_segments`` continue from that end as
+    a function of time; their ``t`` are seconds from there.
     """
 
     start_revolutions: float
@@ -209,10 +230,10 @@ class Cam(NamedTuple):
 
 
 class GearState(NamedTuple):
-    """Where on its cam a driver is: turns from ``start_revolutions``, and turns by which it is behind the
-    spindle.
+    """Position of a driver on its cam, in revolutions from ``start_revolutions``.
 
-    ``speed`` is what the spindle turns by its encoder, turns/s, positive the way the cam counts.
+    ``lag_revolutions`` is the number of revolutions by which the axes lag the spindle. ``speed`` is the
+    spindle speed from the encoder in revolutions per second, positive in the direction of the cam.
     """
 
     revolutions: float
@@ -221,51 +242,59 @@ class GearState(NamedTuple):
 
 
 class SpindleGear(Protocol):
-    """Slides that follow the spindle inside the driver, at its own rate, by its own reading of the encoder.
+    """Electronic gearing of the axes to the spindle inside the driver.
 
-    The slides are those of the sink beside it, the encoder counts as ``Spindle.angle``. A gear slips rather
-    than ask a slide for more than it can: it falls behind and catches up. A spindle that stands leaves the
-    slides standing.
+    The driver uses its own encoder reading at its own rate. The axes are those of the sink of the same
+    machine, and the encoder counts as in ``Spindle.read_angle``. The gear slips instead of exceeding the
+    limits of an axis: the axis lags and then catches up. If the spindle stops, the axes stop too.
     """
 
     def mesh(self, cam: Cam) -> None:
-        """Follow the spindle; while it is being followed, replace everything from ``cam.way.t[0]`` on.
+        """Follow the spindle with a cam.
 
-        Raises DriverError unless the way begins at or behind what the spindle will reach within the sink's
-        commit, continues what stays, and ends at rest. The sink's ``demand_at`` and ``horizon`` then foretell
-        from the present speed, as far as the end of the way. Its ``splice`` releases a gear that has not yet
-        moved anything and is refused elsewhere; its ``stop`` brakes from wherever the slides are.
+        If a cam is already active, the call replaces all of it from ``cam.way.t[0]`` on. Raises DriverError
+        unless the cam starts at or after the position that the spindle will reach within the sink's commit
+        time, continues the remaining motion, and ends at rest. The sink's ``demand_at`` and ``horizon``
+        then predict from the present speed, up to the end of the cam. Its ``splice`` releases a gear that
+        has not moved an axis yet and is rejected otherwise. Its ``stop`` brakes from the present position
+        of the axes.
         """
         ...
 
     def geared(self) -> GearState | None:
-        """None when the slides do not follow the spindle, or no longer."""
+        """Return the state of the gear, or None if the axes do not follow the spindle."""
         ...
 
 
 class DigitalIO(Protocol):
-    """Inputs and outputs by the names of the machine file."""
+    """Digital inputs and outputs by their names in the machine file."""
 
     def inputs(self) -> Mapping[str, bool]:
-        """All inputs as last told; from memory, at once."""
+        """Return the last reported state of all inputs from memory, without waiting."""
         ...
 
     def outputs(self) -> Mapping[str, bool]:
-        """As they are, whoever has switched them, as far as the driver is told; else as last written."""
+        """Return the present state of all outputs, whether the control or another device switched them.
+
+        An output whose state is not reported to the driver has the last written state.
+        """
         ...
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output. Raises DriverError."""
+        """Switch an output on or off. Raises DriverError."""
         ...
 
     def switch_to_safe_state(self) -> None:
-        """Every output to its safe state."""
+        """Switch every output to its safe state."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class StationState:
-    """The operator station at one instant. ``start`` is the two-hand relay's output, never the buttons."""
+    """State of the operator station at one instant.
+
+    ``start`` is the output of the two-hand relay, not the state of the buttons.
+    """
 
     estop: bool = False
     start: bool = False
@@ -281,10 +310,10 @@ class StationState:
 
 
 class Station(Protocol):
-    """Buttons, pots and switches of the operator station."""
+    """Interface of the operator station, with its buttons, potentiometers and switches."""
 
     def read_state(self) -> StationState:
-        """The station as last told, with its age; from memory, at once."""
+        """Return the last reported state of the station with its age, from memory and without waiting."""
         ...
 
 
@@ -292,10 +321,11 @@ PROBE_INPUT = "probe"  # the input of a touch probe or tool setter, on while it 
 
 
 class TouchLatch(NamedTuple):
-    """Where the slides were when the input ``probe`` came on.
+    """Position of the axes at the instant when the input ``probe`` turned on.
 
-    ``place`` by the encoders, in the sink's order of axes; ``max_delay_s``: s by which it may have been
-    taken late, so that a slide at v has been up to v · late further back.
+    ``axis_positions`` are encoder positions in the sink's order of axes. ``max_delay_s`` is the maximum
+    delay of the reading in seconds. The true position of an axis at speed v may therefore be up to v ×
+    ``max_delay_s`` before the recorded position.
     """
 
     time_s: float
@@ -304,50 +334,58 @@ class TouchLatch(NamedTuple):
 
 
 class TouchInput(Protocol):
-    """A driver that keeps the place of a touch at its own rate. Without one a tick of the executor counts."""
+    """A driver that latches the position of a touch at its own rate.
+
+    Without such a driver, the executor reads the position once per tick.
+    """
 
     def arm_latch(self) -> None:
-        """Forget what was kept; the next time that the input comes on is kept."""
+        """Clear the latch; the next rising edge of the input is latched."""
         ...
 
     def read_latch(self) -> TouchLatch | None:
-        """The first touch since it was armed; None as long as there was none."""
+        """Return the first touch since the latch was armed, or None if there was no touch."""
         ...
 
 
 class Wakeup(Protocol):
-    """How a driver tells by itself that something has changed: a machine at rest is then looked at ten times
-    a second, and at once when it rings.
+    """A signal by which a driver reports that something has changed.
+
+    With this signal, the executor polls a machine at rest only ten times per second, and immediately after
+    a wakeup.
     """
 
     def is_settled(self) -> bool:
-        """Whether nothing that a look tells changes any more without a ring. Asked at rest."""
+        """Return whether no polled value can change any more without a wakeup. It is called at rest."""
         ...
 
     def wake(self) -> None:
-        """From any thread: look now."""
+        """Request an immediate poll; any thread may call this function."""
         ...
 
     def wait(self, seconds: float) -> bool:
-        """Until it rings, so long at most; whether it has. What rang before counts."""
+        """Wait for a wakeup for at most ``seconds``; return whether a wakeup occurred.
+
+        A wakeup that occurred before the call counts.
+        """
         ...
 
 
 class Clock(Protocol):
-    """Monotonic time, and the only way to wait for it."""
+    """Monotonic clock, and the only means of waiting until a time."""
 
     def now(self) -> float:
-        """Seconds; the beginning means nothing."""
+        """Return the time in seconds from an arbitrary origin."""
         ...
 
     def sleep_until(self, t: float) -> None:
-        """Back at ``t`` or a little later; at once where that is past."""
+        """Wait until ``t`` or slightly later; return immediately if ``t`` is in the past."""
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class MachinePorts:
-    """Everything the executor drives, put together in one place of the app."""
+    """All ports that the executor uses, assembled in one place of the app."""
 
     clock: Clock
     axes: AxisSink

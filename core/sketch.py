@@ -10,7 +10,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """A polyline; ``role`` is part, cut (the result of the shape), tool or axis."""
+    """A polyline with a role: ``part``, ``cut`` (the result of the shape), ``tool`` or ``axis``."""
 
     points: tuple[Point, ...]
     role: str = "part"
@@ -19,10 +19,10 @@ class Outline:
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A dimension from ``start`` to ``end``, drawn at the distance ``distance``; without ``end``, a number
-    at ``start``.
+    """A dimension from ``start`` to ``end``, drawn at ``distance`` from these points.
 
-    ``field_word`` is the label of its field. ``prefix`` is a sign in front of the number.
+    If ``end`` is None, the dimension is a number at ``start``. ``field_word`` is the label of the field
+    that has the value. ``prefix`` is a sign in front of the number.
     """
 
     field_word: str
@@ -41,7 +41,7 @@ class Sketch:
 
 
 def make_sketch(*outlines: Outline, dimensions: Iterable[Dimension] = ()) -> Sketch:
-    """Return a sketch of these outlines and dimensions, with the spindle axis added."""
+    """Return a sketch of these outlines and dimensions, and add the spindle axis."""
     ends = [p[0] for each in outlines for p in each.points]
     low, high = min(ends, default=0.0), max(ends, default=1.0)
     room = 0.05 * (high - low or 1.0)
@@ -50,22 +50,25 @@ def make_sketch(*outlines: Outline, dimensions: Iterable[Dimension] = ()) -> Ske
 
 
 def make_part_outline(*points: Point) -> Outline:
-    """Return the outline of the part, closed along the axis."""
+    """Return the outline of the part as a closed polyline."""
     return Outline(points, "part", is_closed=True)
 
 
 def make_cut_outline(*points: Point) -> Outline:
-    """Return the outline that the shape cuts."""
+    """Return the outline of the surface that the shape cuts."""
     return Outline(points, "cut")
 
 
 def make_tool_outline(*points: Point) -> Outline:
-    """Return the closed outline of the tool."""
+    """Return the outline of the tool as a closed polyline."""
     return Outline(points, "tool", is_closed=True)
 
 
 def make_turned_outlines(profile: Sequence[Point], bar: float) -> tuple[Outline, ...]:
-    """Return the outlines of a turned profile: the part including the bar after the profile, and the cut."""
+    """Return the outlines of a turned profile: the part with the remaining bar, and the cut.
+
+    ``bar`` is the diameter of the bar.
+    """
     back = min(z for z, _ in profile)
     deep = 0.3 * max(abs(back), bar / 2.0, 0.1)
     face = profile[0][0]

@@ -1,4 +1,4 @@
-"""Declaration of the tables of a machine file, and the reader that checks them."""
+"""Declarations of the tables of a machine file, and functions that read and check the tables."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 class FileFinding(NamedTuple):
-    """An error in a machine file: path of the key, value in the file, and expected value.
+    """An error in a machine file, with the path of the key, the value in the file, and the expected value.
 
     ``code`` identifies the error for tests, as in ``CodedError``.
     """
@@ -45,9 +45,10 @@ class FileFinding(NamedTuple):
 
 
 class MachineFileError(CodedError):
-    """A machine file cannot be used. ``errors`` has all findings, and ``source`` the name of the file.
+    """An error raised if a machine file cannot be used.
 
-    ``code`` has the codes of the findings in order.
+    ``errors`` contains all findings, and ``source`` is the name of the file. ``code`` contains the codes of
+    the findings in order.
     """
 
     def __init__(self, errors: Sequence[FileFinding], source: str) -> None:
@@ -70,7 +71,7 @@ _NUMERIC = frozenset(
 class TableReference:
     """Description of a table for the reference page of the machine file.
 
-    ``heading`` is the table's name in the file, with … in place of a name that the owner chooses.
+    ``heading`` is the table's name in the file, with … in place of a name that the machine owner chooses.
     """
 
     heading: str
@@ -94,7 +95,7 @@ class FileValues:
         return all(path in self.values_by_path for path in paths)
 
     def is_stated(self, path: str) -> bool:
-        """Return whether the file contains the value, valid or invalid."""
+        """Return whether the file contains a value at this path, valid or invalid."""
         return path in self.values_by_path or path in self.invalid_paths
 
     def read_number(self, path: str) -> float:
@@ -110,7 +111,7 @@ class FileValues:
         return str(self.values_by_path[path])
 
     def has_text(self, path: str, text: str) -> bool:
-        """Return whether the file has this valid text at the path."""
+        """Return whether the value at the path is valid and equals this text."""
         return self.has_values(path) and self.text(path) == text
 
     def read_integer(self, path: str) -> int:
@@ -131,9 +132,10 @@ class FileValues:
     def make_model(
         self, kind: type[_Model], path: str, keys: Mapping[str, str] = {}, /, **given: object
     ) -> _Model:
-        """Return a table as a dataclass, if it has no errors.
+        """Return a table without errors as a dataclass.
 
-        A field gets the value of its key, of the key that ``keys`` specifies for it, or from ``given``.
+        A field gets its value from ``given``, from the key that ``keys`` specifies for it, or from the key
+        of the same name.
         """
         keys = keys or {each.attribute: each.key for each in get_declared_keys(kind)}
         names = [field.name for field in fields_of(kind) if field.name not in given]
@@ -203,7 +205,7 @@ def read_table(
 ) -> list[FileFinding]:
     """Store all valid values of ``table`` in ``values`` under ``path``; return the findings.
 
-    ``children`` are inner tables that are read elsewhere.
+    ``children`` are the names of inner tables that are read separately.
     """
     if not isinstance(table, dict):
         return [
@@ -282,13 +284,16 @@ def _is_words(raw: object) -> bool:
 
 
 def _parts(raw: object) -> list[float]:
-    """Return the numbers in a value. Whole numbers too large for a float become infinite."""
+    """Return the numbers in a value; integers too large for a float become infinite."""
     numbers = [part for part in (raw if isinstance(raw, list) else [raw]) if _number(part)]
     return [float(part) if abs(part) < _HUGE else inf for part in numbers]
 
 
 def _problem(raw: object, field: KeyField, is_inch: bool | None) -> str:
-    """Return the expected value if ``raw`` is invalid, otherwise an empty text. NaN is always invalid."""
+    """Return a description of the expected value if ``raw`` is invalid, otherwise an empty text.
+
+    NaN is always invalid.
+    """
     if not _shape_is_right(raw, field):
         return _expected(field, is_inch)
     if field.kind not in _NUMERIC or (is_inch is None and field.unit in LENGTH_UNITS):
@@ -340,7 +345,7 @@ def find_raw_value(data: object, path: str) -> object:
 
 @dataclass(frozen=True, slots=True)
 class MachineFileReading:
-    """A machine file while its tables are read, for the rules and values of drivers."""
+    """A machine file during reading, with the values that drivers and their rules need."""
 
     parsed_data: Mapping[str, object]
     values: FileValues
@@ -357,13 +362,13 @@ class MachineFileReading:
         return find_raw_value(self.parsed_data, path)
 
     def find_wired_pots(self) -> dict[str, str]:
-        """Return the terminals of the wired pots and handwheels, by path."""
+        """Return the terminals of the wired potentiometers and handwheels by path."""
         paths = (f"io.analog.{name}.at" for name in self.list_table_keys("io.analog"))
         said = {path: self.values.text(path) for path in paths if self.values.has_values(path)}
         return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(self.prefixes)}
 
     def list_table_keys(self, path: str) -> list[str]:
-        """Return the keys of a table whose names the owner chooses."""
+        """Return the keys of a table in which the machine owner chooses the keys."""
         table = self.raw(path)
         return list(table) if isinstance(table, dict) else []
 
@@ -380,11 +385,12 @@ def _no_others(_file: MachineFileReading) -> Mapping[str, object]:
 class DriverTable:
     """A table of the machine file that belongs to a driver, with its keys, rules and dataclass.
 
-    ``children`` are inner tables that ``read_children`` reads; it returns their findings.
-    ``read_other_values`` returns the attributes of the dataclass that are not keys, if there are no
-    findings. ``check_rules`` checks every file, even a file without this table. ``is_always_read`` means
-    that a missing table gets its defaults. ``serial_port_key`` is the key with a serial port. ``purpose`` is
-    the text of the reference page, and ``sub_tables`` are the tables inside.
+    ``child_tables`` are the names of inner tables that ``read_children`` reads; this function returns their
+    findings. If there are no findings, ``read_other_values`` returns the attributes of the dataclass that
+    are not keys. ``check_rules`` checks every file, including a file without this table. If
+    ``is_always_read`` is True, a missing table gets its default values. ``serial_port_key`` is the key that
+    names a serial port. ``purpose`` is the text of the reference page, and ``sub_tables`` are the tables
+    inside this table.
     """
 
     path: str
@@ -400,19 +406,20 @@ class DriverTable:
     sub_tables: tuple[TableReference, ...] = ()
 
     def make_model(self, file: MachineFileReading) -> object:
-        """Return the object with the values of the table."""
+        """Return the dataclass object with the values of the table."""
         return file.values.make_model(self.key_class, self.path, **self.read_other_values(file))
 
 
 @dataclass(frozen=True, slots=True)
 class DriverDeclaration:
-    """A driver as described in the machine file; ``backend`` is empty for a driver in addition to a backend.
+    """A driver as described in the machine file.
 
-    ``backend`` and ``spindle`` are its names in machine.backend and spindle.driver. ``can_orient_spindle``
-    means that its spindle can stop at an angle. ``count_rate`` is the highest rate in counts per second that
-    it accepts for an axis. ``normalize_terminal`` returns equal values for equivalent addresses, and None
-    for an address of another driver. ``inputs`` yields the possible addresses of inputs in order.
-    ``address_prefix`` begins the addresses on the driver's own device outside the backend.
+    ``backend`` and ``spindle`` are the driver's names in machine.backend and spindle.driver. ``backend`` is
+    empty for a driver that is used in addition to a backend. ``can_orient_spindle`` is True if the spindle
+    can stop at an angle. ``count_rate`` is the highest rate in counts per second that the driver accepts
+    for an axis. ``normalize_terminal`` returns equal values for equivalent addresses, and None for an
+    address of another driver. ``inputs`` yields the possible input addresses in order. ``address_prefix``
+    begins the addresses on the driver's own device outside the backend.
     """
 
     tables: tuple[DriverTable, ...]
@@ -436,7 +443,10 @@ def make_table_finding(path: str, raw: object) -> FileFinding:
 
 
 def read_named_tables(raw: object, keys: KeySchema, path: str, values: FileValues) -> list[FileFinding]:
-    """Read every inner table of a table whose names the owner chooses, as ``read_table`` does."""
+    """Read every inner table of a table in which the machine owner chooses the names.
+
+    Each inner table is read as by ``read_table``.
+    """
     if not isinstance(raw, dict):
         return [make_table_finding(path, raw)]
     return [
@@ -451,7 +461,8 @@ def read_axes_and_spindle(
 ) -> Iterator[FileFinding]:
     """Read a driver's tables for the axes and for the spindle; yield the findings.
 
-    Each table is given by its path and class. Both tables may be missing from the file.
+    ``axes`` and ``spindle`` each contain the path of a table and its class. Both tables may be missing from
+    the file.
     """
     (path, kind), (spindle_path, spindle_kind) = axes, spindle
     named, turns = file.raw(path), file.raw(spindle_path)

@@ -1,6 +1,6 @@
 """Cutting edges D1 to D9 of a tool T, their row numbers in the tool table, and tip quadrants.
 
-D1 is the row of the tool itself, so a tool with one cutting edge needs only this row.
+D1 uses the row of the tool itself, so a tool with one cutting edge needs only this row.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ FIRST_NAMED_TOOL = 32_768
 
 
 class NamedTool(int):
-    """Number of a tool, or of its cutting edge, called by a name that is not in the tool table."""
+    """Number of a tool or cutting edge that a program calls by a name that is not in the tool table."""
 
     name: str
 
@@ -47,7 +47,7 @@ def _like(key: int, number: int) -> int:
 
 
 def make_edge_key(tool: int, edge: int) -> int:
-    """Return the row number of a cutting edge; D1 has the number of the tool."""
+    """Return the row number of a cutting edge; the row number of D1 is the tool number."""
     return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 
 
@@ -62,7 +62,10 @@ def get_edge_number(key: int) -> int:
 
 
 def format_edge_suffix(key: int) -> str:
-    """Return the text after T for a row, such as 3, ="ROUGHER" or, for another cutting edge, 3 D2."""
+    """Return the text that follows T for a row, such as ``3``, ``="ROUGHER"`` or ``3 D2``.
+
+    The text contains D only for a cutting edge other than D1.
+    """
     number = f'="{key.name}"' if isinstance(key, NamedTool) else f"{get_tool_number(key)}"
     return number if key < _STEP else f"{number} D{get_edge_number(key)}"
 

@@ -1,1 +1,1 @@
-"""Access control: levels, the permitted changes of each level, and PINs."""
+"""Access control: levels, the changes that each level permits, and PINs."""

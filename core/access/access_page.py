@@ -1,4 +1,4 @@
-"""Generator of the page of access levels: ``python -m core.access.access_page docs/access.md``."""
+"""Generator of the access-level page: ``python -m core.access.access_page docs/access.md``."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ This page is generated from `core/access/access_table.py` by
 
 
 def make_page() -> str:
-    """Return the text of the page."""
+    """Return the text of the access-level page."""
     return _HEAD.format(never="\n".join(f"- {each}" for each in NEVER_PERMITTED)) + "".join(_lines())
 
 
@@ -50,7 +50,7 @@ def _lines() -> Iterator[str]:
 
 
 def write_page(argv: list[str]) -> int:
-    """Write the page to the named file."""
+    """Write the page to the file named in ``argv[0]``."""
     Path(argv[0]).write_text(make_page(), encoding="utf-8")
     return 0
 

@@ -1,8 +1,9 @@
-"""Table of the changes that each access level may make, used by screen, commands and ``docs/access.md``.
+"""Table of the changes that each access level may make.
 
-The table covers stored data, and two manual actions that override the setup: raising the spindle speed limit
-and switching an output. Actions that bring the machine to rest need no level: E-stop, feed hold, Reset,
-ending a function, and drives off. Running a proved program needs no level either.
+The screen, the commands and ``docs/access.md`` use this table. The table covers stored data and two manual
+actions that override the setup: raising the spindle speed limit and switching an output. Actions that bring
+the machine to rest need no level: E-stop, feed hold, Reset, ending a function, and drives off. Running a
+proved program needs no level either.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ class ProtectedChange(Enum):
 
 @dataclass(frozen=True, slots=True)
 class AccessRule:
-    """The minimum level for a change, its description, and its pages and commands."""
+    """Rule for a protected change: its minimum level, its description, and its pages and commands."""
 
     level: AccessLevel
     what: str

@@ -1,6 +1,7 @@
-"""The alarm catalog: every alarm, hold and stop with its number, text, causes and remedy.
+"""Alarm catalog: every alarm, hold and stop with its number, text, causes and remedy.
 
-Each alarm is one entry in the file of its subject, under its code. No alarm exists outside the catalog.
+Each alarm is one entry, stored under its code in the file of its subject. No alarm exists outside the
+catalog.
 """
 
 from __future__ import annotations

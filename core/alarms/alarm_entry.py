@@ -63,7 +63,7 @@ AlarmCode = Literal[FaultCode, ControlAlarmCode]
 
 
 class Reaction(Enum):
-    """The reaction of the machine to an alarm. One supervisor carries it out for all drivers."""
+    """The reaction of the machine to an alarm. One supervisor performs the reaction for all drivers."""
 
     DRIVES_OFF = (
         "the axes brake and their drives lose power, the spindle is switched off, and the "
@@ -78,10 +78,10 @@ class Reaction(Enum):
 
 
 class AlarmEntry(NamedTuple):
-    """An entry of the alarm catalog: ``text``, ``causes`` with the likeliest first, and ``remedy``.
+    """An entry of the alarm catalog: ``text``, ``causes`` with the most likely cause first, and ``remedy``.
 
-    ``shows_detail`` means that the details of the alarm (an axis, a line, the text of a drive) are shown to
-    the operator before the causes. Otherwise they are only logged.
+    If ``shows_detail`` is True, the details of the alarm (an axis, a line, the text of a drive) are shown
+    to the operator before the causes. Otherwise they are only logged.
     """
 
     number: int

@@ -41,7 +41,7 @@ def alarm_kind(reaction: Reaction) -> str:
 
 
 def render_page() -> str:
-    """Return the text of the page."""
+    """Return the text of the alarm catalog page."""
     head = _HEAD.format(contents=make_contents(title for title, _ in SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
@@ -66,7 +66,7 @@ def _entry(entry: AlarmEntry) -> Iterator[str]:
 
 
 def main(argv: list[str]) -> int:
-    """Write the page to the named file."""
+    """Write the page to the file named in ``argv[0]``."""
     Path(argv[0]).write_text(render_page(), encoding="utf-8")
     return 0
 

@@ -1,4 +1,4 @@
-"""Execution of posted commands, with one method for each command.
+"""Handler that executes posted commands, with one method for each command.
 
 Every refusal is logged with its reason.
 """
@@ -28,7 +28,7 @@ _PROGRAM_RUNNING_REASON = (
 
 
 class CommandHandler:
-    """Executes commands on the executor's thread and logs the reason for each refusal."""
+    """A handler that executes commands on the executor's thread and logs the reason for each refusal."""
 
     def __init__(self, context: MachineContext, control: MachineControl, station: StationWatch) -> None:
         self._context = context
@@ -69,7 +69,7 @@ class CommandHandler:
         }
 
     def execute(self, command: commands.Command) -> None:
-        """Execute a command, or log why it is refused. Raises DriverError if a driver fails."""
+        """Execute a command, or log why the command is refused. Raises DriverError if a driver fails."""
         self._methods[type(command)](command)
 
     def _refuse(self, why: str) -> None:
@@ -86,10 +86,10 @@ class CommandHandler:
             self._control.handle_cycle_start()
 
     def _hold_cycle(self, command: commands.FeedHold) -> None:
-        """Hold the cycle, but ignore a key press that was already obeyed.
+        """Hold the cycle, unless this key press has already caused a hold.
 
-        The screen can deliver one press twice. The second delivery must not hold a cycle that was started in
-        between.
+        The screen can deliver one press twice. The second delivery must not hold a cycle that was started
+        in between.
         """
         if command.press not in self._presses:
             self._control.start_feed_hold("", command.by)
@@ -150,7 +150,10 @@ class CommandHandler:
     # --- selection of the next start ----------------------------------------------------------------------
 
     def _load_job(self, command: commands.LoadJob) -> None:
-        """Load a job. A prepared restart is dropped, but the start mode (restart or MDI) remains."""
+        """Load a job.
+
+        A prepared restart is discarded, but the start mode (restart or MDI) remains.
+        """
         if self._control.state in CYCLE_STATES:
             self._refuse(_PROGRAM_RUNNING_REASON)
             return
@@ -175,7 +178,7 @@ class CommandHandler:
         status.clearances = command.clearances
 
     def _change_offsets(self, command: commands.ChangeOffsets) -> None:
-        """Accept changed offsets: at once between programs, or at the end of the part in progress."""
+        """Accept changed offsets, at once between programs, otherwise at the end of the part in progress."""
         changed_offsets, status = self._control.program_run.changed_offsets, self._control.status
         why = changed_offsets.store_request(command, status.job)
         if why:

@@ -31,12 +31,12 @@ FIRST_MOVE_CROSSES: Final = "first-move-crosses"
 class Clearance:
     """The result of checking the first move of a job from one position of the axes.
 
-    ``job`` is the digest of the job, and ``at`` is the position in machine mm. ``begun`` is the number of
-    runs that had started when the check was made, because a run may change the part. ``code`` is
-    ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES`` if the start is refused, and ``why`` is the sentence for the
-    operator. Both are empty if the first move is clear. ``warned`` is a warning to show before the start
-    because the part is unknown or assumed. ``repeats`` marks the end position of the program, from which
-    Cycle Repeat starts.
+    ``job`` is the digest of the job, and ``at`` is the position in machine coordinates in mm. ``begun`` is
+    the number of runs that had started when the check was made, because a run may change the part. If the
+    start is refused, ``code`` is ``TOOL_IN_PART`` or ``FIRST_MOVE_CROSSES``, and ``why`` is the sentence
+    for the operator. Both are empty if the first move is clear. ``warned`` is a warning to show before the
+    start because the part is unknown or assumed. ``is_for_repeat`` marks a check from the end position of
+    the program, from which Cycle Repeat starts.
     """
 
     job: str
@@ -48,7 +48,10 @@ class Clearance:
     is_for_repeat: bool = False
 
     def applies_to(self, job_digest: str, position: Sequence[float], run_count: int) -> bool:
-        """Return whether this clearance is valid for a start of ``job`` from ``at`` after ``begun`` runs."""
+        """Return whether this clearance is valid for a start of this job.
+
+        The start is from ``position`` after ``run_count`` runs.
+        """
         if self.job != job_digest or (self.begun != run_count and not self.is_for_repeat):
             return False
         return all(abs(a - b) <= POSITION_TOLERANCE_MM for a, b in zip(self.at, position, strict=False))
@@ -62,7 +65,10 @@ def find_clearance(
     *,
     for_repeat: bool = False,
 ) -> Clearance | None:
-    """Return the clearance for a start of ``job`` from ``at``, or None if it is not yet computed."""
+    """Return the clearance for a start of this job from ``position``, or None if it is not computed yet.
+
+    If ``for_repeat`` is True, only clearances for Cycle Repeat are searched.
+    """
     found = (
         each
         for each in clearances
@@ -74,7 +80,7 @@ def find_clearance(
 class Command(PlainValue):
     """Base class of all commands that can be posted to the executor.
 
-    Commands that are copied with another job are dataclasses.
+    Commands that are copied with a different job are dataclasses.
     """
 
     __slots__ = ()
@@ -82,14 +88,17 @@ class Command(PlainValue):
 
 @dataclass(frozen=True, slots=True)
 class LoadJob(Command):
-    """Load the job that Cycle Start runs. Start is refused until a proof of this job is available."""
+    """A command that loads the job that Cycle Start runs.
+
+    Cycle Start is refused until a proof of this job is available.
+    """
 
     job: Job
     proof: Proof | None = None
 
 
 class SupplyProof(Command):
-    """Provide the proof of the loaded job if proving took longer than loading."""
+    """A command that supplies the proof of the loaded job if proving took longer than loading."""
 
     __slots__ = __match_args__ = ("proof",)
 
@@ -99,11 +108,11 @@ class SupplyProof(Command):
 
 @dataclass(frozen=True, slots=True)
 class ChangeOffsets(Command):
-    """Use changed offsets for the loaded program from the next part on.
+    """A command to use changed offsets for the loaded program, starting with the next part.
 
     The command may arrive while the program runs. The part in progress then uses its present offsets to the
-    end. A command without a proof only announces the change. No part starts until a second command brings the
-    job with its proof, or ``trouble``.
+    end. A command without a proof only announces the change. No part starts until a second command supplies
+    either the job with its proof, or ``trouble``, the reason why the job cannot be proved.
     """
 
     job: Job | None = None
@@ -112,7 +121,7 @@ class ChangeOffsets(Command):
 
 
 class ReportInterruptedJob(Command):
-    """Report the job that was interrupted when the previous control process ended.
+    """A command that reports the job that was interrupted when the previous control process ended.
 
     ``logged`` is True if the log already contains the entry.
     """
@@ -125,7 +134,7 @@ class ReportInterruptedJob(Command):
 
 
 class CycleStart(Command):
-    """Start a cycle, or resume after a hold, single block, M00 or M01.
+    """A command that starts a cycle, or resumes after a hold, single block, M00 or M01.
 
     The two-hand relay of the operator station has the same effect.
     """
@@ -134,7 +143,7 @@ class CycleStart(Command):
 
 
 class FeedHold(Command):
-    """Stop the axes on the path within the commit time plus v/a.
+    """A command that stops the axes on the path within the commit time plus the braking time v/a.
 
     ``by`` is the source of the request, for the log. ``press`` is the number of the key press, or 0 if
     unknown. A press that arrives twice causes only one hold.
@@ -147,7 +156,7 @@ class FeedHold(Command):
         self.press: Final = press
 
     def __eq__(self, other: object) -> bool:
-        """Return whether the other command is a feed hold too, from any source."""
+        """Return whether the other command is also a feed hold, from any source."""
         return isinstance(other, FeedHold)
 
     def __hash__(self) -> int:
@@ -155,22 +164,25 @@ class FeedHold(Command):
 
 
 class Reset(Command):
-    """Stop, cancel the program and return to its first line. The command also acknowledges an alarm."""
+    """A command that stops the axes, cancels the program and returns to its first line.
+
+    The command also acknowledges an alarm.
+    """
 
     __slots__ = ()
 
 
 class EnableDrives(Command):
-    """Switch the drives on after an E-stop or at power-up."""
+    """A command that switches the drives on after an E-stop or at power-up."""
 
     __slots__ = ()
 
 
 class SetSwitch(Command):
-    """Turn one of the operator's switches on or off.
+    """A command that turns one of the operator's switches on or off.
 
-    The switches are ``single_block``, ``optional_stop``, ``cycle_repeat`` and ``no_count``. They take effect
-    at once.
+    The switches are ``single_block``, ``optional_stop``, ``cycle_repeat`` and ``no_count``. They take
+    effect at once.
     """
 
     __slots__ = __match_args__ = ("name", "on")
@@ -181,7 +193,7 @@ class SetSwitch(Command):
 
 
 class SetFeedOverride(Command):
-    """Set the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
+    """A command that sets the feed override to ``fraction`` of the programmed feed, from 0 to 1.5."""
 
     __slots__ = __match_args__ = ("fraction",)
 
@@ -190,10 +202,10 @@ class SetFeedOverride(Command):
 
 
 class Jog(Command):
-    """Move one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
+    """A command that moves one axis while the lease lasts, at a signed velocity in mm/s or degrees/s.
 
-    The sender must renew the lease (s) before it expires, or the axis stops. ``along`` is the direction, in
-    the machine's X, Y and Z, of the axis of this name in a tilted plane (3D-ROT).
+    The sender must renew the lease (in seconds) before it expires, or the axis stops. ``along`` is the
+    direction of the axis of this name in a tilted plane (3D-ROT), in the machine's X, Y and Z.
     """
 
     __slots__ = __match_args__ = ("axis", "velocity", "lease", "while_on", "along")
@@ -209,10 +221,11 @@ class Jog(Command):
 
 
 class TouchOffTool(Command):
-    """Touch the tool setter along ``axis`` in the direction ``sign`` (+1 or -1) while the lease (s) lasts.
+    """A command that touches the tool setter along ``axis`` in the direction ``sign`` (+1 or -1).
 
-    The sender must renew the lease. ``press`` is the number of the key press. A touch-off that has ended does
-    not start again until the key is pressed again.
+    The touch-off lasts only as long as the lease, which is in seconds and must be renewed by the sender.
+    ``press`` is the number of the key press. A touch-off that has ended does not start again until the key
+    is pressed again.
     """
 
     __slots__ = __match_args__ = ("axis", "sign", "lease", "press", "while_on")
@@ -226,10 +239,10 @@ class TouchOffTool(Command):
 
 
 class JogByStep(Command):
-    """Move one axis by exactly ``distance`` (mm or degrees) at ``speed`` (mm/s or degrees/s).
+    """A command that moves one axis by exactly ``distance`` at ``speed``.
 
-    The step is refused while an axis moves, or if the full step would leave the travel. ``along`` is
-    described in ``Jog``.
+    The units are mm and mm/s, or degrees and degrees/s. The step is refused while an axis moves, or if the
+    full step would leave the travel. ``along`` is described in ``Jog``.
     """
 
     __slots__ = __match_args__ = ("axis", "distance", "speed", "along")
@@ -242,15 +255,16 @@ class JogByStep(Command):
 
 
 class StopJog(Command):
-    """Release the jog lease immediately. A step in progress ends early."""
+    """A command that releases the jog lease immediately. A step in progress ends early."""
 
     __slots__ = ()
 
 
 class RunDriveTest(Command):
-    """Run a drive test from rest while the lease (s) lasts. ``StopJog`` ends the test.
+    """A command that runs a drive test from rest while the lease (in seconds) lasts.
 
-    The test is refused while an axis moves or the spindle turns, or if the full path would leave the travel.
+    ``StopJog`` ends the test. The test is refused while an axis moves or the spindle turns, or if the full
+    path would leave the travel.
     """
 
     __slots__ = __match_args__ = ("path", "lease")
@@ -261,7 +275,7 @@ class RunDriveTest(Command):
 
 
 class RenewDriveTest(Command):
-    """Renew the lease (s) of the active drive test. This command never starts a test."""
+    """A command that renews the lease (in seconds) of the active drive test. It never starts a test."""
 
     __slots__ = __match_args__ = ("lease",)
 
@@ -270,10 +284,11 @@ class RenewDriveTest(Command):
 
 
 class SelectHandwheel(Command):
-    """Let the handwheel move ``axis`` by ``step`` (mm or degrees) per click while the lease (s) lasts.
+    """A command that lets the handwheel move ``axis`` by ``step`` (mm or degrees) per click.
 
-    The sender must renew the lease. Earlier counts, and counts faster than the axis can follow, cause no
-    motion. If the control ends the handwheel motion, the wheel stays disabled until ``DeselectHandwheel``.
+    The handwheel is active only while the lease lasts, which is in seconds and must be renewed by the
+    sender. Counts before the command, and counts faster than the axis can follow, cause no motion. If the
+    control ends the handwheel motion, the handwheel stays disabled until ``DeselectHandwheel``.
     """
 
     __slots__ = __match_args__ = ("axis", "step", "lease")
@@ -285,15 +300,15 @@ class SelectHandwheel(Command):
 
 
 class DeselectHandwheel(Command):
-    """Deselect the handwheel and stop the axis that it moves."""
+    """A command that deselects the handwheel and stops the axis that it moves."""
 
     __slots__ = ()
 
 
 class SetSpindleLimit(Command):
-    """Set the operator's spindle speed limit (rpm) of page F10; None selects the machine's maximum.
+    """A command that sets the operator's spindle speed limit (rpm) from page F10.
 
-    The limit applies until TurnDesk is restarted.
+    None selects the machine's maximum. The limit applies until TurnDesk is restarted.
     """
 
     __slots__ = __match_args__ = ("rpm",)
@@ -303,7 +318,7 @@ class SetSpindleLimit(Command):
 
 
 class HomeAxes(Command):
-    """Home ``axis``, or all axes that are not homed if ``axis`` is empty."""
+    """A command that homes ``axis`` or, if ``axis`` is empty, all axes that are not homed."""
 
     __slots__ = __match_args__ = ("axis",)
 
@@ -312,7 +327,7 @@ class HomeAxes(Command):
 
 
 class UseOffsets(Command):
-    """Use changed offset tables for the position display and for MDI.
+    """A command to use changed offset tables for the position display and for MDI.
 
     The command is refused while a program runs, because the program uses the offsets with which it was
     proved.
@@ -326,13 +341,16 @@ class UseOffsets(Command):
 
 
 class StopSpindle(Command):
-    """Stop a spindle that MDI or M02 left running. The command is refused while a program runs."""
+    """A command that stops a spindle that MDI or M02 left running. It is refused while a program runs."""
 
     __slots__ = ()
 
 
 class ForceOutput(Command):
-    """Switch one output manually from the test page. The command is refused unless the machine is at rest."""
+    """A command that switches one output manually from the test page.
+
+    It is refused unless the machine is at rest.
+    """
 
     __slots__ = __match_args__ = ("name", "on")
 
@@ -342,10 +360,11 @@ class ForceOutput(Command):
 
 
 class ConfirmStart(Command):
-    """Confirm that the program starts at its first line although a job was interrupted.
+    """A command that confirms a start of the program at its first line although a job was interrupted.
 
-    ``at`` is the time of the interrupted job that the operator confirmed. The confirmation is valid for the
-    next start only, for 60 s, and until the machine leaves the idle state. An empty ``at`` withdraws it.
+    ``at`` is the time of the interrupted job that the operator confirmed. The confirmation is valid only
+    for the next start, for 60 s, and until the machine leaves the idle state. An empty ``at`` withdraws the
+    confirmation.
     """
 
     __slots__ = __match_args__ = ("at",)
@@ -355,7 +374,7 @@ class ConfirmStart(Command):
 
 
 class SetPartCount(Command):
-    """Set the number of finished parts of the loaded program."""
+    """A command that sets the number of finished parts of the loaded program."""
 
     __slots__ = __match_args__ = ("parts",)
 
@@ -364,7 +383,7 @@ class SetPartCount(Command):
 
 
 class ReplaceClearances(Command):
-    """Replace all clearances for the first move of the next start."""
+    """A command that replaces all clearances for the first move of the next start."""
 
     __slots__ = __match_args__ = ("clearances",)
 
@@ -373,11 +392,9 @@ class ReplaceClearances(Command):
 
 
 class BlockNextPart(Command):
-    """Prevent the start of another part after the present one, for the reason ``why``.
+    """A command that prevents the start of another part after the present part, for the reason ``why``.
 
-    An empty ``why`` permits it.
-
-    Restarts and MDI remain possible.
+    An empty ``why`` permits the start again. Restarts and MDI remain possible.
     """
 
     __slots__ = __match_args__ = ("why",)
@@ -388,11 +405,11 @@ class BlockNextPart(Command):
 
 @dataclass(frozen=True, slots=True)
 class PrepareStart(Command):
-    """Select the next action of Cycle Start: the program, a restart in it, or an MDI line with its proof.
+    """A command that selects the next action of Cycle Start.
 
-    ``clearance`` is the check of the first move of a restart or a line. ``StartAction.LINE`` without a job
-    means that MDI is open but no line is ready, so Cycle Start does nothing. The command is refused while a
-    cycle runs.
+    The action is the program, a restart in it, or an MDI line with its proof. ``clearance`` is the check of
+    the first move of a restart or an MDI line. ``StartAction.MDI_LINE`` without a job means that MDI is
+    open but no line is ready, so Cycle Start does nothing. The command is refused while a cycle runs.
     """
 
     starts: StartAction = StartAction.PROGRAM

@@ -1,4 +1,4 @@
-"""The state of the control between two ticks: job, alarms, modal state and part count."""
+"""State of the control between two ticks: job, alarms, modal state and part count."""
 
 from __future__ import annotations
 
@@ -19,7 +19,11 @@ from core.message import Message
 
 @dataclass(slots=True)
 class Counters:
-    """Counts and times since the start of the executor. Times are in seconds and exclude stops."""
+    """Counts and times since the start of the executor. Times are in seconds and exclude stops.
+
+    ``load_sum`` contains the integral of the spindle load in percent over cutting time, and this time in
+    seconds.
+    """
 
     counted_part_count: int = 0
     # finished parts of the loaded program: the number set with ``PartsMade`` plus the parts made since
@@ -37,7 +41,7 @@ class Counters:
     load_sum: tuple[float, float] = (0.0, 0.0)  # spindle load at feed in this part: per cent · s, and s
 
     def add_cutting_time(self, tool: int, seconds: float, load_percent: float | None = None) -> None:
-        """Add cutting time at feed for a tool, and the spindle load in per cent if it is known.
+        """Add cutting time at feed for a tool, and the spindle load in percent if it is known.
 
         The mapping of cutting times is replaced, so that earlier copies do not change.
         """
@@ -46,7 +50,7 @@ class Counters:
             self.load_sum = self.load_sum[0] + load_percent * seconds, self.load_sum[1] + seconds
 
     def pop_mean_load(self) -> float | None:
-        """Return the mean spindle load at feed in the part that ends, in per cent, or None if it is unknown.
+        """Return the mean spindle load at feed during the ending part, in percent, or None if unknown.
 
         The call resets the sum for the next part.
         """
@@ -84,7 +88,7 @@ class ControlStatus:
 def make_power_up_modal(context: MachineContext) -> ModalState:
     """Return the modal state at power-up, with the units of the machine file.
 
-    A SINUMERIK control powers up with DIAMON.
+    A SINUMERIK control powers up with DIAMON active.
     """
     machine = context.machine
     begins = ModalState(
@@ -98,7 +102,7 @@ def make_power_up_modal(context: MachineContext) -> ModalState:
 def modal_after_cancel(modal: ModalState, language: str = "omniturn") -> ModalState:
     """Return the modal state after a program was canceled by Reset, an alarm or an E-stop.
 
-    The result equals the state after M30. On a SINUMERIK control, the power-up mode of diameter words applies
+    The result is the same as after M30. On a SINUMERIK control, the power-up mode of diameter words applies
     again.
     """
     return compute_modal_after_end(modal, modal.rpm, reset=True)._replace(diameter=language == "sinumerik")
@@ -107,16 +111,16 @@ def modal_after_cancel(modal: ModalState, language: str = "omniturn") -> ModalSt
 def modal_after_mdi_cancel(modal: ModalState) -> ModalState:
     """Return the modal state after an MDI line was canceled.
 
-    Its modes remain, but C and the spindle are released.
+    The modes that the line set remain, but C and the spindle are released.
     """
     return modal._replace(c_locked=False, c_rpm=None, oriented=None)
 
 
 def sync_modal_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
-    """Return the modal state with the M functions as they are at the machine now.
+    """Return the modal state with the M functions updated to their present state at the machine.
 
     An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
-    compensation and plane switching end with their program.
+    compensation and plane switching end with the program that used them.
     """
     on = {name for name, lit in context.ports.io.outputs().items() if lit}
     assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_tool_output}
@@ -136,19 +140,20 @@ def sync_modal_with_machine(modal: ModalState, context: MachineContext) -> Modal
 def apply_offsets_to_modal(
     modal: ModalState, tools: Mapping[int, ToolOffset], secondary: Mapping[int, SecondaryOffset]
 ) -> ModalState:
-    """Return the modal state with the offsets of its tool and its D number read from the given tables."""
+    """Return the modal state with the offsets of its tool and D number from the given tables."""
     tool = tools.get(modal.tool, ToolOffset()) if modal.tool else ToolOffset()
     pair = secondary.get(modal.secondary, SecondaryOffset()) if modal.secondary else SecondaryOffset()
     return modal._replace(tool_x=tool.x, tool_z=tool.z, secondary_x=pair.x, secondary_z=pair.z)
 
 
 class Workpiece:
-    """The workpiece in progress. A program from its first line starts a new one; a restart continues it.
+    """The workpiece in progress.
 
-    Elementary blocks have the same numbers in a run and in its restart, so the numbers show whether a restart
-    skipped blocks. A workpiece is not counted as a part if blocks were skipped, or if the spindle or an
-    output was off although the program had turned it on. The operator can add a good part to the count on
-    page F10.
+    A program that starts at its first line starts a new workpiece; a restart continues the present one.
+    Elementary blocks have the same numbers in a run and in its restart, so the numbers show whether a
+    restart skipped blocks. A workpiece is not counted as a part if blocks were skipped, or if the spindle
+    or an output was off although the program had turned it on. The operator can add a good part to the
+    count on page F10.
     """
 
     def __init__(self) -> None:
@@ -158,7 +163,10 @@ class Workpiece:
         self.disturbance = ""  # what was switched off without a command of the program
 
     def start_run(self, job: Job, started_block_count: int) -> None:
-        """Start a run of ``job``. ``begun`` is the number of blocks that started before an interruption."""
+        """Start a run of ``job``.
+
+        ``started_block_count`` is the number of blocks that started before an interruption.
+        """
         begin = job.setup.begin
         self.is_restarted = begin is not None
         self._begun = 0 if begin is None else started_block_count
@@ -166,7 +174,7 @@ class Workpiece:
         self._whole = begin is None or (not begin.skips_cuts and begin.checkpoint.blocks <= self._begun)
 
     def count_started_blocks(self, block: int) -> int:
-        """Return the number of blocks started without a gap when the run has reached ``block``."""
+        """Return the number of blocks that have started without a gap when the run has reached ``block``."""
         return max(self._begun, block) if self._whole else self._begun
 
     def finish_program(self) -> None:
@@ -175,7 +183,7 @@ class Workpiece:
 
     @property
     def uncounted_reason(self) -> str:
-        """The reason why the end of the program does not count as a part; empty if it counts."""
+        """Return why the end of the program does not count as a part, or an empty text if it counts."""
         if self.disturbance:
             return Message(
                 "the cycle was disturbed ({disturbed}); measure the part and, if it is good, add it "
@@ -186,7 +194,7 @@ class Workpiece:
 
 
 class PartCount:
-    """Counts parts and measures cycle times. Other modules read ``counters``."""
+    """Counter of parts and their cycle times. Other modules read ``counters``."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -195,11 +203,14 @@ class PartCount:
 
     @property
     def uncounted_reason(self) -> str:
-        """The reason why the running program will not count as a part; empty if it will."""
+        """Return the reason why the running program will not count as a part, or an empty text if it will."""
         return "NO COUNT is on" if self._context.switches.no_count else self.workpiece.uncounted_reason
 
     def record_program_end(self) -> None:
-        """Count and log the end of the program. The time of a restart is not used as a cycle time."""
+        """Count and log the end of the program.
+
+        The time of a restart is not used as a cycle time.
+        """
         counters, seconds, why = self.counters, self.counters.cycle_time_s, self.uncounted_reason
         counters.cycle_time_s, load = 0.0, counters.pop_mean_load()
         counters.program_end_count += 1

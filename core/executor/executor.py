@@ -1,7 +1,8 @@
-"""The executor: processes commands, queues setpoints and publishes one snapshot per tick.
+"""Main loop of the control: it processes commands, queues setpoints and publishes snapshots.
 
-Inputs are read and all decisions are made in every tick. After 1 s without a change, ticks come ten times per
-second if the drivers can wake the executor, and at most twenty snapshots per second are made.
+In every tick the executor reads the inputs, makes all decisions and publishes one snapshot. After 1 s
+without a change, the rate drops to ten ticks per second if the drivers can wake the executor. At most
+twenty snapshots per second are made.
 """
 
 from __future__ import annotations
@@ -66,7 +67,10 @@ _POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineSt
 
 
 class RestDetector:
-    """Detects that nothing changes, so that the executor can tick less often. Used on its thread only."""
+    """Detector of a machine at rest, so that the executor can tick less often.
+
+    It is used on the executor's thread only.
+    """
 
     def __init__(self, context: MachineContext, control: MachineControl) -> None:
         self._context, self._control = context, control
@@ -78,13 +82,13 @@ class RestDetector:
         self.changed_at_rest = False  # a value changed in the last tick although the machine is at rest
 
     def restore_tick_rate(self) -> None:
-        """Return to the normal tick rate for at least 1 s because a command or a change arrived."""
+        """Restore the normal tick rate for at least 1 s because a command or a change arrived."""
         self._same = -1
 
     def detect_change(self) -> bool:
-        """Compare the machine with the last tick and return whether a new snapshot is needed.
+        """Compare the machine with the last tick; return whether a new snapshot is needed.
 
-        Making a snapshot is the largest part of the cost of a tick.
+        Most of the time of a tick is needed to make the snapshot.
         """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
@@ -113,7 +117,7 @@ class RestDetector:
         return shown
 
     def wait_for_wakeup(self) -> bool:
-        """Wait until a driver wakes the executor, at most 0.095 s.
+        """Wait until a driver wakes the executor, for at most 0.095 s; return whether it waited.
 
         Returns False at once if the machine is not at rest or its drivers cannot wake the executor.
         """
@@ -126,7 +130,7 @@ class RestDetector:
 
     @property
     def is_settled(self) -> bool:
-        """True if nothing has changed for 1 s."""
+        """Return whether nothing has changed for 1 s."""
         return self._same >= _SETTLED_TICKS
 
     def _is_safe_at_rest(self) -> bool:
@@ -143,7 +147,7 @@ class RestDetector:
 
 
 def _ignore_interruption(_what: InterruptedJob | None) -> None:
-    """Ignore an interrupted job because nothing is stored after the executor ends."""
+    """Ignore the interrupted job, for an executor that stores no data beyond its end."""
 
 
 def _css_function(ports: MachinePorts) -> Callable[[float], None]:
@@ -154,11 +158,12 @@ def _css_function(ports: MachinePorts) -> Callable[[float], None]:
 class Executor:
     """The main loop of the control.
 
-    ``post`` and ``snapshot`` may be used from any thread, ``run_tick`` from one thread only. ``start_pass``
-    starts a pass through a job; tests supply their own. ``store_interruption`` receives the job that a power
-    loss would leave interrupted, and ``interrupted_job`` is the job that the previous process left
-    interrupted. With ``checks_starts``, a cycle starts only after a worker has posted the clearance for its
-    first move. ``record_tick`` receives the data that the scope records in each tick and must return at once.
+    ``post`` and ``snapshot`` may be used from any thread, but ``run_tick`` from one thread only.
+    ``start_pass`` starts a pass through a job; tests supply their own function. ``store_interruption``
+    receives the job that a power loss would leave interrupted, and ``interrupted_job`` is the job that the
+    previous process left interrupted. If ``checks_starts`` is True, a cycle starts only after a worker has
+    posted the clearance for its first move. ``record_tick`` receives the data that the scope records in
+    each tick, and must return at once.
     """
 
     def __init__(
@@ -218,7 +223,7 @@ class Executor:
 
     @property
     def halt_function(self) -> Callable[[], None] | None:
-        """The drivers' function that stops the machine from any thread, or None."""
+        """Return the drivers' function that stops the machine from any thread, or None."""
         return self._ports.halt_machine
 
     def post(self, command: Command, posted_at: float | None = None) -> None:
@@ -230,9 +235,9 @@ class Executor:
         self.wake()
 
     def wake(self) -> None:
-        """Start the next tick at once, from any thread.
+        """Start the next tick at once; any thread may call this function.
 
-        Has no effect if the drivers cannot wake the executor.
+        The call has no effect if the drivers cannot wake the executor.
         """
         if self._ports.wakeup is not None:
             self._ports.wakeup.wake()
@@ -240,7 +245,8 @@ class Executor:
     def wait_at_rest(self) -> bool:
         """Wait between two ticks while the machine is at rest, until a command or a change arrives.
 
-        Returns False at once if the machine is not at rest. Must be called on the executor's thread.
+        Return whether the executor waited; return False at once if the machine is not at rest. The function
+        must be called on the executor's thread.
         """
         with ReportedAttempt(self.handle_failure):
             if self._commands.empty() and self._rest.wait_for_wakeup():
@@ -249,9 +255,9 @@ class Executor:
         return False
 
     def run_tick(self) -> None:
-        """Run one tick, every 10 to 20 ms: read, execute commands, supervise, advance and publish.
+        """Run one tick: read the inputs, execute commands, supervise, advance and publish.
 
-        Raises nothing; failures become alarms.
+        The function is called every 10 to 20 ms. It raises no exceptions; failures become alarms.
         """
         with ReportedAttempt(self.handle_failure) as look:
             self._look()
@@ -277,9 +283,10 @@ class Executor:
         self.tick_count += 1
 
     def _record_delay(self, delay_s: float) -> None:
-        """Record by how many seconds the tick was late.
+        """Record the delay of a tick in seconds.
 
-        A busy computer makes the setpoint queue longer. The longer delay of a feed hold is logged once.
+        If the computer is busy, the setpoint queue becomes longer. The longer delay of a feed hold is
+        logged once.
         """
         self._late = max(self._late, delay_s)
         lateness = self._context.lateness
@@ -288,9 +295,10 @@ class Executor:
             self._context.log("late", Message(words, seconds=f"{lateness.hold_delay_s:.1f}"))
 
     def report_unresponsive(self, reason: str) -> None:
-        """Show an alarm because the watchdog has found the executor unresponsive and halted the machine.
+        """Show an alarm because the watchdog has halted the machine.
 
-        Called on the watchdog's thread. If the executor ticks again, its first action is to raise this alarm.
+        The watchdog halts the machine if the executor does not respond, and calls this function on its own
+        thread. If the executor ticks again, its first action is to raise this alarm.
         """
         self._silent = reason
         alarm = make_alarm("control-silent", reason, self._context.line, self.snapshot.t)
@@ -312,13 +320,16 @@ class Executor:
             self._control.handle_internal_error(error)
 
     def shut_down(self) -> None:
-        """Stop all motion and switch everything off when the executor ends. Raises nothing."""
+        """Stop all motion and switch everything off when the executor ends.
+
+        The function raises no exceptions.
+        """
         with ReportedAttempt(self.handle_failure):
             self._control.shut_down()
         self._publish_snapshot()
 
     def _publish_snapshot(self) -> None:
-        """Publish a snapshot, or only the state and the alarms if the machine cannot be read."""
+        """Publish a snapshot; if the machine cannot be read, update only the state and the alarms."""
         with ReportedAttempt(self.handle_failure) as publishing:
             self.snapshot = self._publish()
         if publishing.error is not None:
@@ -328,7 +339,10 @@ class Executor:
             )
 
     def _pass_to_recorder(self) -> None:
-        """Pass the data of this tick to the scope. A failure is logged once and stops nothing."""
+        """Pass the data of this tick to the scope.
+
+        A failure is logged once and does not stop the tick.
+        """
         if self._tell is None:
             return
         with Attempt() as trial:
@@ -344,7 +358,7 @@ class Executor:
             _log.error("the scope misses what the machine does", exc_info=trial.error)
 
     def _handle_failed_read(self) -> None:
-        """Handle a failed read: ignore the last start signal, but obey the E-stop."""
+        """Discard the start signal after a failed read, but obey the E-stop."""
         context = self._context
         context.signals = context.signals._replace(start_requested=False)
         with Attempt():
@@ -388,7 +402,7 @@ class Executor:
             self._context.log("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
-        """Log the feed override when it changes by 10 % or reaches or leaves zero."""
+        """Log the feed override if it has changed by at least 10 % or has reached or left zero."""
         fraction = self._context.feed_override
         if abs(fraction - self._logged_override) >= _LOGGED_OVERRIDE_CHANGE or (fraction == 0.0) != (
             self._logged_override == 0.0
@@ -458,7 +472,7 @@ class Executor:
         self._context.spindle.update(self._context.now, self._context.sample.demand[0] - offset)
 
     def _run_guarded(self, part: Callable[[], None]) -> None:
-        """Run one part of a tick and turn its errors into alarms, so that the other parts still run."""
+        """Run one part of a tick and convert its errors to alarms, so that the other parts still run."""
         with ReportedAttempt(self.handle_failure):
             try:
                 part()
@@ -472,7 +486,7 @@ class Executor:
                 self._raise_alarm(AlarmError(error.code, str(error)))
 
     def _raise_alarm(self, error: AlarmError) -> None:
-        """Raise an alarm, or follow the E-stop if it has caused the loss of power."""
+        """Raise an alarm, unless the E-stop has caused the loss of power; in that case handle the E-stop."""
         if error.code in _ESTOP_ALARM_CODES and self._ports.station.read_state().estop:
             self._control.follow_estop(True)
         else:

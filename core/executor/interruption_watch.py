@@ -1,4 +1,4 @@
-"""Storage of the job that a power loss would interrupt, and of programs that were canceled."""
+"""Storage of canceled programs, and of the job that a power loss would interrupt."""
 
 from __future__ import annotations
 
@@ -34,10 +34,11 @@ _CONFIRMATION_VALID_S = 60.0  # s for which a confirmation of the operator is va
 
 
 class InterruptionWatch:
-    """Stores the interrupted job in advance, because a power loss leaves no time to write.
+    """Watch that stores in advance the job that a power loss would interrupt.
 
-    The state is noted before a cycle starts, at each part and tool, at each stop, and otherwise once per
-    second at most. Used on the executor's thread only.
+    A power loss leaves no time to write. The state is therefore stored before a cycle starts, at each part
+    and tool, at each stop, and otherwise at most once per second. The watch is used on the executor's
+    thread only.
     """
 
     def __init__(
@@ -48,9 +49,7 @@ class InterruptionWatch:
         store_interruption: StoreInterruptedJob,
         interrupted_job: InterruptedJob | None,
     ) -> None:
-        """Initialize the watch. ``interrupted_job`` is the interrupted job found at the start of the
-        control.
-        """
+        """Initialize the watch; ``interrupted_job`` is the job found when the control starts."""
         self._context, self._status, self._parts, self._keep = context, status, parts, store_interruption
         self._begun = False  # this control has started a program
         self._begin: PassStart | None = None
@@ -64,7 +63,10 @@ class InterruptionWatch:
         status.interrupted_job = interrupted_job
 
     def set_previous_interruption(self, interrupted_job: InterruptedJob, *, is_logged: bool = False) -> None:
-        """Set the job that the previous control left interrupted, unless a program has started since."""
+        """Set the job that the previous control process left interrupted.
+
+        The call has no effect if a program has started since.
+        """
         if not self._begun and self._status.interrupted_job != interrupted_job:
             self._status.interrupted_job = interrupted_job
             if not is_logged:
@@ -74,13 +76,13 @@ class InterruptionWatch:
 
     @property
     def started_block_count(self) -> int:
-        """The number of elementary blocks of the present workpiece that have started."""
+        """Return the number of elementary blocks of the present workpiece that have started."""
         status = self._status
         job, before = status.job, status.interrupted_job
         return before.begun if job is not None and before is not None and _belongs_to(before, job) else 0
 
     def record_start(self, begin: PassStart | None) -> None:
-        """Note the start of a program or a restart, which a power loss would now interrupt."""
+        """Record the start of a program or a restart, which a power loss would now interrupt."""
         status, before = self._status, self._status.interrupted_job
         assert status.job is not None
         self._begun = True
@@ -93,7 +95,10 @@ class InterruptionWatch:
         self._note(self._interrupted_job(status.job, None))
 
     def record_progress(self, cycle: Cycle | None) -> None:
-        """Note changes, once per tick. ``cycle`` is the cycle of a program, or None if no program runs."""
+        """Record changes once per tick.
+
+        ``cycle`` is the cycle of a program, or None if no program runs.
+        """
         if self._status.state is not MachineState.IDLE:
             self._answered = None
         block = cycle.current_block if cycle is not None else None
@@ -113,12 +118,12 @@ class InterruptionWatch:
         return moved and self._context.now >= self._next
 
     def clear_record(self) -> None:
-        """Clear the note because the program has reached its end."""
+        """Clear the stored job because the program has reached its end."""
         self._noted = self._before = None
         self._keep(None)
 
     def record_interruption(self, block: Block | None, reason: str) -> None:
-        """Store the program as interrupted at ``block`` for the reason ``why``.
+        """Store the program as interrupted at ``block`` for the given reason.
 
         If ``block`` is None, no block has started, and the program is not interrupted unless it was a
         restart.
@@ -135,7 +140,7 @@ class InterruptionWatch:
         self._context.log("interrupted", found.words)
 
     def _settle(self) -> None:
-        """Update the tool position until the axes have been at rest for 0.2 s after an E-stop."""
+        """Update the stored tool position until the axes have been at rest for 0.2 s after an E-stop."""
         found, now = self._status.interrupted_job, self._context.now
         if self._settled or found is None:
             return
@@ -149,7 +154,10 @@ class InterruptionWatch:
     # --- between programs ---------------------------------------------------------------------------------
 
     def handle_loaded_job(self, job: Job) -> None:
-        """Clear the interrupted job if another program is loaded, but not if the same program is reloaded."""
+        """Clear the interrupted job if a different program is loaded.
+
+        Reloading the same program does not clear it.
+        """
         before = self._status.interrupted_job
         self._answered = None
         if before is not None and not _belongs_to(before, job):
@@ -160,7 +168,7 @@ class InterruptionWatch:
     def confirm_start(self, interruption_time: str) -> str:
         """Accept the operator's confirmation of a start at the first line.
 
-        Returns the reason if the confirmation is refused, or an empty string.
+        Returns the reason if the confirmation is refused, otherwise an empty string.
         """
         self._answered = None
         found = self._status.interrupted_job
@@ -172,17 +180,17 @@ class InterruptionWatch:
         return ""
 
     def withdraw_confirmation(self) -> None:
-        """Withdraw the confirmation because the next start begins something else."""
+        """Withdraw the confirmation because the next start has a different action."""
         self._answered = None
 
     @property
     def is_confirmed(self) -> bool:
-        """True if the operator has confirmed the start within the last 60 s."""
+        """Return whether the operator has confirmed the start within the last 60 s."""
         return self._answered is not None and self._context.now - self._answered <= _CONFIRMATION_VALID_S
 
     @property
     def start_refusal(self) -> str:
-        """The reason why a start at the first line needs a confirmation; empty if it does not."""
+        """Return why a start at the first line needs a confirmation, or an empty text if it does not."""
         found = self._status.interrupted_job
         if found is None or self._status.start_action is not StartAction.PROGRAM or self.is_confirmed:
             return ""
@@ -212,7 +220,7 @@ class InterruptionWatch:
     def _interrupted_job(self, job: Job, block: Block | None) -> InterruptedJob:
         """Return the job that a power loss at this moment would leave interrupted.
 
-        During the approach of a restart, this is the earlier interrupted job.
+        During the approach of a restart, the job that was interrupted earlier is returned.
         """
         begin, before = self._begin, self._before
         if before is not None and (

@@ -1,4 +1,4 @@
-"""Jobs, their proofs, and reading of their blocks ahead of the motion.
+"""Jobs, their proofs, and a reader that reads blocks ahead of the motion.
 
 A proof is valid for exactly one job.
 """
@@ -33,8 +33,8 @@ WARNING_PREFIX = "WARNING: "
 class ProgramPass(NamedTuple):
     """One pass through a program: its blocks as they are read, and the diagnostics found so far.
 
-    ``left`` returns the state that an MDI line passes to the next line. It is None for a program, which ends
-    with M30 or M02.
+    ``make_checkpoint`` returns the state that an MDI line passes to the next line. It is None for a
+    program, which ends with M30 or M02.
     """
 
     blocks: Iterator[Block]
@@ -43,12 +43,12 @@ class ProgramPass(NamedTuple):
 
 
 class ReadAhead:
-    """Reads the blocks of a pass ahead of the motion.
+    """Reader that reads the blocks of a pass ahead of the motion.
 
     ``pending_blocks`` contains the blocks of one path section. ``stop`` is the next block that needs a
-    standstill (``SectionEndDetector``). No block after ``stop`` is read until it has been executed, so that
-    the program reads inputs at the correct time. Each block is checked again against the machine as it is
-    read.
+    standstill (``SectionEndDetector``). No block after ``stop`` is read until that block has been executed,
+    so that the program reads inputs at the correct time. Each block is checked again against the machine as
+    it is read.
     """
 
     def __init__(self, source: ProgramPass, machine: Machine) -> None:
@@ -65,18 +65,18 @@ class ReadAhead:
 
     @property
     def next_block(self) -> Block | None:
-        """The next block that has not been taken, or None."""
+        """Return the next block that has not been removed, or None."""
         return self.pending_blocks[0] if self.pending_blocks else self.stop
 
     @property
     def is_exhausted(self) -> bool:
-        """True if no more blocks can be read before a standstill."""
+        """Return whether no more blocks can be read before a standstill."""
         return self.stop is not None or self.is_at_end or self.read_error is not None
 
     def read_blocks(self, blocks: int, seconds: float) -> None:
-        """Read until ``blocks`` blocks were read or ``seconds`` seconds of motion are pending.
+        """Read up to ``blocks`` blocks, until ``seconds`` seconds of motion are pending.
 
-        A thread is read to the end of its pull-out, even if more seconds are pending.
+        A thread is read to the end of its pull-out, even if more motion than this is then pending.
         """
         for _ in range(blocks):
             if self.is_exhausted or (self.pending_motion_s >= seconds and not self._ends.is_in_thread):
@@ -86,14 +86,14 @@ class ReadAhead:
                 self._sort(block)
 
     def take(self) -> list[Block]:
-        """Return the pending blocks for motion and remove them."""
+        """Remove and return the pending blocks for motion."""
         taken = list(self.pending_blocks)
         self.pending_blocks.clear()
         self.pending_motion_s = 0.0
         return taken
 
     def release_stop(self) -> None:
-        """Mark the standstill as used: the action is done, or the cutting block may start."""
+        """Continue after the standstill because its action is done or the cutting block may start."""
         block, self.stop = self.stop, None
         if block is not None:
             self._ends.record_standstill(block)
@@ -114,7 +114,7 @@ class ReadAhead:
         return None if self.read_error else block
 
     def _find_error(self) -> None:
-        """Store the first new error of the interpreter, which only a live run can meet."""
+        """Store the first new error of the interpreter. Only a live run can encounter such an error."""
         problems = self._source.get_diagnostics()
         for problem in problems[self._reported :]:
             if problem.severity is Severity.ERROR and self.read_error is None:
@@ -138,7 +138,10 @@ class ReadAhead:
 
 
 def nominal_duration_s(block: Block) -> float:
-    """Return the time of a block at its programmed speed, in seconds. The real time is never shorter."""
+    """Return the duration of a block at its programmed speed, in seconds.
+
+    The actual duration is never shorter.
+    """
     speed = (
         block.feed * abs(block.rpm) / 60.0
         if block.per_rev and block.kind is not BlockKind.RAPID
@@ -151,10 +154,10 @@ def nominal_duration_s(block: Block) -> float:
 
 
 def check_block(block: Block, machine: Machine) -> None:
-    """Check a block again before it moves.
+    """Check a block again before it moves an axis.
 
-    Raises AlarmError if the block leaves the travel, feeds per revolution with a stopped spindle, or moves C
-    while the spindle, which is the C axis, turns.
+    Raises AlarmError if the block leaves the travel, if it uses feed per revolution with a stopped spindle,
+    or if it moves C while the spindle turns and the spindle is the C axis.
     """
     if not block.moves:
         return
@@ -190,9 +193,8 @@ def check_block(block: Block, machine: Machine) -> None:
 class Job:
     """A program with its offsets, units and switches, stored by value.
 
-    ``digest`` identifies exactly this job.
-
-    ``shared_program`` is the parsed text. The proof and the run of a job share it.
+    ``digest`` identifies exactly this job. ``shared_program`` is the parsed text, which the proof and the
+    run of a job share.
     """
 
     source: ProgramSource
@@ -212,7 +214,7 @@ class Proof:
     """The result of proving the job with this digest.
 
     ``warnings`` contains short warnings about assumed values. They do not prevent a start but are shown
-    before it.
+    before the start.
     """
 
     digest: str
@@ -234,8 +236,9 @@ class Proof:
 def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) -> Job:
     """Return the job of a program with its setup.
 
-    ``whole_job`` is the job of the whole program if this job starts in its middle. The digest covers
-    everything that the elementary blocks depend on, except live inputs and the position of the axes.
+    If this job starts in the middle of a program, ``whole_job`` is the job of the whole program. The digest
+    covers everything on which the elementary blocks depend, except live inputs and the position of the
+    axes.
     """
     part_of = whole_job.digest if whole_job is not None else ""
     circumstances = (
@@ -276,9 +279,9 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
 
 
 def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
-    """Return how the present units or rapid rate differ from those of the proof.
+    """Return how the present units or rapid rate differ from those of the proof, or an empty text.
 
-    The previous job may have changed them. The result is empty if nothing differs.
+    The previous job may have changed them.
     """
     if job.setup.begin is not None:
         return ""
@@ -293,8 +296,9 @@ def find_outdated_setting(job: Job, present_modal: ModalState) -> str:
 
 
 def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
-    """Start one pass through a job. Its blocks end at the first error, which ``get_diagnostics`` then
-    returns.
+    """Start one pass through a job.
+
+    Its blocks end at the first error, which ``get_diagnostics`` then returns.
     """
     if setup.begin is not None and setup.begin.is_mdi_line:
         line = interpret_mdi_line(job.source, setup)
@@ -306,5 +310,5 @@ def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
 
 
 def setup_at_start(setup: Setup, start: tuple[float, ...], is_input_on: Callable[[str], bool]) -> Setup:
-    """Return the setup of a job with the present position of the axes and the live inputs."""
+    """Return the setup of a job with the start position of the axes and the live inputs."""
     return dataclasses.replace(setup, start=start, inputs=is_input_on)

@@ -1,7 +1,7 @@
 """Delay of the executor's ticks on a busy computer, and the resulting depth of the setpoint queue.
 
-The queue moves the axes while the executor does not run. The queue becomes one step deeper when a late tick
-has used more than half of it. After a time without late ticks, it becomes one step shallower.
+The queue moves the axes while the executor does not run. The queue becomes one step deeper if a late tick
+has used more than half of it. After a period without late ticks, the queue becomes one step shallower.
 """
 
 from __future__ import annotations
@@ -16,7 +16,10 @@ QUEUE_RESERVE_S = 0.25  # s queued beyond the look-ahead, so that extending is n
 
 
 class TickLateness:
-    """Tracks late ticks of one executor. ``lookahead`` is the queue depth of the machine file, in seconds."""
+    """Record of the late ticks of one executor.
+
+    ``lookahead`` is the queue depth from the machine file, in seconds.
+    """
 
     def __init__(self, lookahead: float) -> None:
         self._lookahead = lookahead
@@ -26,12 +29,12 @@ class TickLateness:
 
     @property
     def lookahead_s(self) -> float:
-        """The time for which setpoints are queued ahead of the motion, in seconds."""
+        """Return the time for which setpoints are queued ahead of the motion, in seconds."""
         return self._lookahead + QUEUE_DEPTH_STEPS_S[self._step]
 
     @property
     def hold_delay_s(self) -> float:
-        """The additional delay of a feed hold on a busy computer, in seconds, rounded up to 0.1 s.
+        """Return the additional delay of a feed hold on a busy computer, in seconds, rounded up to 0.1 s.
 
         The delay never exceeds the queue depth, because the axes stop at the end of the queue.
         """

@@ -1,4 +1,4 @@
-"""Data shared by all parts of the executor in a tick: machine, ports, spindle, switches and event log."""
+"""Data that all parts of the executor share in a tick: machine, ports, spindle, switches and event log."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _OVERRIDE_STEP = 0.005  # smallest step of the feed override
 
 @dataclass(slots=True)
 class Switches:
-    """The operator's switches that are shown as lit words on the screen."""
+    """State of the operator's switches, which the screen shows as lit words."""
 
     single_block: bool = False
     optional_stop: bool = False
@@ -68,13 +68,13 @@ class MachineContext:
 
     @property
     def spindle_load(self) -> float | None:
-        """The spindle load in per cent, from the machine's input or else from the driver; None if unknown."""
+        """Return the spindle load in percent from the machine's input, otherwise from the driver, or None."""
         return self._borne if self.signals.spindle_load is None else self.signals.spindle_load
 
     def record_load(self, samples: FloatArray | None) -> None:
-        """Store the spindle load of the newest driver sample. ``samples`` has the shape (n, 5 + 3 axes).
+        """Store the spindle load of the newest driver sample.
 
-        The columns are described in ``core.ports.SampleSource``.
+        ``samples`` has the shape (n, 5 + 3 axes). ``core.ports.SampleSource`` describes the columns.
         """
         if samples is not None and len(samples):
             load = float(samples[-1, -2])
@@ -82,7 +82,10 @@ class MachineContext:
 
     @property
     def feed_override(self) -> float:
-        """The feed override: pot times screen setting, 0 to 1.5, in steps of 0.005."""
+        """Return the feed override, 0 to 1.5, in steps of 0.005.
+
+        The override is the product of the potentiometer and the screen setting.
+        """
         fraction = min(self.signals.feed_override * self.screen_override, 1.5)
         return round(fraction / _OVERRIDE_STEP) * _OVERRIDE_STEP
 
@@ -93,8 +96,8 @@ class MachineContext:
     def show_stop(self, code: AlarmCode, detail: str = "") -> None:
         """Show a hold, a stop or the E-stop until motion resumes, and log it.
 
-        Of consecutive single-block stops only the first is logged, so that they do not crowd out other
-        entries.
+        Only the first of consecutive single-block stops is logged, so that such stops do not displace other
+        log entries.
         """
         if code == "single-block" == self._noted:
             self.stop = make_alarm(code, detail, self.line, self.now)
@@ -102,7 +105,7 @@ class MachineContext:
             self.stop = self.log_stop(code, detail)
 
     def log_stop(self, code: AlarmCode, detail: str = "") -> Alarm:
-        """Log a stop that needs no display, and return it as an alarm entry."""
+        """Log a stop that is not displayed, and return it as an alarm entry."""
         stop = make_alarm(code, detail, self.line, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
@@ -110,14 +113,17 @@ class MachineContext:
         return stop
 
     def log_event(self, event: LogEvent) -> None:
-        """Pass an event to the log. A failure of the log is reported but stops nothing."""
+        """Pass an event to the log. A failure of the log is reported but stops nothing else."""
         with Attempt() as trial:
             self.on_event(event)
         if trial.error is not None:
             _log.error("an event was lost: %s", event, exc_info=trial.error)
 
     def is_input_on(self, name: str) -> bool:
-        """Return whether an input is on. ``name`` is its name or terminal, as used in a program."""
+        """Return whether an input is on.
+
+        ``name`` is the name of the input or its terminal, as used in a program.
+        """
         if name in self.inputs:
             return self.inputs[name]
         for model in self.machine.inputs.values():
@@ -126,7 +132,10 @@ class MachineContext:
         return False
 
     def is_button_pressed(self, name: str) -> bool:
-        """Return whether a jog button is pressed, together with the enabling switch if there is one."""
+        """Return whether a jog button is pressed.
+
+        If there is an enabling switch, it must be pressed too.
+        """
         return self.inputs.get(name, False) and self.inputs.get(HANDWHEEL_ENABLE_INPUT, True)
 
     def is_in_position(self) -> bool:

@@ -1,4 +1,4 @@
-"""The machine state and all its transitions: start, feed hold, Reset, E-stop, alarms and shutdown."""
+"""Machine state and its transitions for start, feed hold, Reset, E-stop, alarms and shutdown."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ _STOP_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT, MachineState.D
 
 
 class MachineControl:
-    """The complete control of one machine. Used by the executor's thread only."""
+    """Complete control of one machine, used only by the executor's thread."""
 
     def __init__(
         self,
@@ -102,17 +102,17 @@ class MachineControl:
 
     @property
     def state(self) -> MachineState:
-        """The present state of the machine."""
+        """Return the present state of the machine."""
         return self.status.state
 
     @property
     def cycle(self) -> Cycle | None:
-        """The running cycle, or None."""
+        """Return the running cycle, or None."""
         return self.program_run.cycle
 
     @property
     def modal(self) -> ModalState:
-        """The modal state of the block being executed, or the state in force between two programs."""
+        """Return the modal state of the block being executed, or the modal state between two programs."""
         return self.program_run.modal
 
     def change_state(self, state: MachineState) -> None:
@@ -130,7 +130,10 @@ class MachineControl:
     # --- requests -----------------------------------------------------------------------------------------
 
     def handle_cycle_start(self) -> None:
-        """Handle Cycle Start: start or resume a cycle. Has no effect while a cycle runs."""
+        """Start or resume a cycle in response to Cycle Start.
+
+        The call has no effect while a cycle runs.
+        """
         state, cycle = self.state, self.cycle
         if state in ACTIVE_STATES or self._giving_up:
             return
@@ -152,14 +155,14 @@ class MachineControl:
             self.program_run.start_run()
 
     def refuse_start(self, reason: str) -> bool:
-        """Store and log a start refusal. Return True if ``reason`` contains a reason."""
+        """Store and log a start refusal; return whether ``reason`` contains a reason."""
         self.status.start_refusal = reason
         if reason:
             self._context.log("refused", reason)
         return bool(reason)
 
     def _clear_start_refusal(self) -> None:
-        """Clear a displayed start refusal when its cause in the machine has gone."""
+        """Clear a displayed start refusal when its cause no longer exists."""
         if self.status.start_refusal:
             now = start_conditions.find_state_refusal(self._context, self.state)
             if self._hindered == self.status.start_refusal != now:
@@ -167,9 +170,9 @@ class MachineControl:
             self._hindered = now
 
     def handle_spindle_switch(self) -> None:
-        """Handle the spindle switch turned from OFF to AUTO.
+        """Handle a change of the spindle switch from OFF to AUTO.
 
-        Between programs the switch starts a waiting spindle. In a stopped cycle only Cycle Start does.
+        Between programs the switch starts a waiting spindle. In a stopped cycle only Cycle Start starts it.
         """
         spindle = self._context.spindle
         if self.state not in MANUAL_STATES or not spindle.waiting_reason:
@@ -185,7 +188,7 @@ class MachineControl:
     def _find_confirmation_refusal(self) -> str:
         """Return why a start within 0.8 s after a confirmation is refused, or an empty string.
 
-        The operator cannot have read the prompt in that time.
+        The operator cannot read the prompt in such a short time.
         """
         if self._context.now - self.confirmed_at >= CONFIRMATION_DELAY_S:
             return ""
@@ -200,9 +203,10 @@ class MachineControl:
         return unclamped or self.announcement.find_refusal(self._context.now)
 
     def _iter_spindle_starts(self) -> Iterator[AnnouncedStart]:
-        """Yield the announcement of a waiting spindle that the next start turns on.
+        """Yield the announcement of a waiting spindle that the next start will turn on.
 
-        In a cycle only Cycle Start turns it on. Between programs the spindle switch does too.
+        In a cycle only Cycle Start turns the spindle on. Between programs the spindle switch also turns it
+        on.
         """
         spindle = self._context.spindle
         rpm, by_hand = spindle.waiting_start_rpm, self.state in MANUAL_STATES
@@ -236,7 +240,7 @@ class MachineControl:
             )
 
     def _iter_first_move_warnings(self) -> Iterator[AnnouncedStart]:
-        """Yield the warning that the first move may hit a part that is unknown or only assumed."""
+        """Yield the warning that the first move may hit a part whose shape is unknown or only assumed."""
         if self.state not in _REST_STATES or not self.status.requires_clearance:
             return
         found = start_conditions.find_first_move_clearance(
@@ -250,8 +254,8 @@ class MachineControl:
     def start_feed_hold(self, reason: str, source: str = "", code: AlarmCode | None = None) -> None:
         """Hold the cycle, end a jog, stop homing and disable the handwheel.
 
-        ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
-        pressed; ``source`` then names the button.
+        ``reason`` is a text of the alarm catalog, or a detail for ``code``. If a button was pressed,
+        ``reason`` is empty and ``source`` names the button.
         """
         if self.handwheel.axis:
             self.handwheel.disable(reason.lower() or "feed hold", self.state)
@@ -283,15 +287,15 @@ class MachineControl:
             self._stop_homing()
 
     def stop_jog(self, reason: str) -> None:
-        """Stop manual motion and a touch-off for the reason ``reason``. Raises DriverError."""
+        """Stop manual motion and a touch-off for the given reason. Raises DriverError."""
         self.touch_off.cancel(reason)
         self.jogger.stop()
 
     def release_jog_key(self) -> None:
-        """Handle the release of a jog key or button, after which the next press counts again.
+        """Handle the release of a jog key or button, so that the next press starts a jog again.
 
-        A late or repeated release does not stop a motion that started after the jog. Raises DriverError if a
-        driver fails.
+        A late or repeated release does not stop a motion that started after the jog. Raises DriverError if
+        a driver fails.
         """
         self.jog_end_reason = ""
         if self.state is MachineState.JOG:
@@ -305,7 +309,7 @@ class MachineControl:
         self.stop_jog(reason)
 
     def _check_spindle(self) -> None:
-        """End manual motion when the spindle stops, because the tool would crash into the stopped part."""
+        """End manual motion when the spindle stops, because the tool could crash into the stopped part."""
         spindle = self._context.spindle
         turned, self._turned = self._turned, spindle.is_requested and not spindle.is_too_slow
         if not turned or self._turned or self.state is not MachineState.JOG:
@@ -334,9 +338,9 @@ class MachineControl:
             self.change_state(MachineState.JOG)
 
     def follow_estop(self, pressed: bool) -> None:
-        """Follow the E-stop of the hardware, which has stopped the machine.
+        """React to the hardware E-stop, which has already stopped the machine.
 
-        Nothing starts when it is released.
+        Nothing starts when the E-stop is released.
         """
         if pressed and self.state is not MachineState.ESTOP:
             self.safe_stop.run_steps(Reaction.DRIVES_OFF)
@@ -369,7 +373,7 @@ class MachineControl:
             self.change_state(MachineState.IDLE)
 
     def _advance_manual_motion(self) -> None:
-        """Advance a touch-off or a jog. The jog is over when the axis is at rest."""
+        """Advance a touch-off or a jog. The jog ends when the axis is at rest."""
         if self.touch_off.phase is not None:
             self.touch_off.advance()
             return
@@ -379,7 +383,7 @@ class MachineControl:
             self.change_state(MachineState.IDLE)
 
     def _check_queue(self, cycle: Cycle) -> None:
-        """Hold the cycle if the setpoint queue runs low, because the computer was too late to refill it."""
+        """Hold the cycle if the setpoint queue is nearly empty because the computer refilled it too late."""
         motion = self.program_run.motion
         left = motion.starvation_time_s - self._context.now
         if motion.has_section and left < self._context.machine.timing.low_water:
@@ -417,7 +421,7 @@ class MachineControl:
         context.log_event(LogEvent(context.now, "alarm", format_log_line(alarm), alarm.line, alarm))
 
     def _handle_hold_alarm(self, error: AlarmError) -> bool:
-        """Handle an alarm whose reaction is feed hold; return False if nothing is moving."""
+        """Handle an alarm whose reaction is feed hold; return False if no axis is moving."""
         if self.cycle is not None and self.state in ACTIVE_STATES:
             self.cycle.hold_for_underrun(error.code, error.detail)
         elif self.state in MANUAL_STATES:
@@ -429,7 +433,10 @@ class MachineControl:
         return True
 
     def handle_internal_error(self, error: BaseException) -> None:
-        """Enter the alarm state for an internal error, even if the transition table does not permit it."""
+        """Change to the alarm state because of an internal error.
+
+        The change is made even if the transition table does not permit it.
+        """
         if self.state is not MachineState.ESTOP:
             self.status.state = MachineState.FAULT
         self.raise_alarm(
@@ -449,7 +456,7 @@ class MachineControl:
             )
 
     def _finish_stopping(self) -> None:
-        """Retry an incomplete safe stop and raise an alarm if a driver still does not carry it out."""
+        """Retry an incomplete safe stop, and raise an alarm if a driver still does not execute it."""
         if self.state in _STOP_STATES:
             self.safe_stop.retry_failed_steps()
             if self.safe_stop.failed_steps_text and not any(
@@ -474,14 +481,20 @@ class MachineControl:
             self.status.state = MachineState.DISABLED
 
     def _switch_drives_off(self) -> None:
-        """Switch the drives off. A failure is ignored if the drives no longer communicate."""
+        """Switch the drives off.
+
+        A failure is ignored if the drives no longer communicate.
+        """
         with Attempt() as off:
             self._context.ports.axes.enable(False)
         if off.error is not None and UnknownPart.AXES not in self._context.unknown_items:
             raise off.error
 
     def _acknowledge(self) -> None:
-        """Acknowledge the alarms at rest. Drives that an alarm has switched off remain off."""
+        """Acknowledge the alarms when the axes are at rest.
+
+        Drives that an alarm has switched off remain off.
+        """
         context, status = self._context, self.status
         if context.sample.moving:
             context.log("refused", "reset: wait until the axes have stopped")

@@ -1,6 +1,7 @@
 """Runs of programs and MDI lines: start, Cycle Repeat, cancel, and changed offsets such as wear.
 
-Changed offsets take effect between two parts. The modal state that a run leaves is stored for the next run.
+Changed offsets take effect between two parts. The modal state at the end of a run is stored for the next
+run.
 """
 
 from __future__ import annotations
@@ -35,10 +36,9 @@ from core.tool_edges import get_tool_number
 class ChangedOffsets:
     """A request to continue the running program with changed offsets.
 
-    The part in progress uses its present ones.
-
-    The changed job must be proved before its first move. With Cycle Repeat, the next part waits for the
-    proof. A program that fails the proof with the new offsets is not repeated.
+    The part in progress uses its present offsets. The changed job must be proved before its first move.
+    With Cycle Repeat, the next part waits for the proof. If the program fails the proof with the new
+    offsets, it is not repeated.
     """
 
     def __init__(self, context: MachineContext) -> None:
@@ -47,12 +47,12 @@ class ChangedOffsets:
 
     @property
     def is_requested(self) -> bool:
-        """True if the next part starts with changed offsets."""
+        """Return whether the next part starts with changed offsets."""
         return self._asked is not None
 
     @property
     def is_proof_pending(self) -> bool:
-        """True if the proof of the changed offsets has not arrived yet."""
+        """Return whether the proof of the changed offsets has not arrived yet."""
         return self._asked is not None and self._asked.proof is None and not self._asked.trouble
 
     def store_request(self, command: ChangeOffsets, running_job: Job | None) -> str:
@@ -67,7 +67,7 @@ class ChangedOffsets:
         return ""
 
     def find_repeat_refusal(self, present_modal: ModalState) -> str:
-        """Return why the program is not repeated with the changed offsets, or an empty string."""
+        """Return why the program cannot be repeated with the changed offsets, or an empty string."""
         asked = self._asked
         if asked is None:
             return ""
@@ -79,7 +79,7 @@ class ChangedOffsets:
         return why or find_outdated_setting(asked.job, present_modal)
 
     def apply_changes(self, status: ControlStatus) -> None:
-        """Make the changed job the loaded program, between two parts or after the program.
+        """Load the changed job between two parts or after the program.
 
         Without a proof, the program cannot start, because its old offsets no longer match the tables.
         """
@@ -99,7 +99,7 @@ class ChangedOffsets:
 
 
 class ProgramRun:
-    """The running cycle and the state between two cycles. Used by the executor's thread only."""
+    """The running cycle and the state between two cycles. It is used by the executor's thread only."""
 
     def __init__(
         self,
@@ -141,7 +141,10 @@ class ProgramRun:
         return why or self.interruption_watch.start_refusal
 
     def start_run(self) -> None:
-        """Start the program, the restart or the MDI line. A prepared job is used only once."""
+        """Start the program, the restart or the MDI line.
+
+        A prepared job is used only once.
+        """
         status, context = self.status, self._context
         job = start_conditions.selected_job(status)
         assert job is not None
@@ -164,7 +167,7 @@ class ProgramRun:
 
     @property
     def will_count_part(self) -> bool:
-        """True if a program is running that will count as a part when it ends."""
+        """Return whether a program is running that will count as a part when it ends."""
         return self.cycle is not None and not (
             self._line or self._between or self.part_count.uncounted_reason
         )
@@ -175,7 +178,10 @@ class ProgramRun:
             self.part_count.workpiece.disturbance = self.part_count.workpiece.disturbance or reason
 
     def add_cutting_time(self, seconds: float) -> None:
-        """Add ``seconds`` to the cutting time of the tool if it moves at feed. Dry runs do not count."""
+        """Add ``seconds`` to the cutting time of the active tool if the tool moves at feed.
+
+        Dry runs do not count.
+        """
         block = self.cycle.current_block if self.cycle is not None and not self.cycle.is_at_rest else None
         if block is not None and block.moves and not block.rapid and not self._context.switches.no_count:
             self.counters.add_cutting_time(
@@ -183,7 +189,7 @@ class ProgramRun:
             )
 
     def finish_canceled_cycle(self) -> bool:
-        """Finish a canceled cycle as soon as the axes are at rest; return True when it is finished."""
+        """Finish a canceled cycle as soon as the axes are at rest; return whether the cycle is finished."""
         if self.cycle is None or not self.cycle.is_at_rest:
             return False
         said = "the MDI line was canceled by reset" if self._line else "program canceled by reset"
@@ -194,9 +200,9 @@ class ProgramRun:
         return True
 
     def cancel_run(self, reason: str) -> None:
-        """Cancel the run for the reason ``why``.
+        """Cancel the run for the given reason.
 
-        A program leaves the modal state that M30 would leave. An MDI line leaves its modes.
+        After a program, the modal state is the same as after M30. The modes of an MDI line remain.
         """
         cycle = self.cycle
         if cycle is None:
@@ -209,13 +215,13 @@ class ProgramRun:
         self._finish_run(modal_after_mdi_cancel(cycle.modal) if self._line else given_up)
 
     def discard_run(self) -> None:
-        """Discard the run without calling the drivers, for use after a driver failure."""
+        """Discard the run without calling the drivers. This is used after a driver failure."""
         self.cycle = self._source = None
         self._between = False
         self._context.line = 0
 
     def _finish_run(self, final_modal: ModalState, *, tool_open: bool = False) -> None:
-        """End the run with the modal state ``left`` and apply offsets that were changed during the run."""
+        """End the run, store its final modal state, and apply offsets that were changed during the run."""
         self._store_modal(final_modal, tool_open=tool_open)
         if not self._line:
             self.status.saved_pass = None
@@ -226,14 +232,20 @@ class ProgramRun:
         self.changed_offsets.apply_changes(self.status)
 
     def _store_modal(self, modal: ModalState, *, tool_open: bool = False) -> None:
-        """Store the modal state. Units and rapid rate are taken over only from OmniTurn programs."""
+        """Store the modal state.
+
+        The units and the rapid rate are adopted only from OmniTurn programs.
+        """
         before = self.status.modal
         if self._dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
         self.status.modal, self.status.is_tool_move_pending = modal, tool_open
 
     def update_between_cycles(self) -> None:
-        """Update the state between two cycles, and start the next part of Cycle Repeat if it may start."""
+        """Update the state between two cycles.
+
+        The next part of Cycle Repeat is started if this is permitted.
+        """
         self.interruption_watch.record_progress(None if self._line or self._between else self.cycle)
         if self.cycle is None:
             self.status.modal = sync_modal_with_machine(self.status.modal, self._context)
@@ -268,7 +280,7 @@ class ProgramRun:
             self._program_ended()
 
     def _repeat_program(self, cycle: Cycle) -> None:
-        """Start the next part once changed offsets are proved, or log why it does not start."""
+        """Start the next part once the changed offsets are proved, or log why it does not start."""
         repeat = self._context.switches.cycle_repeat
         if repeat and self.changed_offsets.is_proof_pending and not self.status.next_part_block_reason:
             cycle.wait_for_next_cycle("PROVING WITH THE CHANGED OFFSETS")
@@ -310,9 +322,9 @@ class ProgramRun:
         self._enter(MachineState.IDLE)
 
     def _end_mdi_line(self, end: ProgramEnd | None) -> None:
-        """Store the state that an MDI line leaves for the next line.
+        """Store the state that an MDI line passes to the next line.
 
-        After M30 it is the state after a program.
+        After M30 this is the state after a program.
         """
         source = self._source
         left = source.make_checkpoint() if source is not None and source.make_checkpoint is not None else None
@@ -324,11 +336,11 @@ class ProgramRun:
 
     @property
     def modal(self) -> ModalState:
-        """The modal state of the block being executed, or the state in force between two programs."""
+        """Return the modal state of the block being executed, or the modal state between two programs."""
         return self.cycle.modal if self.cycle is not None else self.status.modal
 
     def _end_functions(self) -> None:
-        """Stop the spindle and turn off the outputs at M30, except the collet."""
+        """Stop the spindle and turn off all outputs except the collet at M30."""
         context = self._context
         context.spindle.stop()
         for name, on in context.ports.io.outputs().items():
@@ -337,6 +349,6 @@ class ProgramRun:
 
 
 def _make_motion(context: MachineContext) -> PathMotion:
-    """Return the motion by setpoints, or block by block if the controller plans the motion."""
+    """Return a motion by setpoints, or a motion by blocks if the controller has its own planner."""
     blocks = context.ports.blocks
     return SetpointMotion(context) if blocks is None else ControllerMotion(context, blocks)

@@ -1,4 +1,4 @@
-"""Raised alarms with their catalog entries, and context managers that catch and report failures."""
+"""Alarms that are raised, with their catalog entries, and context managers that catch and report failures."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ HOLD_CODES: dict[str, AlarmCode] = {
 
 
 class AlarmError(Exception):
-    """Raised for a condition that must stop the machine.
+    """An error raised for a condition that must stop the machine.
 
-    ``code`` is the code of the alarm catalog, and ``line`` is the program line or 0. ``detail`` is a sentence
-    that is shown to the operator if the catalog entry permits it, and is logged otherwise.
+    ``code`` is the code of the alarm catalog, and ``line`` is the program line or 0. ``detail`` is a
+    sentence that is shown to the operator if the catalog entry permits it, and is only logged otherwise.
     """
 
     def __init__(self, code: AlarmCode, detail: str = "", line: int = 0) -> None:
@@ -33,13 +33,16 @@ class AlarmError(Exception):
 
 
 def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[Alarm, Reaction]:
-    """Return the alarm to show, with ``line`` as its default line, and the reaction of the machine."""
+    """Return the alarm to show and the reaction of the machine.
+
+    ``line`` is used if the error has no line.
+    """
     alarm = make_alarm(error.code, error.detail, error.line or line, now)
     return alarm, CATALOGUE[error.code].reaction
 
 
 def make_alarm(code: AlarmCode, detail: str, line: int, now: float) -> Alarm:
-    """Return an alarm, a hold or a stop with the texts of the catalog and the details of this case."""
+    """Return an alarm, a hold or a stop with the texts of the catalog entry and the given detail."""
     entry = CATALOGUE[code]
     exactly = detail if entry.shows_detail else ""
     return Alarm(
@@ -58,8 +61,8 @@ def make_alarm(code: AlarmCode, detail: str, line: int, now: float) -> Alarm:
 def find_hold_code(reason: str, source: str) -> tuple[AlarmCode, str]:
     """Return the alarm code and the detail of a hold.
 
-    ``reason`` is a catalog text in capitals or a free text. It is empty if a button was pressed; ``source``
-    then names the button.
+    ``reason`` is a catalog text in capitals or a free text. If a button was pressed, ``reason`` is empty
+    and ``source`` names the button.
     """
     if not reason:
         return "feed-hold", Message("feed hold requested by {name}", name=source) if source else ""
@@ -79,9 +82,10 @@ def log_alarm(alarm: Alarm) -> None:
 
 
 class Attempt:
-    """A ``with`` block that catches its error, including SystemExit, and stores it in ``error``.
+    """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
-    Only KeyboardInterrupt is raised again, because it is meant for the main thread of the program.
+    SystemExit is caught too. Only KeyboardInterrupt is raised again, because it is meant for the main
+    thread of the program.
     """
 
     def __init__(self) -> None:
@@ -98,10 +102,10 @@ class Attempt:
 
 
 class ReportedAttempt(Attempt):
-    """A ``with`` block that logs its error and passes it to ``handle_failure``.
+    """A context manager that logs an error of its block and passes it to ``handle_failure``.
 
-    An error in ``handle_failure`` is logged too. An error that repeats in every tick is logged the first,
-    tenth, hundredth … time, so that it does not hide earlier entries.
+    An error in ``handle_failure`` is logged too. If an error repeats in every tick, its first, tenth,
+    hundredth … occurrence is logged, so that it does not hide earlier entries.
     """
 
     _written: ClassVar[Counter[str]] = Counter()

@@ -1,8 +1,8 @@
-"""Recorder of the scope: stores the data of the executor's ticks for the last minutes.
+"""Recorder of the scope, which stores the data of the executor's ticks for the last minutes.
 
 The executor only appends to a queue. A separate thread moves the queue into a ring buffer ten times per
-second, or twice per second while the machine rests. The thread also saves the record before an alarm to a
-file.
+second, or twice per second while the machine is at rest. When an alarm occurs, the thread also saves the
+preceding record to a file.
 """
 
 from __future__ import annotations
@@ -46,14 +46,14 @@ _TURNING_RPM = 1.0  # rpm
 
 
 class _OpenRecord(NamedTuple):
-    """An alarm whose record has not been written yet."""
+    """An alarm whose record has not been written yet, with the program that was running."""
 
     event: LogEvent
     program: str
 
 
 def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
-    """Return the list of signals that are recorded for this machine."""
+    """Return the layout of the signals that are recorded for this machine."""
     return RingLayout(
         {axis.name: axis.rotary for axis in machine.axes},
         tuple(machine.inputs),
@@ -66,12 +66,13 @@ def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
 
 
 class Recorder(ScopeRecordings):
-    """Records ticks in a ring buffer and saves a file for each alarm.
+    """Recorder of ticks in a ring buffer, which saves a file for each alarm.
 
-    The executor calls ``queue_tick`` and ``assign_record_name``; ``latest`` and ``get_record_between`` may
-    be used from any thread. ``folder`` contains the ring file ``name`` and the alarm records; None means
-    that no file is written. ``storage_error`` is the reason why the ring file cannot be written, in which
-    case the record is in memory only. ``memory`` is shared with another process that reads the ring.
+    The executor calls ``queue_tick`` and ``assign_record_name``; ``get_record_since`` and
+    ``get_record_between`` may be called from any thread. ``folder`` contains the ring file ``name`` and the
+    alarm records. If ``folder`` is None, no file is written. ``storage_error`` is the reason why the ring
+    file cannot be written; the record is then in memory only. ``memory`` is shared with another process
+    that reads the ring.
     """
 
     def __init__(
@@ -108,14 +109,17 @@ class Recorder(ScopeRecordings):
     # --- the executor's thread ------------------------------------------------------------------------
 
     def queue_tick(self, tick: TickData) -> None:
-        """Queue the data of one tick. Never waits."""
+        """Queue the data of one tick without waiting."""
         self._program = tick.snapshot.program
         self._told.append(tick)
         if not tick.is_at_rest:
             self._happens.set()
 
     def assign_record_name(self, event: LogEvent) -> LogEvent:
-        """Return an alarm or E-stop event with the name of the record that will be written. Never waits."""
+        """Return an alarm or E-stop event with the name of the record that will be written.
+
+        The function does not wait.
+        """
         if self.folder is None or event.kind not in _RECORDED_EVENT_KINDS or event.alarm is None:
             return event
         if not self._name:
@@ -128,7 +132,7 @@ class Recorder(ScopeRecordings):
         return replace(event, record_name=self._name)
 
     def is_saving(self, name: str) -> bool:
-        """Return whether the record of this alarm is still to be written."""
+        """Return whether the record of this alarm has not been completely written yet."""
         return name in {self._name, self._writing} - {""}
 
     # --- the recorder's thread --------------------------------------------------------------------------
@@ -159,7 +163,10 @@ class Recorder(ScopeRecordings):
                 return
 
     def store_queued_ticks(self, *, is_last: bool = False) -> None:
-        """Store the queued ticks. ``last`` is True if no more ticks will follow."""
+        """Store the queued ticks in the ring buffer.
+
+        ``is_last`` is True if no more ticks will follow.
+        """
         ticks = [self._told.popleft() for _ in range(len(self._told))]
         if ticks:
             self._keep(self.ring.ticks, self._tick_rows(ticks))
@@ -182,7 +189,7 @@ class Recorder(ScopeRecordings):
                 self._file = None
 
     def _tick_rows(self, ticks: Iterable[TickData]) -> FloatArray:
-        """Return a row for each tick that contains a change, and ten rows per second at rest."""
+        """Return a row for each tick with a change, but only ten rows per second at rest."""
         recorded, last = self.ring.layout, self.ring.ticks.last_time_s
         rows: list[list[float]] = []
         for tick in ticks:
@@ -227,7 +234,7 @@ class Recorder(ScopeRecordings):
         return rows[rows[:, 0] > np.maximum.accumulate(np.concatenate(([last], rows[:-1, 0])))]
 
     def _with_gap(self, rows: FloatArray, ticks: Iterable[TickData]) -> FloatArray:
-        """Insert a row of NaN where the data of the axes is lost, so that no line is drawn across the gap."""
+        """Insert a row of NaN where axis data is missing, so that no line is drawn across the gap."""
         silent = [tick.snapshot.t for tick in ticks if UnknownPart.AXES in tick.snapshot.unknown]
         begins, self._silent = bool(silent) and not self._silent, bool(silent)
         if not silent:
@@ -238,7 +245,7 @@ class Recorder(ScopeRecordings):
         return np.concatenate([before, gap, behind])
 
     def _rows_from_snapshots(self, ticks: Iterable[TickData], last: float) -> FloatArray:
-        """Return samples taken from the snapshots. The last row before a change is always included."""
+        """Return samples made from the snapshots. The last row before a change is always included."""
         width, none = self.ring.layout.sample_width, [_NAN] * len(self.ring.layout.is_rotary_by_axis)
         rows: list[list[float]] = []
         for tick in ticks:
@@ -268,7 +275,7 @@ class Recorder(ScopeRecordings):
     # --- records of alarms --------------------------------------------------------------------------------
 
     def _write_due_record(self, now: Snapshot | None, *, last: bool) -> None:
-        """Write the record of an alarm when the machine is at rest or 2 s have passed."""
+        """Write the record of an alarm when the machine is at rest or 2 s after the alarm."""
         if self._freezing is None and self._noted:
             self._freezing = self._noted.popleft()
         if self._freezing is None or (now is None and not last):
@@ -306,7 +313,7 @@ class Recorder(ScopeRecordings):
 
 
 def _values_or_nan(values: list[float], is_known: bool) -> list[float]:
-    """Return the values, or NaN for each value if no data arrives."""
+    """Return the values, or NaN in place of each value if the values are unknown."""
     return values if is_known else [_NAN] * len(values)
 
 
@@ -316,7 +323,10 @@ def _over(now: Snapshot, alarm: float) -> bool:
 
 
 def delete_oldest_records(folder: Path) -> None:
-    """Delete the oldest alarm records above the permitted number. Raises RecordError if deletion fails."""
+    """Delete the oldest alarm records if there are more than the permitted number.
+
+    Raises RecordError if a record cannot be deleted.
+    """
     try:
         for old in sorted(folder.glob(f"*-alarm*{RECORD_SUFFIX}"))[:-MAX_ALARM_RECORDS]:
             old.unlink()
@@ -338,7 +348,10 @@ def _load(tick: TickData) -> float:
 
 
 def _add_spindle_load(rows: FloatArray, tick: TickData) -> FloatArray:
-    """Return the samples with the spindle load of the machine's input, if the driver does not measure it."""
+    """Return the samples with the spindle load from the machine's input.
+
+    The load is not added if the driver measures it.
+    """
     load = tick.snapshot.spindle_load
     if load is None or not len(rows) or not np.isnan(rows[:, _LOAD]).all():
         return rows

@@ -1,8 +1,9 @@
 """Signal tower with red, amber and green lamps and a buzzer, and the machine signals that it shows.
 
-Lamps are not outputs of the program. A failed lamp does not hold the cycle, M30 does not change lamps, and a
-lamp that is on does not keep a machine at rest awake. A drive fault, the E-stop and the shutdown bring lamps
-to their safe state like all other outputs. The control then turns on the lamps that it can still switch.
+Lamps are not outputs of the program. A failed lamp does not hold the cycle, and M30 does not change lamps.
+A lamp that is on does not prevent the slower tick rate of a machine at rest. A drive fault, the E-stop and
+the shutdown switch lamps to their safe state like all other outputs. The control then turns on the lamps
+that it can still switch.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ _REFUSAL_TIME_S = 5.0  # s after which a lamp that the driver refused is switche
 
 @dataclass(slots=True)
 class SignalSelector:
-    """Determines the active signals, and remembers whether a part is finished and no other has started."""
+    """Selector of the active signals.
+
+    It also stores whether a part is finished and no other part has started.
+    """
 
     _ends: int = -1
     _made: bool = False
@@ -58,7 +62,10 @@ def _of_state(state: MachineState) -> str:
 
 @dataclass(slots=True)
 class SignalLamps:
-    """Switches the lamps at the end of each tick on the executor's thread. Never raises or waits."""
+    """Control of the lamps at the end of each tick on the executor's thread.
+
+    It never raises an error or waits.
+    """
 
     context: MachineContext
     io: DigitalIO  # the driver's port, because lamps are not commanded by a program
@@ -76,8 +83,9 @@ class SignalLamps:
         self._lamps = self.context.machine.lamp_outputs
 
     def update_lamps(self, state: MachineState, program_end_count: int, *, next_part_blocked: bool) -> None:
-        """Update the lamps; ``next_part_blocked`` is True if a tool or a measurement prevents the next
-        part.
+        """Update the lamps of the signal tower.
+
+        ``next_part_blocked`` is True if a tool or a measurement prevents the next part.
         """
         if not self._lamps:
             return
@@ -97,7 +105,7 @@ class SignalLamps:
     def _required_states(self, machine_state: MachineState) -> dict[str, bool]:
         """Return the required state of each lamp.
 
-        A lamp without an active signal is in its safe state after a fault, and off otherwise.
+        After a fault, a lamp without an active signal is in its safe state; otherwise it is off.
         """
         now, outputs = self.context.now, self.context.machine.outputs
         if now < self.context.lamp_test_end:

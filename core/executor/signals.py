@@ -1,4 +1,4 @@
-"""Filtered signals of the operator station, and outputs with their commanded states."""
+"""Filtered signals of the operator station, and outputs together with their commanded states."""
 
 from __future__ import annotations
 
@@ -43,7 +43,10 @@ class StationSignals(NamedTuple):
 
 
 class OverridePot:
-    """Filter of one override pot. A decrease takes effect at once; a sudden increase must be stable first."""
+    """Filter of one override potentiometer.
+
+    A decrease takes effect at once, but a sudden increase must be stable first.
+    """
 
     def __init__(self) -> None:
         self.value = 1.0
@@ -53,7 +56,7 @@ class OverridePot:
 
     @property
     def is_noisy(self) -> bool:
-        """True if the value jumps more often than a hand could turn the pot."""
+        """Return whether the value jumps more often than an operator could turn the potentiometer."""
         return len(self._jumps) >= _NOISY_JUMPS
 
     def filter_reading(self, raw_value: float, now: float) -> float:
@@ -82,7 +85,7 @@ class OverridePot:
 
 
 class StationWatch:
-    """Converts states of the operator station to requests."""
+    """Converter of operator station states to requests."""
 
     def __init__(self) -> None:
         self._feed = OverridePot()
@@ -126,7 +129,7 @@ class StationWatch:
         )
 
     def accept_start_press(self, now: float) -> bool:
-        """Return whether a start is a new press rather than contact bounce, and record its time."""
+        """Return whether a start is a new press rather than contact bounce; if so, record its time."""
         fresh = now - self._last_start >= _DEBOUNCE_S
         if fresh:
             self._last_start = now
@@ -141,7 +144,7 @@ class OutputMismatch(NamedTuple):
 
     @property
     def description(self) -> str:
-        """The change of the output as a text for the operator."""
+        """Return the change of the output as a text for the operator."""
         name = self.name.upper()
         return (
             Message("{name} TURNED OFF", name=name) if self.wanted else Message("{name} TURNED ON", name=name)
@@ -149,7 +152,10 @@ class OutputMismatch(NamedTuple):
 
 
 class CommandedOutputs:
-    """Outputs that the executor writes, with their commanded states. Implements ``core.ports.DigitalIO``."""
+    """Outputs that the executor writes, with their commanded states.
+
+    The class implements ``core.ports.DigitalIO``.
+    """
 
     def __init__(self, io: DigitalIO, models: Mapping[str, OutputModel]) -> None:
         self._io = io
@@ -177,7 +183,10 @@ class CommandedOutputs:
         return self._io.outputs()
 
     def write(self, name: str, on: bool) -> None:
-        """Switch one output. If DriverError is raised, the output does not count as commanded."""
+        """Switch one output.
+
+        If DriverError is raised, the commanded state of the output remains unchanged.
+        """
         self._io.write(name, on)
         self._wanted[name] = on
         self._written[name] = self._now
@@ -190,7 +199,10 @@ class CommandedOutputs:
                 self._wanted[model.name], self._written[model.name] = model.safe_state, self._now
 
     def set_write_time(self, now: float) -> None:
-        """Set the time at which later writes are recorded. Called first in each tick."""
+        """Set the time that is recorded for later writes.
+
+        The function is called at the beginning of each tick.
+        """
         self._now = now
 
     def mark_switched_off(self, names: Sequence[str]) -> None:
@@ -199,7 +211,9 @@ class CommandedOutputs:
             self._written.pop(name, None)
 
     def find_mismatches(self) -> list[OutputMismatch]:
-        """Return the outputs that are not in their commanded state although the delay has passed."""
+        """Return the outputs that are not in their commanded state although the permitted delay
+        has passed.
+        """
         actual = self._io.outputs()
         return [
             OutputMismatch(name, wanted)
@@ -209,7 +223,10 @@ class CommandedOutputs:
         ]
 
     def accept_actual_states(self) -> list[OutputMismatch]:
-        """Accept the actual states as commanded when no program runs, and return the outputs that changed."""
+        """Store the actual states as commanded states; return the outputs that changed.
+
+        The function is called when no program runs.
+        """
         changed = self.find_mismatches()
         for each in changed:
             self._wanted[each.name] = not each.wanted

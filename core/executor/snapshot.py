@@ -1,6 +1,7 @@
-"""The snapshot of the machine, from which all displays are drawn, and the interrupted job.
+"""Snapshot of the machine, from which all displays are drawn, and the interrupted job.
 
-A table specifies which state may follow which. Any other change is an internal error and becomes an alarm.
+A table specifies which state may follow another state. Any other change is an internal error and becomes an
+alarm.
 """
 
 from __future__ import annotations
@@ -36,9 +37,9 @@ _NUMBERS = ("line", "block", "begun", "tool", "part")
 class InterruptedJob:
     """The program, line, tool and position at which a job was interrupted.
 
-    ``where`` contains machine positions in the order of ``axes``, in mm with X as a radius, and in degrees.
-    ``part`` is the number of the part in progress. ``begun`` is the number of its elementary blocks that had
-    started without a gap. ``at`` is the time of day in UTC, in ISO 8601 format.
+    ``where`` contains the machine positions in the order of ``axes``, in mm (X as a radius) or in degrees.
+    ``part`` is the number of the part in progress. ``begun`` is the number of its elementary blocks that
+    had started without a gap. ``at`` is the time of day in UTC, in ISO 8601 format.
     """
 
     program: str  # name of its file
@@ -57,7 +58,7 @@ class InterruptedJob:
 
     @property
     def words(self) -> str:
-        """Program, line, tool, part and cause in a few words, for the log and for sentences."""
+        """Return the program, line, tool, part and cause in a few words, for the log and for sentences."""
         return Message(
             "{program}, line {line}, {tool}, part {part}: {why}",
             program=self.program,
@@ -92,7 +93,7 @@ def interrupted_job_from_json(value: object) -> InterruptedJob | None:
 
 
 def utc_timestamp() -> str:
-    """Return the time of day in UTC with a resolution of 1 s, in ISO 8601 format."""
+    """Return the present time in UTC in ISO 8601 format, with a resolution of 1 s."""
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
@@ -114,7 +115,7 @@ class MachineState(StrEnum):
 
 
 class StartAction(StrEnum):
-    """The action of the next Cycle Start."""
+    """The action that the next Cycle Start performs."""
 
     PROGRAM = "program"
     MDI_LINE = "line"
@@ -130,8 +131,8 @@ MDI_ACTIONS = frozenset({StartAction.MDI_LINE, StartAction.RETRACT})
 class Alarm:
     """An alarm, a hold or a stop, with its text, cause, remedy and program line (0 if unknown).
 
-    ``cause`` is the known cause in this case, or else the most likely one of ``causes``. ``detail`` is for
-    the log.
+    ``cause`` is the known cause in this case, otherwise the most likely one of ``causes``. ``detail`` is
+    for the log.
     """
 
     number: int
@@ -146,11 +147,12 @@ class Alarm:
 
 
 class DriveTestState(NamedTuple):
-    """State of the drive tests. ``barred`` is the reason why this machine cannot run them.
+    """State of the drive tests.
 
-    ``axis`` is the axis under test, empty without a test. ``number`` counts the tests that were started; the
-    last one started at ``start_time_s`` on the clock of the samples. ``completed_test_count`` counts the
-    completed tests. ``sample_rate_hz`` is the number of samples per second.
+    ``barred`` is the reason why this machine cannot run drive tests. ``axis`` is the axis under test, or
+    empty if no test runs. ``number`` is the number of tests that were started. The last test started at
+    ``start_time_s`` on the clock of the samples. ``completed_test_count`` is the number of completed tests.
+    ``sample_rate_hz`` is the number of samples per second.
     """
 
     barred: str = ""
@@ -178,9 +180,9 @@ class TouchPhase(StrEnum):
 class TouchResult:
     """The result of a touch-off.
 
-    ``touch_position`` is the position of the axis at the touch, in machine mm by its encoder, and
-    ``uncertainty_mm`` is its uncertainty. ``touch_position`` is None if the touch-off failed for the reason
-    ``why``.
+    ``touch_position`` is the encoder position of the axis at the touch, in machine coordinates in mm, and
+    ``uncertainty_mm`` is its uncertainty. If the touch-off failed, ``touch_position`` is None and ``why``
+    is the reason.
     """
 
     number: int  # number of touch-offs that have ended
@@ -289,21 +291,23 @@ class Snapshot:
 
     @property
     def interrupted_line(self) -> int:
-        """The line at which the loaded program was interrupted, or 0 if it was not."""
+        """Return the line at which the loaded program was interrupted, or 0 if it was not interrupted."""
         found = self.interrupted
         return found.line if found is not None and found.program == self.program else 0
 
     @property
     def shows_diameter(self) -> bool:
-        """True if displays show X as a diameter.
+        """Return whether displays show X as a diameter.
 
-        The mode of a program remains after its end, Reset or E-stop.
+        The mode of a program remains after its end, a Reset or an E-stop.
         """
         return self.modal.diameter if self.x_diameter is None else self.x_diameter
 
     @property
     def tip(self) -> tuple[float, float]:
-        """The actual machine X and Z, at which the pictures of a lathe show the tool."""
+        """Return the actual X and Z in machine coordinates, at which the pictures of a lathe
+        show the tool.
+        """
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 
 
@@ -312,7 +316,7 @@ _values_without_time = attrgetter(*(each.name for each in fields(Snapshot) if ea
 
 @dataclass(frozen=True, slots=True)
 class LogEvent:
-    """An event for the event log."""
+    """An event for the event log, with its time, kind, text and program line."""
 
     time_s: float
     # state, alarm, disturbed, estop, start, repeat, restart, mdi, end, part, uncounted, stop,
@@ -391,7 +395,7 @@ MANUAL_STATES = frozenset({MachineState.IDLE, MachineState.JOG})
 
 
 class TransitionError(Exception):
-    """Raised when the executor requests a state change that the table does not permit."""
+    """An error raised if the executor requests a state change that the table does not permit."""
 
 
 def require_transition(old_state: MachineState, new_state: MachineState) -> None:

@@ -1,4 +1,4 @@
-"""The main spindle: requested speed, operator limits, commanded and measured speed."""
+"""Control of the main spindle: requested speed, operator limits, commanded speed and measured speed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _LOST_TIME_S = 2.0  # s after which the command is withdrawn, so that the drive 
 class SpindleRequest(NamedTuple):
     """The requested signed speed in rpm, or a surface speed in mm/s with its rpm limits.
 
-    M03 and M04 give the sign. G76 and G77 set the limits ``min_rpm`` and ``max_rpm``.
+    M03 and M04 determine the sign. G76 and G77 set the limits ``min_rpm`` and ``max_rpm``.
     """
 
     rpm: float
@@ -38,16 +38,17 @@ class SpindleRequest(NamedTuple):
 
     @classmethod
     def from_block(cls, block: Block) -> SpindleRequest:
-        """Return the spindle speed that is in force in a block."""
+        """Return the spindle speed that is active in a block."""
         return cls(block.rpm, block.css, block.modal.min_css_rpm, block.modal.max_css_rpm)
 
 
 class SpindleControl:
-    """Converts the programmed speed to a command in every tick, and monitors the spindle drive.
+    """Control that converts the programmed speed to commands and monitors the spindle drive.
 
-    Only ``ask`` and ``permit_start`` start the spindle. After ``stop`` it remains at rest until the program
-    requests it again. A requested spindle that is stopped by the switch, the pot or a fault waits. Its
-    request is stored, its command is withdrawn, and it starts when permitted.
+    Only ``request_speed`` and ``permit_start`` start the spindle. After ``stop`` it remains at rest until
+    the program requests it again. If a requested spindle is stopped by the switch, the potentiometer or a
+    fault, it waits: the request is stored, the command is withdrawn, and the spindle starts when this is
+    permitted.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class SpindleControl:
         orientation: OrientingSpindle | None = None,
         lag: Callable[[], float] = float,
     ) -> None:
-        """Initialize the control.
+        """Initialize the spindle control.
 
         Before each speed command, ``prepare_css`` receives the highest rpm that the radius may require.
         ``lag`` returns the delay in seconds that the connection adds to commands and measured speeds.
@@ -91,17 +92,20 @@ class SpindleControl:
 
     @property
     def max_rpm(self) -> float:
-        """The maximum permitted speed, in rpm."""
+        """Return the maximum permitted speed in rpm."""
         return min(self._model.max_rpm, self.operator_limit_rpm or self._model.max_rpm)
 
     @property
     def is_requested(self) -> bool:
-        """True if the program requests that the spindle turns."""
+        """Return whether the program requests a turning spindle."""
         return self._ask is not None
 
     @property
     def requested_rpm(self) -> float:
-        """The requested signed speed in rpm. With G96, it is calculated for the present tool radius."""
+        """Return the requested signed speed in rpm.
+
+        With G96, the speed is calculated for the present tool radius.
+        """
         ask = self._ask
         if ask is None:
             return 0.0
@@ -109,19 +113,19 @@ class SpindleControl:
 
     @property
     def is_stopped(self) -> bool:
-        """True if the measured speed is zero. False if no speed data arrives."""
+        """Return whether the measured speed is zero; False if no speed data arrives."""
         return self.is_speed_known and abs(self.measured_rpm) < self._model.stop_below
 
     @property
     def is_stopped_or_orienting(self) -> bool:
-        """True if the spindle is stopped or moves only because its drive orients it."""
+        """Return whether the spindle is stopped or moves only because its drive orients it."""
         return self.is_speed_known and (self.is_stopped or self.orientation.max_rpm > 0.0)
 
     @property
     def is_speed_lost(self) -> bool:
-        """True if the spindle turns at less than half of the expected speed, or in the wrong direction.
+        """Return whether the spindle turns in the wrong direction or at less than half the expected speed.
 
-        Feeding must stop in this case.
+        In this case the feed must stop.
         """
         along = math.copysign(1.0, self.commanded_rpm) * self.measured_rpm
         return self.commanded_rpm == 0.0 or along < 0.5 * min(
@@ -130,19 +134,19 @@ class SpindleControl:
 
     @property
     def is_too_slow(self) -> bool:
-        """True if the spindle should turn but is too slow to cut."""
+        """Return whether the spindle should turn but is too slow to cut."""
         return self._ask is not None and self.is_speed_lost
 
     @property
     def slow_reason(self) -> str:
-        """The reason why the spindle does not turn, if the operator or the program has caused it."""
+        """Return why the operator or the program has stopped the spindle, or an empty string."""
         if self._ask is None:
             return "SPINDLE STOPPED"
         return self.start_inhibit_reason or self.waiting_reason
 
     @property
     def start_inhibit_reason(self) -> str:
-        """The reason at the operator station that prevents a spindle start, or an empty string."""
+        """Return the reason at the operator station that prevents a spindle start, or an empty string."""
         if self.is_guard_open:
             return "GUARD OPEN"
         if not self.is_auto:
@@ -151,14 +155,18 @@ class SpindleControl:
 
     @property
     def waiting_start_rpm(self) -> float:
-        """The signed speed in rpm at which a waiting spindle will start; 0 if it does not wait.
+        """Return the signed speed in rpm at which a waiting spindle will start, or 0 if no spindle waits.
 
-        The position of the spindle switch is ignored, because turning the switch may be the permission.
+        The position of the spindle switch is ignored, because turning the switch may be the permission to
+        start.
         """
         return self._obeying() if self.waiting_reason else 0.0
 
     def permit_start(self) -> None:
-        """Permit a waiting spindle to start after Cycle Start, or after the spindle switch was turned on."""
+        """Permit a waiting spindle to start.
+
+        The function is called after Cycle Start, or after the spindle switch was turned on.
+        """
         if self._ask is not None and not self.start_inhibit_reason:
             self._forget_waiting()
             self._again, self._in_band_since = True, None
@@ -169,29 +177,32 @@ class SpindleControl:
             self.waiting_reason, self._withdrawn = reason, True
 
     def request_speed(self, demand: SpindleRequest) -> None:
-        """Request a speed by M03, M04 or S."""
+        """Request a spindle speed because of M03, M04 or S."""
         self._let_go()
         self._ask = demand
         self._forget_waiting()
         self._in_band_since = None
 
     def follow_block(self, block: Block) -> None:
-        """Adopt the speed of the block being executed, such as after G96 or G97. Never starts the spindle."""
+        """Adopt the speed of the block being executed, such as after G96 or G97.
+
+        This never starts the spindle.
+        """
         if self._ask is not None and block.rpm != 0.0:
             self._ask = SpindleRequest.from_block(block)
 
     def stop(self) -> None:
-        """Stop the spindle by M05 or by a stop of the control, and discard the request."""
+        """Stop the spindle because of M05 or a stop of the control, and discard the request."""
         self._ask = None
         self._forget_waiting()
         self._let_go()
         self._send(0.0, self._now)
 
     def prepare_safe_stop(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
-        """Return the steps of a safe stop of the spindle. Each step must be run even if another step raises.
+        """Return the steps of a safe stop of the spindle.
 
-        The request is discarded, C is released, and the drive is commanded to stop even if a stop was already
-        sent.
+        Each step must be run even if another step raises an error. The call discards the request. The steps
+        release C and command the drive to stop, even if a stop was already sent.
         """
         self._ask, self._in_band_since = None, None
         self._forget_waiting()
@@ -214,7 +225,7 @@ class SpindleControl:
             self._port.run_at(0.0)
 
     def engage_c_axis(self, *, orient: bool) -> bool:
-        """Switch the spindle to C-axis mode (M19, M89); return True when it is engaged.
+        """Switch the spindle to C-axis mode (M19, M89); return whether it is engaged.
 
         Raises DriverError if the drive rejects the change.
         """
@@ -225,7 +236,7 @@ class SpindleControl:
         return self._lock.is_c_ready()
 
     def orient_spindle(self, angle: float, direction: int) -> bool:
-        """Orient the spindle (M19, SPOS); return True when the drive holds it at ``angle`` degrees.
+        """Orient the spindle (M19, SPOS); return whether the drive holds it at ``angle`` degrees.
 
         A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError.
         """
@@ -235,7 +246,7 @@ class SpindleControl:
         return self.orientation.request_angle(angle, direction)
 
     def cancel_orientation(self) -> None:
-        """End a change to C-axis mode or an orientation that is in progress, because of a feed hold."""
+        """Cancel a change to C-axis mode or an orientation in progress because of a feed hold."""
         if not self.is_c_axis_ready:
             self._free_c()
         if self.orientation.angle_deg is None:
@@ -243,7 +254,7 @@ class SpindleControl:
 
     @property
     def is_c_axis_ready(self) -> bool:
-        """True if C may move as far as the spindle drive is concerned."""
+        """Return whether the spindle drive permits C to move."""
         return self._lock is None or self._lock.is_c_ready()
 
     def _let_go(self) -> None:
@@ -255,14 +266,14 @@ class SpindleControl:
             self._lock.set_c_mode(False)
 
     def read_encoder(self) -> None:
-        """Read the encoder. Called first in each tick."""
+        """Read the encoder. The function is called at the beginning of each tick."""
         self.angle.add_reading(self._port.read_angle())
 
     def update(self, now: float, radius: float) -> None:
         """Send a changed speed and monitor the drive, once per tick.
 
-        ``radius`` is the tool's radius in mm for constant surface speed. Raises AlarmError if the drive has
-        tripped or does not follow its command.
+        ``radius`` is the radius of the tool position in mm, for constant surface speed. Raises AlarmError
+        if the drive has tripped or does not follow its command.
         """
         self._now = now
         measured = self._port.speed()
@@ -289,7 +300,10 @@ class SpindleControl:
             raise AlarmError("ignores-stop", turns)
 
     def is_at_speed(self, now: float) -> bool:
-        """Return whether the spindle has been within its speed window long enough, or is not requested."""
+        """Return whether the spindle has been within its speed window long enough.
+
+        The result is also True if the spindle is not requested.
+        """
         if self._ask is None:
             return True
         if self.commanded_rpm == 0.0 or self._in_band_since is None:
@@ -333,14 +347,14 @@ class SpindleControl:
         self._port.run_at(rpm)
 
     def _max_css_rpm(self) -> float:
-        """Return the highest speed in rpm that the radius may require; 0 without a surface speed."""
+        """Return the highest speed in rpm that the radius may require, or 0 without a surface speed."""
         ask = self._ask
         if ask is None or ask.surface_speed is None:
             return 0.0
         return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 
     def _record_fall(self, rpm: float, now: float) -> None:
-        """Record the time and speed at which a change of the command starts.
+        """Record the time and speed at which a change of the commanded speed starts.
 
         The measured speed is included because the spindle may still coast after an E-stop.
         """
@@ -353,7 +367,10 @@ class SpindleControl:
             self._rose = (now, min(abs(self.measured_rpm), abs(self.commanded_rpm)))
 
     def _check_stopped_spindle(self, now: float) -> None:
-        """Let a requested but stopped spindle wait, so that it does not start when the cause goes away."""
+        """Put a requested but stopped spindle into the waiting state.
+
+        The spindle then does not start when the cause of the stop disappears.
+        """
         if self._ask is None:
             return
         if self.start_inhibit_reason:
@@ -376,12 +393,12 @@ class SpindleControl:
             self._in_band_since = now
 
     def _min_expected_rpm(self, now: float) -> float:
-        """Return the speed in rpm that a correct drive has at least reached after the command rose."""
+        """Return the minimum speed in rpm of a correct drive after an increase of the commanded speed."""
         since, speed = self._rose
         return speed + self._model.accel * max(now - since - self._grace_s, 0.0)
 
     def _max_expected_rpm(self, now: float) -> float:
-        """Return the highest speed in rpm that a correct drive can have after the command fell."""
+        """Return the maximum speed in rpm of a correct drive after a decrease of the commanded speed."""
         since, speed = self._fell
         ramp = speed - self._model.decel * max(now - since - self._grace_s, 0.0)
         return (
@@ -391,7 +408,7 @@ class SpindleControl:
 
     @property
     def _grace_s(self) -> float:
-        """The time in seconds after a command in which the measured speed need not follow."""
+        """Return the time in seconds after a command during which the measured speed need not follow."""
         return max(_GRACE_S, self._lag() + _REACTION_TIME_S)
 
     _now = 0.0

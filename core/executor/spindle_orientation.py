@@ -1,4 +1,4 @@
-"""Spindle orientation by the drive: request, wait, supervision and release."""
+"""Spindle orientation by the spindle drive, with its request, wait, supervision and release."""
 
 from __future__ import annotations
 
@@ -8,10 +8,16 @@ from core.ports import OrientingSpindle
 
 
 class OrientationControl:
-    """The orientation of the spindle at one angle. It must be released before the spindle turns or stops."""
+    """Control of the spindle orientation at one angle.
+
+    The orientation must be released before the spindle turns or stops.
+    """
 
     def __init__(self, port: OrientingSpindle | None, rpm: float) -> None:
-        """Initialize without a requested angle. ``rpm`` is the maximum speed of an orienting spindle."""
+        """Initialize the control without a requested angle.
+
+        ``rpm`` is the maximum speed of the spindle while it is oriented.
+        """
         self._port = port
         self._rpm = rpm
         self._asked: tuple[float, int] | None = None
@@ -19,21 +25,24 @@ class OrientationControl:
 
     @property
     def angle_deg(self) -> float | None:
-        """The angle in degrees at which the drive holds the spindle, or None."""
+        """Return the angle in degrees at which the drive holds the spindle, or None."""
         return self._asked[0] if self._asked is not None and self._reached else None
 
     @property
     def is_moving(self) -> bool:
-        """True while the drive moves the spindle to an angle."""
+        """Return whether the drive is moving the spindle to an angle."""
         return self._asked is not None and not self._reached
 
     @property
     def max_rpm(self) -> float:
-        """The maximum speed in rpm that an orientation can cause; 0 without a requested angle."""
+        """Return the maximum speed in rpm that an orientation can cause, or 0 without a requested angle."""
         return self._rpm if self._asked is not None else 0.0
 
     def request_angle(self, angle: float, direction: int) -> bool:
-        """Request an angle once; return True when the drive holds it. Raises AlarmError or DriverError."""
+        """Request an angle once; return whether the drive holds the spindle at this angle.
+
+        Raises AlarmError or DriverError.
+        """
         if self._port is None:
             raise AlarmError("spindle-orient", "this machine cannot orient the spindle to an angle")
         if self._asked != (angle, direction):
@@ -50,7 +59,10 @@ class OrientationControl:
             self._port.release_spindle()
 
     def check_angle(self) -> None:
-        """Raise AlarmError if the drive no longer holds the angle that it reached. Called every tick."""
+        """Raise AlarmError if the drive no longer holds the angle that the spindle had reached.
+
+        The function is called every tick.
+        """
         if self._reached and self._port is not None and not self._port.is_oriented():
             assert self._asked is not None
             self._reached = False

@@ -1,7 +1,7 @@
 """Conditions of a cycle start, in the order in which an operator has to satisfy them.
 
-They concern the machine, the job to start (program, restart or MDI line) and its proof. Anything else that a
-start would turn on must be announced first.
+The conditions concern the machine, the job to start (program, restart or MDI line) and its proof. Any other
+function that a start would turn on must be announced first.
 """
 
 from __future__ import annotations
@@ -32,12 +32,15 @@ _BUSY_STATES = {
 
 
 def is_guard_open(context: MachineContext) -> bool:
-    """Return whether the guard is open at a machine whose guard stops the cycle. An off input means open."""
+    """Return whether the guard is open on a machine whose guard stops the cycle.
+
+    An input that is off means that the guard is open.
+    """
     return context.machine.interlocks.guard_stops and not context.inputs.get("guard", False)
 
 
 def find_station_refusal(context: MachineContext) -> str:
-    """Return which condition of the operator station prevents a cycle, or an empty string."""
+    """Return the condition of the operator station that prevents a cycle, or an empty string."""
     if context.signals.hold_requested:
         return "feed hold is pressed"
     if is_guard_open(context):
@@ -57,7 +60,7 @@ def find_collet_refusal(context: MachineContext) -> str:
 def find_program_collet_refusal(context: MachineContext) -> str:
     """Return why the collet prevents a spindle start within a stopped cycle, or an empty string.
 
-    If the program has opened the collet, the operator must press Reset before closing it.
+    If the program has opened the collet, the operator must press Reset before closing the collet.
     """
     why = find_collet_refusal(context)
     if why and not context.outputs.outputs().get("collet", True):
@@ -69,7 +72,7 @@ def find_program_collet_refusal(context: MachineContext) -> str:
 
 
 def find_state_refusal(context: MachineContext, state: MachineState) -> str:
-    """Return which state of the machine prevents any cycle start, or an empty string."""
+    """Return the state of the machine that prevents any cycle start, or an empty string."""
     if state in _BUSY_STATES:
         return _BUSY_STATES[state]
     if find_station_refusal(context):
@@ -97,7 +100,7 @@ def find_job_refusal(
 
 
 def find_missing_function(context: MachineContext, proof: Proof | None) -> str:
-    """Return which function the program needs but the machine does not have, or an empty string."""
+    """Return a message about a function that the machine lacks for the program, or an empty string."""
     blocks = context.ports.blocks
     absent = {Message("output {name}", name=name) for name in context.machine.missing_outputs}
     for need in proof.required_functions if proof is not None else ():
@@ -175,7 +178,9 @@ def find_start_refusal(context: MachineContext, state: MachineState, status: Con
 def find_first_move_refusal(
     context: MachineContext, status: ControlStatus, run_count: int
 ) -> tuple[str, str]:
-    """Return the code and the sentence if the first move is refused; both are empty if it is permitted."""
+    """Return the code and the sentence of the refusal of the first move; both are empty if it is
+    permitted.
+    """
     job = selected_job(status)
     if not status.requires_clearance or job is None:
         return "", ""
@@ -188,9 +193,9 @@ def find_first_move_refusal(
 def find_first_move_clearance(
     context: MachineContext, status: ControlStatus, run_count: int, *, for_repeat: bool = False
 ) -> Clearance | None:
-    """Return the clearance of the first move after Cycle Start, or after Cycle Repeat if ``for_repeat``.
+    """Return the clearance of the first move after Cycle Start, or None if it has not been computed yet.
 
-    The result is None if the clearance has not been computed yet.
+    If ``for_repeat`` is True, the clearance is for the first move after Cycle Repeat.
     """
     job, known = selected_job(status), status.clearances
     if for_repeat:
@@ -216,7 +221,7 @@ def _moved(context: MachineContext, job: Job | None) -> str:
 
 
 def _find_change(context: MachineContext, status: ControlStatus, job: Job | None) -> str:
-    """Return what has changed since the program, the line or the restart was proved, or an empty string."""
+    """Return the change since the program, the line or the restart was proved, or an empty string."""
     if job is None:
         return ""
     begin = job.setup.begin
@@ -242,14 +247,17 @@ def _find_change(context: MachineContext, status: ControlStatus, job: Job | None
 
 
 def _proof_instruction(begin: PassStart) -> str:
-    """Return how the operator can have the job proved again."""
+    """Return the instruction by which the operator can have the job proved again."""
     if begin.is_mdi_line:
         return "request the retract path again" if begin.approach else "enter or select the line again"
     return "search for the line again"
 
 
 def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now: ModalState) -> str:
-    """Return why a restart is outdated: another program is loaded, or the collet is in another state."""
+    """Return why a restart is outdated, or an empty string.
+
+    A restart is outdated if another program is loaded or the collet is in another state.
+    """
     if status.job is None or status.job.digest != job.parent_digest:
         return "the program was loaded again: search for the line again"
     wanted = begin.checkpoint.modal.collet_closed
@@ -274,9 +282,9 @@ _VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new anno
 class AnnouncedStart(NamedTuple):
     """A function that the next start would turn on.
 
-    ``what`` identifies the function, and the operator reads ``text``. ``displayed_value`` is its value, such
-    as the rpm of a spindle. A large change of the value makes a new announcement. ``begin`` turns the
-    function on after the announced start.
+    ``function_name`` identifies the function, and the operator reads ``text``. ``displayed_value`` is a
+    value of the function, such as the rpm of a spindle. A large change of this value creates a new
+    announcement. ``start_function`` turns the function on after the announced start.
     """
 
     function_name: str
@@ -288,7 +296,7 @@ class AnnouncedStart(NamedTuple):
 class StartAnnouncement:
     """The functions that a start would turn on, read from ``sources`` in every tick.
 
-    Used on the executor's thread only.
+    The object is used on the executor's thread only.
     """
 
     def __init__(self) -> None:
@@ -296,7 +304,7 @@ class StartAnnouncement:
         self._since: dict[str, tuple[float, float]] = {}  # by key: time of the first display, and the value
 
     def update_texts(self, now: float) -> tuple[str, ...]:
-        """Return the texts for the snapshot of this tick and record when each first appeared."""
+        """Return the texts for the snapshot of this tick, and record when each text first appeared."""
         items, before = self._items(), self._since
         self._since = {item.function_name: self._counted(item, before, now) for item in items}
         return tuple(item.text for item in items)
@@ -304,7 +312,7 @@ class StartAnnouncement:
     def find_refusal(self, now: float, function_name: str = "") -> str:
         """Return why a start is refused because the operator had no time to read an announcement.
 
-        ``what`` limits the check to one function. The result is empty if the start is permitted.
+        ``function_name`` limits the check to one function. The result is empty if the start is permitted.
         """
         for item in self._items(function_name):
             since, figure = self._since.get(item.function_name, (math.inf, 0.0))
@@ -313,7 +321,7 @@ class StartAnnouncement:
         return ""
 
     def start_functions(self, function_name: str = "") -> None:
-        """Turn on the function ``what``, or all functions, after a permitted start."""
+        """Turn on the named function, or all announced functions, after a permitted start."""
         for item in self._items(function_name):
             item.start_function()
 

@@ -26,18 +26,21 @@ STRAIGHT_TOLERANCE_RAD = 1e-6
 
 
 class CornerError(CodedError):
-    """Raised when the corner between two moves is not possible. ``str()`` gives the reason as a clause."""
+    """An error raised if the corner between two moves is not possible.
+
+    ``str()`` returns the reason as a clause.
+    """
 
 
 class NoCornerError(CornerError):
-    """Raised when the two moves have the same direction."""
+    """An error raised if the two moves have the same direction."""
 
 
 class CornerTooLargeError(CornerError):
-    """Raised when the corner needs more of a move than its length.
+    """An error raised if the corner requires more of a move than the length of the move.
 
-    ``needed_length`` is the required length in mm. ``first`` is True if the first of the two moves is too
-    short.
+    ``needed_length`` is the required length in mm. ``is_first_move`` is True if the first of the two moves
+    is too short.
     """
 
     def __init__(self, needed_length: float, *, is_first_move: bool) -> None:
@@ -52,8 +55,8 @@ class CornerTooLargeError(CornerError):
 def chamfer(first_element: Element, second_element: Element, leg: float) -> tuple[Element, Line, Element]:
     """Return both elements shortened by ``leg`` mm at their corner, with the chamfer between them.
 
-    Raises NoCornerError, CornerTooLargeError, or CornerError if the second element reverses the direction of
-    the first or the chamfer would cross one of them.
+    Raises NoCornerError, CornerTooLargeError or CornerError. CornerError is raised if the second element
+    reverses the direction of the first, or if the chamfer would cross one of them.
     """
     angle = _turn_between(first_element, second_element)
     first, last = _shorten(first_element, second_element, leg)
@@ -116,7 +119,7 @@ def _way(element: Element, leg: float) -> float:
 def _required_length(element: Element) -> float:
     """Return the length in mm that must remain of an element.
 
-    An arc with equal ends would be a full circle.
+    A part of an arc must remain, because an arc with equal ends would be a full circle.
     """
     return SAME_POINT_TOLERANCE_MM if isinstance(element, Arc) else -SAME_POINT_TOLERANCE_MM
 
@@ -124,11 +127,11 @@ def _required_length(element: Element) -> float:
 def make_rounding(
     first_element: Element, second_element: Element, radius: float
 ) -> tuple[Element, Arc, Element]:
-    """Return both elements shortened to the tangent points of an arc of ``radius`` mm, with the arc.
+    """Return both elements shortened to the tangent points of an arc, with the arc between them.
 
-    Between two lines, each line is shortened by radius·tan(turn/2). Otherwise the center of the arc is the
-    intersection of both elements offset by ``radius``. Raises the errors of ``chamfer``, and CornerError if
-    no arc is tangent to both within their length.
+    The radius of the arc is ``radius`` mm. Between two lines, each line is shortened by radius·tan(turn/2).
+    Otherwise the center of the arc is the intersection of both elements, each offset by ``radius``. Raises
+    the errors of ``chamfer``, and CornerError if no arc is tangent to both elements within their lengths.
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         return _fillet(first_element, second_element, radius)
@@ -179,7 +182,7 @@ _HALVINGS = 60
 
 
 def find_chamfer_leg(first_element: Element, second_element: Element, length: float) -> float:
-    """Return the leg of a chamfer that is itself ``length`` mm long. Raises the errors of ``chamfer``."""
+    """Return the leg of a chamfer whose own length is ``length`` mm. Raises the errors of ``chamfer``."""
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         # The chamfer and its two legs are an isosceles triangle.
         return length / (

@@ -1,11 +1,11 @@
 """Offset of a contour by a distance, and the spans in which roughing may move next to a contour.
 
 ``OffsetBuilder`` rejects a contour into which the distance does not fit. ``trim_offset``, for roughing,
-leaves out fillets smaller than the allowance and grooves narrower than twice the allowance.
+omits fillets smaller than the allowance and grooves narrower than twice the allowance.
 
-Points of roughing are (depth, distance along Z) as seen from the start point of the tool. The depth grows
-along X toward the contour, and the second value along Z toward it. The contour runs with the tool on its
-left.
+Points for roughing are (depth, distance along Z) relative to the start point of the tool. The depth
+increases along X toward the contour, and the second value increases along Z toward it. The contour is
+directed so that the tool is on its left.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ _INFINITE_MM = float("inf")
 
 
 class GougeError(Exception):
-    """Raised when the offset of a contour cuts into the contour.
+    """An error raised if the offset of a contour cuts into the contour.
 
     ``index`` is the number of the element that cannot be offset, from 0. ``reason`` is a clause about the
     element.
@@ -77,7 +77,7 @@ class GougeError(Exception):
 class OffsetPiece(NamedTuple):
     """A piece of an offset contour.
 
-    ``corner`` is True for an arc around the corner at the end of the element ``source_index``.
+    ``is_corner`` is True for an arc around the corner at the end of the element ``source_index``.
     """
 
     source_index: int  # index of the element, from 0
@@ -86,9 +86,10 @@ class OffsetPiece(NamedTuple):
 
 
 def offset_element(element: Element, distance_left: float) -> Element:
-    """Return the element offset by ``distance_left`` mm to its left; negative values offset to the right.
+    """Return the element offset by ``distance_left`` mm to its left.
 
-    Arcs remain concentric. Raises GougeError (index 0) for an arc whose radius would vanish.
+    A negative value offsets the element to the right. Arcs remain concentric. Raises GougeError (index 0)
+    for an arc whose radius would vanish.
     """
     ax, az = left_normal(element.start_direction)
     bx, bz = left_normal(element.end_direction)
@@ -106,10 +107,10 @@ class OffsetBuilder:
     """The offset of a contour whose elements are added one by one.
 
     The path is ``distance_left`` mm to the left of the contour, or to the right if negative. It starts and
-    ends square to the contour. Each element must have a length and start at the end of the previous one.
-    GougeError is raised if an inside arc is too small, if an element vanishes or would be reversed, or if the
-    path is closer to any element than the distance. A second wall more than WINDOW elements away is not
-    detected.
+    ends square to the contour. Each element must have a length and must start at the end of the previous
+    element. GougeError is raised if an inside arc is too small, if an element vanishes or would be
+    reversed, or if the path is closer to any element than the distance. A second wall that is more than
+    WINDOW_ELEMENTS elements away is not detected.
     """
 
     def __init__(self, distance_left: float) -> None:
@@ -121,7 +122,7 @@ class OffsetBuilder:
         self._guard = _GougeGuard(abs(distance_left))
 
     def add(self, element: Element) -> Iterator[OffsetPiece]:
-        """Add the next element and yield the pieces that are final. Raises GougeError."""
+        """Add the next element, and yield the pieces that can no longer change. Raises GougeError."""
         index = self._count
         self._count += 1
         try:
@@ -146,7 +147,7 @@ class OffsetBuilder:
     def _join_offsets(
         self, before: Element, first_offset: Element, after: Element, second_offset: Element, index: int
     ) -> Element:
-        """Join the offsets of two elements; return the second one with its new start."""
+        """Join the offsets of two elements; return the second offset with its new start."""
         corner = after.start
         angle = turn_angle(before.end_direction, after.start_direction)
         if abs(angle) > pi - REVERSAL_TOLERANCE_RAD and self._distance:
@@ -174,7 +175,7 @@ class OffsetBuilder:
 
 
 def offset_known_contour(elements: Iterable[Element], distance_left: float) -> list[OffsetPiece]:
-    """Return the complete offset of a known contour. Raises GougeError like ``OffsetBuilder``."""
+    """Return the complete offset of a known contour. Raises GougeError as ``OffsetBuilder`` does."""
     offset = OffsetBuilder(distance_left)
     found = [piece for element in elements for piece in offset.add(element)]
     return [*found, *offset.finish()]
@@ -185,7 +186,7 @@ def _middle(a: Point, b: Point) -> Point:
 
 
 def _inside_corner(first_offset: Element, second_offset: Element, corner: Point, index: int) -> Point:
-    """Return the intersection of two offsets at an inside corner that is closer to the corner."""
+    """Return the intersection of two offsets that is nearest to their inside corner."""
     found = intersections(first_offset, second_offset)
     if not found:
         shorter = index - 1 if first_offset.length < second_offset.length else index
@@ -194,7 +195,7 @@ def _inside_corner(first_offset: Element, second_offset: Element, corner: Point,
 
 
 def _cut_offset(element: Element, start: Point, end: Point, index: int) -> Element:
-    """Return the part of an offset between two points. Raises GougeError if it vanishes or reverses."""
+    """Return the section of an offset between two points. Raises GougeError if it vanishes or reverses."""
     whole = start == element.start and end == element.end
     # otherwise an arc could become a full circle
     if (
@@ -207,7 +208,7 @@ def _cut_offset(element: Element, start: Point, end: Point, index: int) -> Eleme
 
 
 class _GougeGuard:
-    """Checks that no piece of the offset is closer to an element of the contour than permitted."""
+    """Checker that rejects a piece of the offset that is too close to an element of the contour."""
 
     def __init__(self, apart: float) -> None:
         self._least = apart - OFFSET_TOLERANCE_MM
@@ -245,11 +246,11 @@ class _GougeGuard:
 
 
 class TrimError(Exception):
-    """Raised when the offset of a contour is not a continuous path at this distance."""
+    """An error raised if the offset of a contour is not a continuous path at this distance."""
 
 
 def make_region_edges(element: Element, distance: float) -> list[Element]:
-    """Return curves that contain the edge of the region within ``apart`` mm of an element."""
+    """Return curves that contain the edge of the region within ``distance`` mm of an element."""
     return [
         *offset_to_left(element, distance),
         *offset_to_left(element, -distance),
@@ -258,9 +259,10 @@ def make_region_edges(element: Element, distance: float) -> list[Element]:
 
 
 def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
-    """Return the path ``apart`` mm to the left of a contour, closer to it by at most 0.5 µm.
+    """Return the path ``distance`` mm to the left of a contour, which is at most 0.5 µm closer to it.
 
-    Each element must start at the end of the previous one. Raises TrimError if the path is not continuous.
+    Each element must start at the end of the previous element. Raises TrimError if the path is not
+    continuous.
     """
     if distance <= 0:
         return list(elements)
@@ -276,15 +278,16 @@ def trim_offset(elements: Sequence[Element], distance: float) -> list[Element]:
 
 
 class ElementIndex:
-    """Elements that can be searched by position."""
+    """An index of elements that finds elements by position."""
 
     def __init__(self, elements: Sequence[Element]) -> None:
         self._elements = elements
         self._boxes = np.array([element.bounding_box for element in elements])
 
     def find_near(self, box: BoundingBox, distance: float) -> list[Element]:
-        """Return the elements whose bounding boxes are at most ``distance`` mm from ``box`` along both
-        axes.
+        """Return the elements whose bounding boxes are near ``box``.
+
+        The distance is at most ``distance`` mm along both axes.
         """
         x0, x1, z0, z1 = self._boxes.T
         hit = (x0 <= box[1] + distance) & (x1 >= box[0] - distance)
@@ -304,7 +307,10 @@ def _offset_pieces(elements: Sequence[Element], distance: float) -> list[Element
 
 
 def _corner_arc(before: Element, after: Element, distance: float) -> list[Element]:
-    """Return the arc around a corner, even next to a fillet whose own offset has vanished."""
+    """Return the arc around a corner.
+
+    The arc is made even if the offset of an adjacent fillet has vanished.
+    """
     first, last = (
         (after.start[0] + side[0] * distance, after.start[1] + side[1] * distance)
         for side in (left_normal(before.end_direction), left_normal(after.start_direction))
@@ -315,7 +321,10 @@ def _corner_arc(before: Element, after: Element, distance: float) -> list[Elemen
 
 
 def offset_to_left(element: Element, distance: float) -> list[Element]:
-    """Return the element offset to its left, or an empty list for an arc whose radius would vanish."""
+    """Return the element offset to its left, as a list.
+
+    The list is empty for an arc whose radius would vanish.
+    """
     try:
         return [offset_element(element, distance)]
     except GougeError:
@@ -332,7 +341,7 @@ def _ring(centre: Point, radius: float) -> Arc:
 
 
 def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
-    """Return the parts of a piece between its intersections with the edges."""
+    """Return the sections of a piece between its intersections with the edges."""
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
     for edge in edges.find_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
@@ -349,7 +358,10 @@ def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
 
 
 def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) -> bool:
-    """Return whether the middle of a part, and so the whole part, is far enough from every element."""
+    """Return whether the middle of a part is far enough from every element.
+
+    If so, the whole part is far enough.
+    """
     x, z = middle = part.point_at(part.length / 2)
     return all(
         distance_to_point(element, middle) >= min_distance
@@ -358,10 +370,10 @@ def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) ->
 
 
 def _follow_path(parts: list[Element]) -> list[Element]:
-    """Return the parts that form a continuous path from the first one.
+    """Return the parts that form a continuous path from the first part.
 
-    If several parts start at one point, the last one is used, because the offset loops between them. Raises
-    TrimError if a part of relevant length is not reached.
+    If several parts start at one point, the last of them is used, because the offset loops between them.
+    Raises TrimError if a part of relevant length is not reached.
     """
     if not parts:
         raise TrimError
@@ -384,8 +396,8 @@ def _follow_path(parts: list[Element]) -> list[Element]:
 class RoughingArea:
     """The area between the start point and the contour, without the allowance on the contour.
 
-    ``path`` is the path along the contour at the distance ``allowance_mm`` (mm), from the start to the end
-    of the area. Raises TrimError if no such path exists.
+    ``path`` is the path along the contour at the distance ``allowance_mm``, from the start to the end of
+    the area. Raises TrimError if no such path exists.
     """
 
     def __init__(self, contour: Sequence[Element], allowance_mm: float) -> None:
@@ -405,7 +417,10 @@ class RoughingArea:
 
     @property
     def reverses_in_z(self) -> bool:
-        """True if the path reverses along Z. No span can reach the region after such an edge."""
+        """Return whether the path reverses along Z.
+
+        No span can reach the region after the point of reversal.
+        """
         return any(
             element.bounding_box[2] < element.start[1] - _TOUCH
             or element.bounding_box[3] > element.end[1] + _TOUCH
@@ -415,7 +430,7 @@ class RoughingArea:
     def find_spans(self, depth: float) -> list[ZSpan]:
         """Return the spans along Z in which a tool may move at ``depth``.
 
-        Above each span, up to depth 0, there is also no contour.
+        Each span is also free of the contour at all smaller depths, up to depth 0.
         """
         met = [wall for least, wall in self._walls if least <= depth - _TOUCH]
         walls = [reach for wall in met if (reach := _span_at_depth(wall, depth - _TOUCH)) is not None]
@@ -432,7 +447,7 @@ class RoughingArea:
 
 
 def _split_by_depth(element: Element) -> list[Element]:
-    """Return the parts of an element along which the depth only increases or only decreases."""
+    """Return the sections of an element along which the depth only increases or only decreases."""
     if isinstance(element, Line):
         return [element]
     (cx, cz), radius = element.center, element.radius
@@ -453,7 +468,7 @@ def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:
 
 
 def _z_extremes(edge: Element, depth: float) -> list[float]:
-    """Return positions along Z that include both extremes of the part of an edge down to ``depth``."""
+    """Return positions along Z that include both extremes of the section of an edge down to ``depth``."""
     if isinstance(edge, Line):
         return _places_of_line(edge, depth)
     candidates = [edge.start, edge.end, *_inner_extremes(edge)]

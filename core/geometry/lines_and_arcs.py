@@ -30,10 +30,10 @@ PARALLEL_TOLERANCE = 1e-9
 def arc_sweep(
     x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
 ) -> tuple[float, float]:
-    """Return (start angle, signed sweep) of an arc in radians, measured from Z+ toward X+.
+    """Return the start angle and the signed sweep of an arc in radians, measured from Z+ toward X+.
 
-    Seen from above (X+ down, Z+ right), this is clockwise, so a G02 has a positive sweep. Equal start and end
-    points give a full circle.
+    Seen from above (X+ down, Z+ right), this direction is clockwise, so G02 has a positive sweep. Equal
+    start and end points result in a full circle.
     """
     start = math.atan2(x0 - cx, z0 - cz)
     if math.hypot(x - x0, z - z0) < SAME_POINT_TOLERANCE_MM:
@@ -45,7 +45,7 @@ def arc_sweep(
 def arc_extent(
     x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
 ) -> tuple[float, float, float, float]:
-    """Return (least x, greatest x, least z, greatest z) of an arc, in mm."""
+    """Return the extent of an arc as (minimum x, maximum x, minimum z, maximum z), in mm."""
     a, b, c, d = x0 - cx, z0 - cz, x - cx, z - cz
     turned = b * c - a * d
     if (
@@ -67,9 +67,10 @@ def arc_extent(
 
 
 def center_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
-    """Return the center of the arc of at most 180 degrees from start to end.
+    """Return the center of the arc of at most 180 degrees from ``start`` to ``end``.
 
-    A chord longer than the diameter gives its midpoint. Raises ValueError if start and end are equal.
+    If the chord is longer than the diameter, the result is the midpoint of the chord. Raises ValueError if
+    start and end are equal.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
@@ -81,7 +82,7 @@ def center_from_radius(start: Point, end: Point, radius: float, *, clockwise: bo
 
 
 def arc_length(start: Point, end: Point, center: Point, *, clockwise: bool) -> float:
-    """Return the length of an arc, or of the spiral between slightly different radii at its ends."""
+    """Return the length of an arc, or of a spiral if the radii at its ends differ slightly."""
     first = hypot(start[0] - center[0], start[1] - center[1])
     last = hypot(end[0] - center[0], end[1] - center[1])
     _, sweep = arc_sweep(*start, *end, *center, clockwise)
@@ -90,36 +91,36 @@ def arc_length(start: Point, end: Point, center: Point, *, clockwise: bool) -> f
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """A straight element with a length greater than 0."""
+    """A straight element whose length is greater than 0."""
 
     start: Point
     end: Point
 
     @property
     def length(self) -> float:
-        """Length of the line, in mm."""
+        """Return the length of the line, in mm."""
         return dist(self.start, self.end)
 
     @property
     def start_direction(self) -> Point:
-        """Unit vector of the direction at the start."""
+        """Return the direction at the start, as a unit vector."""
         dx, dz = self.end[0] - self.start[0], self.end[1] - self.start[1]
         size = hypot(dx, dz)
         return dx / size, dz / size
 
     @property
     def end_direction(self) -> Point:
-        """Unit vector of the direction at the end."""
+        """Return the direction at the end, as a unit vector."""
         return self.start_direction
 
     @property
     def bounding_box(self) -> BoundingBox:
-        """Bounding box of the line."""
+        """Return the bounding box of the line."""
         (x0, z0), (x1, z1) = self.start, self.end
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
     def point_at(self, distance: float) -> Point:
-        """Return the point ``at`` mm from the start, on the infinite line."""
+        """Return the point at ``distance`` mm from the start, on the infinite line."""
         dx, dz = self.start_direction
         return self.start[0] + dx * distance, self.start[1] + dz * distance
 
@@ -132,17 +133,20 @@ class Line:
         return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
 
     def section_between(self, start: Point, end: Point) -> Line:
-        """Return the part of the line between two of its points."""
+        """Return the section of the line between two of its points."""
         return Line(start, end)
 
     def reversed(self) -> Line:
-        """Return the line in the opposite direction."""
+        """Return a line in the opposite direction."""
         return Line(self.end, self.start)
 
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """An arc of a circle. Equal start and end points make a full circle. See ``make_arc``."""
+    """An arc of a circle.
+
+    If the start and end points are equal, the arc is a full circle. See ``make_arc``.
+    """
 
     start: Point
     end: Point
@@ -151,36 +155,36 @@ class Arc:
 
     @property
     def radius(self) -> float:
-        """Radius of the arc, in mm."""
+        """Return the radius of the arc, in mm."""
         return dist(self.start, self.center)
 
     @property
     def sweep(self) -> float:
-        """Signed angle of the arc in radians, positive for a clockwise arc."""
+        """Return the signed angle of the arc in radians, positive for a clockwise arc."""
         return arc_sweep(*self.start, *self.end, *self.center, self.clockwise)[1]
 
     @property
     def length(self) -> float:
-        """Length of the arc, in mm."""
+        """Return the length of the arc, in mm."""
         return self.radius * abs(self.sweep)
 
     @property
     def start_direction(self) -> Point:
-        """Unit vector of the direction at the start."""
+        """Return the direction at the start, as a unit vector."""
         return self._direction(self.start)
 
     @property
     def end_direction(self) -> Point:
-        """Unit vector of the direction at the end."""
+        """Return the direction at the end, as a unit vector."""
         return self._direction(self.end)
 
     @property
     def bounding_box(self) -> BoundingBox:
-        """Bounding box of the arc."""
+        """Return the bounding box of the arc."""
         return arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
     def point_at(self, distance: float) -> Point:
-        """Return the point ``at`` mm from the start, on the full circle."""
+        """Return the point at ``distance`` mm from the start, on the full circle."""
         radius = self.radius
         angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         angle += distance / radius if self.clockwise else -distance / radius
@@ -189,8 +193,8 @@ class Arc:
     def distance_from_start(self, point: Point) -> float:
         """Return the distance in mm from the start to ``point`` along the circle.
 
-        A point outside the arc is measured from the nearer end. Its distance is negative before the start,
-        and greater than the length after the end.
+        The distance of a point outside the arc is negative if the point is nearer to the start, and greater
+        than the length if it is nearer to the end.
         """
         angle = atan2(point[0] - self.center[0], point[1] - self.center[1])
         first = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
@@ -201,11 +205,11 @@ class Arc:
         return turned * self.radius
 
     def section_between(self, start: Point, end: Point) -> Arc:
-        """Return the part of the arc between two of its points."""
+        """Return the section of the arc between two of its points."""
         return Arc(start, end, self.center, self.clockwise)
 
     def reversed(self) -> Arc:
-        """Return the arc in the opposite direction."""
+        """Return an arc in the opposite direction."""
         return Arc(self.end, self.start, self.center, not self.clockwise)
 
     def _direction(self, at: Point) -> Point:
@@ -220,7 +224,7 @@ Element = Line | Arc
 def make_arc(start: Point, end: Point, center: Point, *, clockwise: bool) -> Arc:
     """Return an arc whose center is moved to the perpendicular bisector of the chord.
 
-    Both ends then have the same radius. Programs round centers to the resolution, and the motion planner
+    The radii at both ends are then equal. Programs round centers to the resolution, and the motion planner
     corrects them in the same manner.
     """
     dx, dz = end[0] - start[0], end[1] - start[1]
@@ -248,7 +252,10 @@ def left_normal(direction: Point) -> Point:
 
 
 def tangent_point(point: Point, center: Point, radius: float, *, clockwise: bool) -> Point:
-    """Return the tangent point of a line from an outside point to a circle that it then follows."""
+    """Return the point at which a line from a point outside a circle is tangent to the circle.
+
+    The path follows the line and then the circle in the direction ``clockwise``.
+    """
     half = acos(min(1.0, radius / dist(point, center)))
     # In the direction of the circle, the tangent point is ``half`` after the direction of the point.
     angle = atan2(point[0] - center[0], point[1] - center[1]) + (half if clockwise else -half)
@@ -266,7 +273,7 @@ def turn_angle(first: Point, second: Point) -> float:
 def extended_intersections(a: Element, b: Element) -> list[Point]:
     """Return the intersections of the infinite lines or full circles of two elements, at most two points.
 
-    A tangent point counts once. Elements on the same line or circle have no intersection.
+    A tangent point counts once. Elements on the same line or circle have no intersections.
     """
     if isinstance(a, Line):
         return _lines(a, b) if isinstance(b, Line) else _line_circle(a, b)
@@ -276,7 +283,7 @@ def extended_intersections(a: Element, b: Element) -> list[Point]:
 def intersections(a: Element, b: Element) -> list[Point]:
     """Return the points that both elements share, including their ends.
 
-    Elements on the same line or circle give an empty list.
+    For elements on the same line or circle, the list is empty.
     """
     return [
         point
@@ -286,7 +293,7 @@ def intersections(a: Element, b: Element) -> list[Point]:
 
 
 def contains_point(element: Element, point: Point) -> bool:
-    """Return whether a point of the infinite line or full circle is within the element."""
+    """Return whether a point on the infinite line or full circle of an element is within the element."""
     return (
         -SAME_POINT_TOLERANCE_MM
         <= element.distance_from_start(point)
@@ -339,10 +346,9 @@ def distance_to_point(element: Element, point: Point) -> float:
 
 
 def min_distance(a: Element, b: Element) -> float:
-    """Return the least distance between two elements in mm; 0 if they intersect.
+    """Return the minimum distance between two elements in mm, or 0 if they intersect.
 
-    The distance is reached at an end of an element or on a common normal, which passes through the centers of
-    arcs.
+    The minimum is at an end of an element or on a common normal, which passes through the centers of arcs.
     """
     if intersections(a, b):
         return 0.0
@@ -354,7 +360,7 @@ def min_distance(a: Element, b: Element) -> float:
 
 
 def _facing_points(element: Element, other: Element) -> list[Point]:
-    """Return the inner points of an element whose normal passes through the center of the other."""
+    """Return the inner points of an element whose normal passes through the center of the other element."""
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):

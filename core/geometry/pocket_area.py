@@ -1,16 +1,17 @@
 """Areas of pockets with islands, their insets, and the rings that clear one level.
 
-A boundary is a list of closed loops, and each loop is a list of consecutive elements. The area is to the left
-of each loop: counterclockwise around a pocket, clockwise around an island. Coordinates are X and Y in mm.
+A boundary is a list of closed loops, and each loop is a list of consecutive elements. The area is to the
+left of each loop, so a loop is counterclockwise around a pocket and clockwise around an island. Coordinates
+are X and Y in mm.
 
-The offset is exact, because lines remain lines and arcs remain arcs. A point belongs to the inset area if no
-point of the boundary is closer than the distance. Every part of an offset element that is closer to any other
-element is therefore left out (``offset_to_left``, ``split_at_edges``), even if the area falls apart or an
-island merges with a wall.
+The offset is exact, because lines remain lines and arcs remain arcs. A point belongs to the inset area if
+no point of the boundary is closer than the distance. Every section of an offset element that is closer to
+any other element is therefore omitted (``offset_to_left``, ``split_at_edges``). This also applies if the
+area is divided into several parts or an island merges with a wall.
 
-The rings are offsets of the boundary that are at most one tool radius apart. This clears every point, because
-a point between two rings is closer to the outer ring than their distance. A larger overlap would leave stock
-in corners.
+The rings are offsets of the boundary that are at most one tool radius apart. This clears every point,
+because a point between two rings is closer to the outer ring than their distance. A larger distance would
+leave stock in corners.
 """
 
 from __future__ import annotations
@@ -57,11 +58,11 @@ _RAMP_RADII = 4.0  # tool radii that a ramp should be long
 
 
 class AreaError(Exception):
-    """Raised when contours enclose no area or cannot be offset. The message is a clause."""
+    """An error raised if contours enclose no area or cannot be offset. The message is a clause."""
 
 
 def close_loop(elements: Sequence[Element]) -> ElementLoop:
-    """Return the elements as a closed loop, with a line from the end to the start if needed."""
+    """Return the elements as a closed loop, with a line from the end to the start if it is necessary."""
     loop = list(elements)
     if loop and dist(loop[-1].end, loop[0].start) > SAME_POINT_TOLERANCE_MM:
         loop.append(Line(loop[-1].end, loop[0].start))
@@ -72,7 +73,10 @@ def close_loop(elements: Sequence[Element]) -> ElementLoop:
 
 
 class Winding:
-    """The winding number of a loop around points that are not on the loop; counterclockwise is positive."""
+    """Calculator of the winding number of a loop around points that are not on the loop.
+
+    Counterclockwise is positive.
+    """
 
     def __init__(self, loop: Sequence[Element]) -> None:
         halves = [part for element in loop for part in _split_large_arcs(element)]
@@ -84,10 +88,10 @@ class Winding:
                                 for part in halves])  # fmt: skip
 
     def winding_number(self, point: Point) -> int:
-        """Return the winding number around ``point``.
+        """Return the winding number of the loop around ``point``.
 
-        The method adds the angles of the chords as seen from the point, and a full turn for an arc that
-        passes beyond it.
+        The method adds the angles of the chords as seen from the point, and a full revolution for each arc
+        that passes on the other side of the point than its chord.
         """
         a, b = self._start - point, self._end - point
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -99,7 +103,7 @@ class Winding:
 
 
 def _split_large_arcs(element: Element) -> Iterator[Element]:
-    """Yield the element, with an arc of more than half a circle divided into shorter arcs."""
+    """Yield the element. An arc of more than half a circle is divided into shorter arcs."""
     if isinstance(element, Line) or abs(element.sweep) <= _HALF_TURN:
         yield element
         return
@@ -110,7 +114,7 @@ def _split_large_arcs(element: Element) -> Iterator[Element]:
 
 
 def signed_area(loop: Sequence[Element]) -> float:
-    """Return the area within a closed loop in mm²; negative for a clockwise loop."""
+    """Return the area within a closed loop in mm², which is negative for a clockwise loop."""
     total = 0.0
     for element in loop:
         (x0, y0), (x1, y1) = element.start, element.end
@@ -124,7 +128,7 @@ def signed_area(loop: Sequence[Element]) -> float:
 
 
 def is_counterclockwise(loop: Sequence[Element]) -> bool:
-    """Return whether the loop is counterclockwise or encloses no area."""
+    """Return whether the loop is counterclockwise. The result is also True if the loop encloses no area."""
     return signed_area(loop) > -_JOIN_TOLERANCE_MM * sum(element.length for element in loop)
 
 
@@ -132,7 +136,7 @@ def is_counterclockwise(loop: Sequence[Element]) -> bool:
 
 
 def find_boundary(curves: Sequence[ElementLoop], contains_point: ContainsPoint) -> list[ElementLoop]:
-    """Return the boundary of the area that ``contains_point`` describes, with elements of the given curves.
+    """Return the boundary of the area that ``contains_point`` describes, as sections of the given curves.
 
     Raises AreaError if the boundary is not closed.
     """
@@ -146,7 +150,7 @@ def find_boundary(curves: Sequence[ElementLoop], contains_point: ContainsPoint) 
 
 
 def _divide_at_crossings(element: Element, every: ElementIndex) -> list[Element]:
-    """Return the parts of an element between all points where other elements meet it or end on it."""
+    """Return the sections of an element between all points where other elements meet it or end on it."""
     parts = split_at_edges(element, every)
     ends = {
         end
@@ -168,7 +172,10 @@ def _cut(part: Element, at: Point) -> list[Element]:
 
 
 def _orient_boundary(part: Element, contains_point: ContainsPoint) -> Element | None:
-    """Return the part with the area on its left, or None if the area is on both sides or on neither."""
+    """Return the part directed so that the area is on its left, or None.
+
+    The result is None if the area is on both sides of the part or on neither side.
+    """
     x, y = part.point_at(part.length / 2.0)
     dx, dy = left_normal(_direction_halfway(part))
     left = contains_point((x + dx * _SIDE_OFFSET_MM, y + dy * _SIDE_OFFSET_MM))
@@ -184,7 +191,7 @@ def _direction_halfway(part: Element) -> Point:
 
 
 def inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLoop]:
-    """Return the boundary of the points that are at least ``distance`` mm inside the loops.
+    """Return the boundary of the points inside the loops that are at least ``distance`` mm from the loops.
 
     Raises AreaError if the boundary is not closed.
     """
@@ -222,7 +229,10 @@ def _apart(part: Element, contour: ElementIndex, least: float, within: Sequence[
 
 
 def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
-    """Return the parts, each only once where parts of the same direction coincide."""
+    """Return the parts without duplicates.
+
+    Parts are duplicates if they coincide and have the same direction.
+    """
     found: dict[tuple[int, ...], Element] = {}
     for part in parts:
         if part.length < SAME_POINT_TOLERANCE_MM:
@@ -262,7 +272,7 @@ def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], fre
           first: int) -> ElementLoop:  # fmt: skip
     """Return the closed loop that starts with a part, and mark its parts as used.
 
-    A loop that is too short returns an empty list.
+    If the loop is too short, the result is an empty list.
     """
     loop: ElementLoop = [parts[first]]
     free[first] = False
@@ -285,16 +295,16 @@ def _collect_loop(parts: Sequence[Element], starts: npt.NDArray[np.float64], fre
 
 
 def _turn_between(before: Element, after: Element) -> float:
-    """Return the turn between two elements.
+    """Return the angle by which the direction changes between two elements.
 
-    The sharpest left turn is selected, which separates loops that touch in a point.
+    The caller selects the sharpest left turn, which separates loops that touch at a point.
     """
     angle = turn_angle(before.end_direction, after.start_direction)
     return angle if angle < _HALF_TURN else -pi  # a reversal comes last
 
 
 def _close_gaps(loop: ElementLoop) -> ElementLoop:
-    """Return the loop with each element starting exactly at the end of the previous one."""
+    """Return the loop with each element starting exactly at the end of the previous element."""
     made: ElementLoop = []
     here = loop[-1].end
     for element in loop:
@@ -314,14 +324,17 @@ def _close_gaps(loop: ElementLoop) -> ElementLoop:
 
 
 class AreaCheck:
-    """Checks whether moves remain inside an area."""
+    """Checker that determines whether moves remain inside an area."""
 
     def __init__(self, loops: Sequence[ElementLoop]) -> None:
         self._contour = ElementIndex([element for loop in loops for element in loop])
         self._windings = [Winding(loop) for loop in loops]
 
     def contains_element(self, element: Element, distance: float) -> bool:
-        """Return whether the whole element is inside, at least ``distance`` mm from the boundary."""
+        """Return whether the whole element is inside the area.
+
+        The distance from the boundary must be at least ``distance`` mm.
+        """
         near = self._contour.find_near(element.bounding_box, distance)
         if any(min_distance(other, element) < distance - 2 * _OFFSET_TOLERANCE_MM for other in near):
             return False
@@ -330,11 +343,11 @@ class AreaCheck:
 
 @dataclass(frozen=True, slots=True)
 class ClearingRing:
-    """One ring, which starts where the tool reaches it.
+    """One clearing ring, which starts at the point where the tool reaches it.
 
-    ``moves_at_depth`` is True if the tool moves to the ring at its depth, and False if it comes from above.
-    ``ramp_loop`` is the ring along which the tool ramps down, usually the same ring. It is a wider one if
-    this ring is too short.
+    If ``moves_at_depth`` is True, the tool moves to the ring at the depth of the ring; otherwise it comes
+    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually the same ring, or a
+    wider ring if this ring is too short.
     """
 
     loop: ElementLoop
@@ -344,7 +357,10 @@ class ClearingRing:
 
 @dataclass(slots=True)
 class _AreaPatch:
-    """A connected part of the area at one distance: its outer ring, its islands, and the parts inside."""
+    """A connected part of the area at one distance.
+
+    The patch has an outer ring, its islands, and the patches inside it.
+    """
 
     outer: ElementLoop
     holes: list[ElementLoop] = field(default_factory=list)
@@ -363,10 +379,11 @@ def make_clearing_rings(
     conventional: bool,
     position: Point,
 ) -> list[ClearingRing]:
-    """Return the rings that clear an area, the outermost ``first`` mm inside and ``ring_distance`` mm apart.
+    """Return the rings that clear an area.
 
-    ``against`` makes the rings clockwise (conventional milling with M3). Raises AreaError if the tool does
-    not fit.
+    The outermost ring is ``first_inset`` mm inside the area, and the rings are ``ring_distance`` mm apart.
+    If ``conventional`` is True, the rings are clockwise (conventional milling with M3). Raises AreaError if
+    the tool does not fit.
     """
     outmost = _find_patches(inset_loops(area, first_inset))
     if not outmost:
@@ -417,7 +434,7 @@ def _order_rings(
     conventional: bool,
     position: Point,
 ) -> list[ClearingRing]:
-    """Return the rings in their order, each starting where the tool reaches it."""
+    """Return the rings in machining order, each starting at the point where the tool reaches it."""
     made: list[ClearingRing] = []
     for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
         loop = start_loop_near(_sense(ring, against=conventional), position)
@@ -443,7 +460,7 @@ def _order_rings(
 def _iter_inner_first(
     patches: Sequence[_AreaPatch], outer_rings: list[ElementLoop]
 ) -> Iterator[tuple[ElementLoop, list[ElementLoop]]]:
-    """Yield each ring after the rings inside it, with the outer rings around it."""
+    """Yield each ring, with the outer rings around it, after the rings inside it."""
     for patch in patches:
         yield from _iter_inner_first(patch.inner, [*outer_rings, patch.outer])
         for ring in (*patch.holes, patch.outer):
@@ -455,7 +472,10 @@ def _sense(loop: ElementLoop, *, against: bool) -> ElementLoop:
 
 
 def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
-    """Return the loop starting at the end or the middle of an element that is nearest to a point."""
+    """Return the loop with a new start near a point.
+
+    The start is the end or the middle of an element, whichever is nearest to the point.
+    """
     best, cut = min(
         (dist(place, point), (index, half))
         for index, element in enumerate(loop)
@@ -467,7 +487,7 @@ def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
 
 
 def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop:
-    """Return the loop starting ``distance`` mm after the start of one of its elements."""
+    """Return the loop with a new start, ``distance`` mm after the start of one of its elements."""
     element = loop[index]
     turned = [*loop[index + 1 :], *loop[:index]]
     if distance <= SAME_POINT_TOLERANCE_MM or distance >= element.length - SAME_POINT_TOLERANCE_MM:
@@ -481,9 +501,9 @@ def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop
 
 
 def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], ElementLoop]:
-    """Return the first ``length`` mm around a loop, and the loop from that point on.
+    """Return the first ``length`` mm of a loop, and the loop from that point on.
 
-    A length greater than the loop repeats the loop.
+    If ``length`` is greater than the length of the loop, the loop is repeated.
     """
     way: list[Element] = []
     left, at = length, 0

@@ -2,8 +2,8 @@
 
 The same rule applies to heads and tables: a frame as seen from the workpiece is the product of Rot(axis,
 +angle) over the chain from the workpiece to the tool. A head at +t rotates the tool by +t. A table at +t
-rotates the workpiece by -t in the machine, so the tool, as seen from the workpiece, also rotates by +t. In a
-``PivotMove``, the linear axes follow a rotation, so that a point remains fixed on the workpiece (MOVE).
+rotates the workpiece by -t in the machine, so the tool, as seen from the workpiece, also rotates by +t. In
+a ``PivotMove``, the linear axes follow the rotation, so that a point remains fixed on the workpiece (MOVE).
 """
 
 from __future__ import annotations
@@ -46,11 +46,12 @@ class LinearAxis:
 
 @dataclass(frozen=True, slots=True)
 class RotaryAxis:
-    """A rotary axis. ``direction`` (unit vector) and ``point`` (mm) of its line are given with all axes at 0.
+    """A rotary axis of a mill.
 
-    The point of a table is in machine coordinates. The point of a head is measured from the spindle nose.
-    With ``is_modulo`` the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``travel_min`` and
-    ``travel_max`` limit it, both inclusive.
+    ``direction`` (unit vector) and ``point`` (mm) define its line when all axes are at 0. The point of a
+    table is in machine coordinates. The point of a head is measured from the spindle nose. If ``is_modulo``
+    is True, the axis turns endlessly and displays 0 to 360 degrees. Otherwise ``travel_min`` and
+    ``travel_max`` limit the axis, both inclusive.
     """
 
     name: str
@@ -70,14 +71,17 @@ class RotaryAxis:
         )
 
     def displayed_angle(self, angle: float) -> float:
-        """Return the angle as displayed: 0 to 360 degrees on a modulo axis."""
+        """Return the angle as it is displayed, which is 0 to 360 degrees on a modulo axis."""
         if not self.is_modulo:
             return angle + 0.0
         rest = angle % FULL_TURN_DEG
         return 0.0 if FULL_TURN_DEG - rest < RANGE_TOLERANCE_DEG else rest
 
     def find_travel(self, start: float, target: float) -> float:
-        """Return the travel in degrees. A modulo axis takes the shorter direction; 180 is positive."""
+        """Return the signed travel from ``start`` to ``target`` in degrees.
+
+        A modulo axis moves in the shorter direction. A travel of 180 degrees is positive.
+        """
         way = target - start
         if not self.is_modulo:
             return way
@@ -87,20 +91,21 @@ class RotaryAxis:
 
 @dataclass(frozen=True, slots=True)
 class FrameTransform:
-    """The transformation machine = turn · q + shift from points of a system to machine positions, in mm.
+    """The transformation from points of a system to machine positions, in mm.
 
-    It is valid for fixed rotary axes.
+    The formula is machine = rotation · point + translation. The transformation is valid for fixed rotary
+    axes.
     """
 
     rotation: Matrix
     translation: Vector
 
     def to_machine_position(self, point: Vector) -> Vector:
-        """Return the machine position of the linear axes for the point ``point``."""
+        """Convert a point of the system to the machine position of the linear axes."""
         return add_vectors(apply_matrix(self.rotation, point), self.translation)
 
     def to_frame_point(self, machine: Vector) -> Vector:
-        """Return the point with this machine position."""
+        """Convert a machine position of the linear axes to the point of the system."""
         return apply_matrix(transpose_matrix(self.rotation), subtract_vectors(machine, self.translation))
 
 
@@ -108,10 +113,10 @@ class FrameTransform:
 class DatumPreset:
     """A row of the preset table.
 
-    ``origin`` is the machine position of the workpiece zero in mm. ``rotation_deg`` is the basic rotation of
-    the workpiece about Z in degrees. ``axis_zeros`` are the machine angles at which the rotary axes read 0,
-    by name. ``origin`` and ``rotation_deg`` apply at these angles. An axis that is not listed has the angle
-    0.
+    ``origin`` is the machine position of the workpiece zero in mm. ``rotation_deg`` is the basic rotation
+    of the workpiece about Z in degrees. ``axis_zeros`` contains the machine angles at which the rotary axes
+    read 0, by axis name; an axis that is not listed has the angle 0. ``origin`` and ``rotation_deg`` apply
+    when the rotary axes are at these angles.
     """
 
     origin: Vector
@@ -121,7 +126,7 @@ class DatumPreset:
 
 @dataclass(frozen=True)
 class Kinematics:
-    """A mill with X, Y, Z and its rotary axes from the workpiece to the tool, tables before heads.
+    """A mill with X, Y, Z and its rotary axes in order from the workpiece to the tool, tables before heads.
 
     ``origin`` is the machine position of the workpiece zero with all rotary axes at 0.
     ``basic_rotation_deg`` is the angle of the workpiece system about Z relative to the machine, with the
@@ -138,17 +143,17 @@ class Kinematics:
 
     @cached_property
     def workpiece_rotation(self) -> Matrix:
-        """The workpiece system in machine coordinates with all rotary axes at 0."""
+        """Return the rotation of the workpiece system in machine coordinates with all rotary axes at 0."""
         turn, _ = self._table_transform(self.zero_angles)
         return multiply_matrices(transpose_matrix(turn), rotation_about(Z_AXIS, self.basic_rotation_deg))
 
     @cached_property
     def zero_angles(self) -> Mapping[str, float]:
-        """The machine angle at which each rotary axis reads 0, by name."""
+        """Return the machine angle at which each rotary axis reads 0, by axis name."""
         return {axis.name: 0.0 for axis in self.rotary_axes} | dict(self.axis_zeros)
 
     def with_preset(self, preset: DatumPreset) -> Kinematics:
-        """Return the machine with the workpiece of a preset."""
+        """Return the machine kinematics with the workpiece zero and rotation of a preset."""
         zeros = tuple(
             each for each in preset.axis_zeros if self.find_rotary_axis(each[0]) is not None and each[1]
         )
@@ -156,15 +161,19 @@ class Kinematics:
         return replace(moved, origin=moved.move_from_table_zeros(preset.origin))
 
     def move_from_table_zeros(self, point: Vector) -> Vector:
-        """Return a workpiece point with the tables at 0 that is at ``point`` with the tables at their zeros.
+        """Return the position of a workpiece point after the tables have moved from their zeros to 0.
 
-        Both points are in machine mm.
+        ``point`` is the position with the tables at their zeros. Both positions are in machine coordinates
+        in mm.
         """
         turn, shift = self._table_transform(self.zero_angles)
         return apply_matrix(transpose_matrix(turn), subtract_vectors(point, shift))
 
     def move_to_table_zeros(self, point: Vector) -> Vector:
-        """Return a workpiece point moved with the tables from 0 to their zeros, in machine mm."""
+        """Return the position of a workpiece point after the tables have moved from 0 to their zeros.
+
+        Both positions are in machine coordinates in mm.
+        """
         turn, shift = self._table_transform(self.zero_angles)
         return add_vectors(apply_matrix(turn, point), shift)
 
@@ -174,7 +183,7 @@ class Kinematics:
 
     @property
     def axis_names(self) -> tuple[str, ...]:
-        """The names of all axes in the machine's order."""
+        """Return the names of all axes in the machine's order."""
         return self.axis_order or (*(s.name for s in self.linear_axes), *(r.name for r in self.rotary_axes))
 
     def find_rotary_axis(self, name: str) -> RotaryAxis | None:
@@ -182,7 +191,10 @@ class Kinematics:
         return next((axis for axis in self.rotary_axes if axis.name == name), None)
 
     def tool_frame(self, angles: Mapping[str, float]) -> Matrix:
-        """Return the tool's frame as seen from the workpiece at the given angles by name (default 0)."""
+        """Return the tool's frame as seen from the workpiece at the given angles.
+
+        ``angles`` contains angles by axis name; the angle of a missing axis is 0.
+        """
         return multiply_matrices(
             *(rotation_about(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotary_axes)
         )
@@ -196,7 +208,7 @@ class Kinematics:
     ) -> FrameTransform:
         """Return the transformation from points of a system to positions of the linear axes.
 
-        The system has the axes ``frame`` and the origin ``datum`` (mm). Both are given in the
+        The system has the axes ``frame`` and the origin ``datum`` (mm). Both are specified in the
         machine-parallel system at the workpiece zero, without tilt. The transformation is valid for these
         angles and this tool length.
         """
@@ -217,7 +229,7 @@ class Kinematics:
     def tip_position(
         self, angles: Mapping[str, float], positions: Vector, tool_length: float = 0.0
     ) -> Vector:
-        """Return the machine position of the tip in mm for positions of the linear axes."""
+        """Return the machine position of the tool tip in mm for the given positions of the linear axes."""
         return add_vectors(positions, self._nose_to_tip(angles, tool_length))
 
     @property
@@ -225,7 +237,7 @@ class Kinematics:
         return [axis for axis in self.rotary_axes if not axis.is_table]
 
     def _table_transform(self, angles: Mapping[str, float]) -> tuple[Matrix, Vector]:
-        """Return rotation and shift that move a point with the tables from 0 to these angles."""
+        """Return the rotation and the shift of a point when the tables move from 0 to these angles."""
         turn, shift = IDENTITY, (0.0, 0.0, 0.0)
         for axis in self.rotary_axes:
             if axis.is_table:
@@ -235,7 +247,10 @@ class Kinematics:
         return turn, shift
 
     def _nose_to_tip(self, angles: Mapping[str, float], tool_length: float) -> Vector:
-        """Return the vector from the spindle nose with the heads at 0 to the tip, in machine mm."""
+        """Return the vector from the spindle nose to the tip in machine coordinates, in mm.
+
+        The vector starts at the spindle nose with the heads at 0.
+        """
         tip = scale_vector(Z_AXIS, -tool_length)
         for axis in reversed(self._heads):
             turn = rotation_about(axis.direction, angles.get(axis.name, 0.0))
@@ -248,11 +263,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class PivotMove:
-    """A move of the rotary axes from the angles ``start`` to ``end_angles`` around a fixed point.
+    """A move of the rotary axes from ``start_angles`` to ``end_angles`` around a fixed point.
 
     ``pivot`` is the fixed point in mm, in the machine-parallel system at the workpiece zero. It is
-    ``pivot_distance`` mm below the tip along the tool. ``length`` is in degrees. With ``pivot_end``, the
-    point moves there in a straight line, and ``length`` is in mm.
+    ``pivot_distance`` mm below the tip along the tool. ``length`` is in degrees. If ``pivot_end`` is not
+    None, the point moves there in a straight line, and ``length`` is in mm.
     """
 
     kinematics: Kinematics
@@ -266,16 +281,19 @@ class PivotMove:
 
     @property
     def is_feed_in_degrees(self) -> bool:
-        """True if the feed is in degrees because the pivot is fixed."""
+        """Return whether the feed is in degrees, which applies if the pivot is fixed."""
         return self.pivot_end is None
 
     @property
     def is_straight(self) -> bool:
-        """Always False, because linear axes and angles are not proportional."""
+        """Return False, because linear axes and angles are not proportional."""
         return False
 
     def machine_positions(self, fractions: FloatArray) -> FloatArray:
-        """Return machine positions (k, axes), in the machine's order, at fractions (k,) of the move."""
+        """Return the machine positions (k, axes) at fractions (k,) of the move.
+
+        The columns are in the machine's axis order.
+        """
         at: dict[str, FloatArray] = {
             name: start + fractions * (self.end_angles[name] - start)
             for name, start in self.start_angles.items()
@@ -289,14 +307,14 @@ class PivotMove:
         return rows
 
     def end_positions(self) -> dict[str, float]:
-        """Return the machine positions of all axes at the end, by name."""
+        """Return the machine positions of all axes at the end of the move, by axis name."""
         there = dict(
             zip(self.kinematics.axis_names, self.machine_positions(np.ones(1))[0].tolist(), strict=True)
         )
         return {**there, **self.end_angles}
 
     def workpiece_points(self, positions: FloatArray) -> FloatArray:
-        """Return the tip on the workpiece (k, 3) in mm at machine positions (k, axes)."""
+        """Return the positions of the tip on the workpiece (k, 3) in mm for machine positions (k, axes)."""
         at = dict(zip(self.kinematics.axis_names, positions.T, strict=True))
         spots: FloatArray = np.stack([at[name] for name in "XYZ"], axis=1)
         spots = spots + _noses_to_tips(self.kinematics, at, self.tool_length)
@@ -314,7 +332,7 @@ class PivotMove:
 def _rotate_with_tables(
     machine: Kinematics, angles: Mapping[str, FloatArray], points: FloatArray
 ) -> FloatArray:
-    """Return points (k, 3) in mm moved by the tables from 0 to these angles (k,)."""
+    """Return points (k, 3) in mm after the tables have moved from 0 to these angles (k,)."""
     for axis in machine.rotary_axes:
         if axis.is_table:
             points = _rotate_about_axis(axis, -angles[axis.name], points)
@@ -322,9 +340,9 @@ def _rotate_with_tables(
 
 
 def _noses_to_tips(machine: Kinematics, angles: Mapping[str, FloatArray], tool_length: float) -> FloatArray:
-    """Return vectors from the spindle nose at 0 to the tip with the heads at these angles (k,), in mm.
+    """Return the vectors from the spindle nose at 0 to the tip with the heads at these angles (k,), in mm.
 
-    The result has the shape (k, 3), or one row without heads.
+    The result has the shape (k, 3), or one row if there are no heads.
     """
     tips: FloatArray = np.array([[0.0, 0.0, -tool_length]])
     for axis in reversed(machine.rotary_axes):
@@ -348,7 +366,7 @@ def _rotate_about_axis(axis: RotaryAxis, degrees: FloatArray, points: FloatArray
 
 @lru_cache(maxsize=64)
 def _rotation_terms(axis: RotaryAxis) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return a point of the axis, the projection onto its direction, and the cross-product matrix."""
+    """Return a point of the axis, the projection onto the axis direction, and the cross-product matrix."""
     x, y, z = axis.direction
     aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
     return np.array(axis.point), np.outer(axis.direction, axis.direction), aside

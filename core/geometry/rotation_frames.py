@@ -1,6 +1,6 @@
-"""Frames of tilted working planes: rotations, vector operations, and the plane through three points.
+"""Frames of tilted working planes, with rotations, vector operations, and the plane through three points.
 
-A frame is a rotation matrix by rows. Its columns are the axes X' Y' Z' of the working plane in the
+A frame is a rotation matrix, stored by rows. Its columns are the axes X' Y' Z' of the working plane in the
 surrounding system. Angles are in degrees.
 """
 
@@ -25,11 +25,11 @@ _QUARTERS = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))
 
 
 class InvalidFrameError(CodedError, ValueError):
-    """Raised when values do not define a plane. ``str()`` gives the reason."""
+    """An error raised if values do not define a plane. ``str()`` returns the reason."""
 
 
 def exact_cos_sin(degrees: float) -> tuple[float, float]:
-    """Return cosine and sine, exact at multiples of 90 degrees.
+    """Return the cosine and the sine of an angle, exact at multiples of 90 degrees.
 
     Without exact values, a table at 90 degrees would be tilted by 6e-17.
     """
@@ -77,7 +77,7 @@ def transpose_matrix(m: Matrix) -> Matrix:
 
 
 def multiply_matrices(*factors: Matrix) -> Matrix:
-    """Return the matrix product from left to right; the identity without factors."""
+    """Return the product of matrices from left to right, or the identity if there are no factors."""
     made = IDENTITY
     for factor in factors:
         columns = transpose_matrix(factor)
@@ -90,7 +90,7 @@ def multiply_matrices(*factors: Matrix) -> Matrix:
 
 
 def rotation_about(axis: Vector, degrees: float) -> Matrix:
-    """Return the right-handed rotation about a unit vector by an angle (Rodrigues' formula)."""
+    """Return the matrix of a right-handed rotation about a unit vector by an angle (Rodrigues' formula)."""
     x, y, z = axis
     c, s = exact_cos_sin(degrees)
     d = 1.0 - c
@@ -102,9 +102,10 @@ def rotation_about(axis: Vector, degrees: float) -> Matrix:
 
 
 def frame_from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
-    """Return the frame with X' from the first point to the second and the third on the side of +Y'.
+    """Return the frame defined by three points.
 
-    Only directions matter. Raises NoFrameError if two points are equal or all three are on one line.
+    X' points from the first to the second point, and the third point is on the side of +Y'. Only the
+    directions matter. Raises InvalidFrameError if two points are equal or all three points are on one line.
     """
     u, v = subtract_vectors(p2, p1), subtract_vectors(p3, p1)
     along, aside = math.hypot(*u), math.hypot(*v)
@@ -122,21 +123,21 @@ def frame_from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
 
 
 def frame_from_spatial_angles(a: float, b: float, c: float) -> Matrix:
-    """Return the rotation by ``a`` about X, then ``b`` about Y, then ``c`` about Z, with fixed axes."""
+    """Return the rotation by ``a`` about X, then by ``b`` about Y, then by ``c`` about Z, with fixed axes."""
     return multiply_matrices(rotation_about(Z_AXIS, c), rotation_about(Y_AXIS, b), rotation_about(X_AXIS, a))
 
 
 def frame_from_euler_angles(precession: float, nutation: float, rotation: float) -> Matrix:
-    """Return the rotation about Z, then about the rotated X', then about the tilted Z'."""
+    """Return the rotation by Euler angles: about Z, then about the rotated X', then about the tilted Z'."""
     return multiply_matrices(
         rotation_about(Z_AXIS, precession), rotation_about(X_AXIS, nutation), rotation_about(Z_AXIS, rotation)
     )
 
 
 def frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
-    """Return the frame with Z' along ``normal`` and X' along the component of ``base`` square to it.
+    """Return the frame with Z' along ``normal`` and X' along the component of ``base`` perpendicular to it.
 
-    Raises NoFrameError if a vector has no length or the vectors are parallel.
+    Raises InvalidFrameError if a vector has no length or if the vectors are parallel.
     """
     long, wide = math.hypot(*normal), math.hypot(*base)
     if long < MIN_DISTANCE_MM or wide < MIN_DISTANCE_MM:
@@ -151,10 +152,10 @@ def frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
 
 
 def frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
-    """Return the plane that has the angle ``first`` in Z X and ``second`` in Y Z.
+    """Return the frame of the plane whose projections have the angle ``first`` in ZX and ``second`` in YZ.
 
-    X' is in the plane Z X before the plane is rotated by ``rotation`` about Z'. Angles are measured upward
-    from X and from Y. Raises NoFrameError at 90 degrees.
+    X' is in the plane ZX before the frame is rotated by ``rotation`` about Z'. Angles are measured upward
+    from X and from Y. Raises InvalidFrameError at 90 degrees.
     """
     (c1, s1), (c2, s2) = exact_cos_sin(first), exact_cos_sin(second)
     if min(abs(c1), abs(c2)) < MIN_SINE:

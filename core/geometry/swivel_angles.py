@@ -1,9 +1,9 @@
 """Angles of the rotary axes for the frame of a working plane, and the choice between two solutions.
 
-The machine is right-angled: every rotary axis is parallel to X, Y or Z at 0, and the axis next to the tool
-that tilts it is square to the tool. Angles are in degrees. The two solutions follow from Rot(a1, t1) Rot(a2,
-t2) z = n (the second subproblem of Paden and Kahan). Only atan2 is used, because acos loses half of the
-digits if the tool is nearly parallel to a1.
+The machine is right-angled: every rotary axis is parallel to X, Y or Z at 0, and the tilting axis next to
+the tool is perpendicular to the tool. Angles are in degrees. The two solutions follow from Rot(a1, t1)
+Rot(a2, t2) z = n (the second subproblem of Paden and Kahan). Only atan2 is used, because acos loses half of
+the digits if the tool is nearly parallel to a1.
 """
 
 from __future__ import annotations
@@ -35,7 +35,9 @@ TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count
 
 
 class SolutionSide(StrEnum):
-    """The requested side of the symmetry point (SYM) or basic position (SEQ) of the primary axis."""
+    """The requested side of the primary axis, relative to its symmetry point (SYM) or basic
+    position (SEQ).
+    """
 
     SYM_PLUS = "SYM+"
     SYM_MINUS = "SYM-"
@@ -45,10 +47,11 @@ class SolutionSide(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class SwivelSolution:
-    """Angles by axis name. ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis.
+    """Angles of the rotary axes, by axis name, that orient the tool.
 
-    ``symmetry_angle`` is the angle of the primary axis from its symmetry point, and ``primary_angle`` from
-    its basic position 0.
+    ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis. ``symmetry_angle`` is
+    the angle of the primary axis from its symmetry point, and ``primary_angle`` is its angle from the basic
+    position 0.
     """
 
     axis_angles: Mapping[str, float]
@@ -57,7 +60,10 @@ class SwivelSolution:
     primary_angle: float = 0.0
 
     def is_on_side(self, side: SolutionSide | None) -> bool:
-        """Return whether the solution is on this side. The point itself is on both sides."""
+        """Return whether the solution is on this side.
+
+        The symmetry point or basic position itself is on both sides.
+        """
         if side is None:
             return True
         angle = (
@@ -75,10 +81,11 @@ class SwivelSolution:
 def find_all_solutions(
     machine: Kinematics, frame: Matrix, *, rotates_table: bool = False
 ) -> list[SwivelSolution]:
-    """Return all solutions square to ``frame`` (in the machine-parallel system), without axis ranges.
+    """Return all solutions with the tool perpendicular to ``frame``, without regard to the axis ranges.
 
-    If the first axis of the chain is parallel to the tool, it is free and goes to its zero. With
-    ``rotates_table`` it goes to the angle that leaves no rotation about the tool.
+    ``frame`` is in the machine-parallel system. If the first axis of the chain is parallel to the tool, its
+    angle is free, and it moves to its zero. If ``rotates_table`` is True, it moves to the angle at which no
+    rotation about the tool remains.
     """
     normal = apply_matrix(frame, Z_AXIS)
     found: list[SwivelSolution] = []
@@ -108,10 +115,11 @@ def choose_solution(
     *,
     rotates_table: bool = False,
 ) -> SwivelSolution | None:
-    """Return the solution on ``side`` within the axis ranges that has the shortest travel from ``present``.
+    """Return the solution with the shortest travel from ``present_angles``, or None.
 
-    The travel is the sum over all axes. If two travels differ by less than TIE, the positive side is
-    selected. Returns None if no solution is possible.
+    The result is None if no solution is possible. The solution is on ``side`` and within the axis ranges.
+    The travel is the sum over all axes. If two travels differ by less than TRAVEL_TOLERANCE_DEG, the
+    solution on the positive side is selected.
     """
     best: SwivelSolution | None = None
     for made in find_reachable_solutions(machine, frame, present_angles, side, rotates_table=rotates_table):
@@ -132,7 +140,7 @@ def find_reachable_solutions(
     *,
     rotates_table: bool = False,
 ) -> list[SwivelSolution]:
-    """Return the solutions on ``side`` within the axis ranges, the positive side first."""
+    """Return the solutions on ``side`` within the axis ranges, with the positive side first."""
     near = [
         _choose_nearest_turn(machine, made, present_angles)
         for made in find_all_solutions(machine, frame, rotates_table=rotates_table)
@@ -142,7 +150,10 @@ def find_reachable_solutions(
 
 
 def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
-    """Yield angles that bring the tool to ``normal``, with the primary angle from symmetry and from 0."""
+    """Yield axis angles that orient the tool along ``normal``.
+
+    Each result also contains the angle of the primary axis from its symmetry point and from 0.
+    """
     angles = dict(machine.zero_angles)
     tilting = list(machine.rotary_axes)
     while tilting and math.hypot(*cross_product(tilting[-1].direction, Z_AXIS)) < REACHED_TOLERANCE:
@@ -165,9 +176,10 @@ def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dic
 
 
 def _iter_second_angles(a1: Vector, a2: Vector, normal: Vector) -> Iterator[tuple[float, float]]:
-    """Yield both angles of the axis next to the tool, the greater first, with the offset from their mean.
+    """Yield both angles of the axis next to the tool, each with its offset from their mean.
 
-    The mean uses the displayed angles from -180 to 180, for either direction of the other axis.
+    The larger angle is first. The mean is calculated from the displayed angles from -180 to 180, for either
+    direction of the other axis.
     """
     middle = math.degrees(math.atan2(dot_product(a1, cross_product(a2, Z_AXIS)), dot_product(a1, Z_AXIS)))
     away = math.degrees(math.atan2(math.hypot(*cross_product(a1, normal)), dot_product(a1, normal)))
@@ -184,7 +196,7 @@ def _angle_about(axis: Vector, start: Vector, end: Vector) -> float:
 
 
 def _wrap_angle(angle: float) -> float:
-    """Return the angle in the range (-180, 180]."""
+    """Return the equivalent angle in the range (-180, 180]."""
     return angle - FULL_TURN_DEG * math.ceil((angle - FULL_TURN_DEG / 2.0) / FULL_TURN_DEG)
 
 
@@ -198,9 +210,9 @@ def _same(machine: Kinematics, one: SwivelSolution, other: SwivelSolution) -> bo
 def _choose_nearest_turn(
     machine: Kinematics, solution: SwivelSolution, present_angles: Mapping[str, float]
 ) -> SwivelSolution | None:
-    """Return the solution with each limited axis at the turn closest to its present angle.
+    """Return the solution with each limited axis at the revolution nearest to its present angle.
 
-    Returns None if an axis is out of range.
+    The result is None if an axis is out of range.
     """
     angles = {}
     for axis in machine.rotary_axes:

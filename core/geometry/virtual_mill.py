@@ -1,8 +1,8 @@
 """Plane switching: lines and arcs of a virtual mill, and the lathe positions X, Z and C along them.
 
 XC mills on the face of the part. ZC mills on its side, unrolled at a diameter. The live tool is on the
-negative X side of the lathe, or on the positive side if ``far`` is True. For a tool that looks at the part
-from there, mill X points to the right and Y up.
+negative X side of the lathe, or on the positive side if ``is_far_side`` is True. As seen from the tool,
+mill X points to the right and mill Y points up.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class FacePlane:
-    """The face plane XC. ``c0`` (degrees) is C at the entry, ``tool_height_mm`` (mm) the tool's height above
-    the axis.
+    """The face plane XC.
 
-    A point (X, Y) of the part at the distance rho from the axis is under the tool if X is at -sqrt(rho² -
-    h²), or at the positive value on the far side, and C has rotated the point there.
+    ``c_start_deg`` is C at the entry in degrees, and ``tool_height_mm`` is the height h of the tool above
+    the axis in mm. A point (X, Y) of the part at the distance rho from the axis is under the tool if X is
+    at -sqrt(rho² - h²), or at the positive value on the far side, and if C has rotated the point there.
     """
 
     c_start_deg: float
@@ -33,14 +33,14 @@ class FacePlane:
 
     @property
     def heading_deg(self) -> float:
-        """The angle on the part at which mill X points, in degrees from the negative X side at C0."""
+        """Return the angle on the part to which mill X points, in degrees from the negative X side at C0."""
         return _heading(self.c_start_deg, far=self.is_far_side)
 
     def to_lathe(self, points: FloatArray, theta: FloatArray) -> FloatArray:
-        """Return lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), in mm and degrees.
+        """Convert mill points X, Y, Z (n, 3) to lathe X (radius), Z, C (n, 3), in mm and degrees.
 
-        ``theta`` (n,) is the continuous polar angle of the points in radians. A point closer to the axis than
-        |h| cannot be reached and is treated as if it were at |h|.
+        ``theta`` (n,) is the continuous polar angle of the points in radians. A point closer to the axis
+        than |h|, the tool height, cannot be reached and is treated as if it were at |h|.
         """
         rho = np.hypot(points[:, 0], points[:, 1])
         x = np.sqrt(np.maximum((rho - self.tool_height_mm) * (rho + self.tool_height_mm), 0.0))
@@ -52,7 +52,7 @@ class FacePlane:
         )
 
     def to_mill(self, machine: FloatArray) -> FloatArray:
-        """Return the mill points X, Y, Z (n, 3) under the tool at lathe X, Z, C (n, 3)."""
+        """Convert lathe X, Z, C (n, 3) to the mill points X, Y, Z (n, 3) under the tool."""
         x = machine[:, 0] if self.is_far_side else -machine[:, 0]
         rho = np.hypot(x, self.tool_height_mm)
         theta = np.arctan2(self.tool_height_mm, x) - np.radians(machine[:, 2] - self.c_start_deg)
@@ -63,8 +63,8 @@ class FacePlane:
 class SidePlane:
     """The side plane ZC, unrolled at ``diameter``.
 
-    ``c0`` (degrees) and ``z_start_mm`` (mm) are C and lathe Z of X0 Y0. Mill X points toward the spindle, Y
-    is measured at ``diameter``, and Z is the radius of the tip. Lengths are in mm.
+    ``c_start_deg`` (degrees) and ``z_start_mm`` (mm) are C and lathe Z at X0 Y0. Mill X points toward the
+    spindle, Y is measured at ``diameter``, and Z is the radius of the tip. Lengths are in mm.
     """
 
     c_start_deg: float
@@ -73,13 +73,13 @@ class SidePlane:
     is_far_side: bool = False
 
     def to_lathe(self, points: FloatArray) -> FloatArray:
-        """Return lathe X (radius), Z, C (n, 3) of mill points X, Y, Z (n, 3), with mill Z as a radius."""
+        """Convert mill points X, Y, Z (n, 3) to lathe X (radius), Z, C (n, 3). Mill Z is a radius."""
         x, y, z = points.T
         c = self.c_start_deg - y * (360.0 / (math.pi * self.diameter))
         return np.column_stack([z if self.is_far_side else -z, self.z_start_mm - x, c])
 
     def to_mill(self, machine: FloatArray) -> FloatArray:
-        """Return mill points X, Y, Z (n, 3), with Z as a radius, of lathe X, Z, C (n, 3)."""
+        """Convert lathe X, Z, C (n, 3) to mill points X, Y, Z (n, 3). Mill Z is a radius."""
         x, z, c = machine.T
         up = x if self.is_far_side else -x
         return np.column_stack(
@@ -99,11 +99,11 @@ _SAMPLES = 721  # points of an arc at which its extent is sampled: 0.5 degree of
 
 @dataclass(frozen=True, slots=True)
 class PlaneMove:
-    """A straight line, or with ``center`` an arc, in the mill's frame, with X, Y, Z in mm.
+    """A straight line or, with ``center``, an arc in the mill's frame, with X, Y and Z in mm.
 
-    On the side of the part, Z is a radius. ``theta`` is the continuous polar angle of the start in radians,
-    so that C never jumps by a revolution. It matters only on the face. If the start is the center, it is the
-    direction of departure. The end of an arc is within the control's tolerance of its circle.
+    On the side of the part, Z is a radius. ``start_angle`` is the continuous polar angle of the start in
+    radians, so that C never jumps by a revolution. It is used only on the face. If the start is the center,
+    it is the direction of departure. The end of an arc is within the control's tolerance of its circle.
     """
 
     frame: FacePlane | SidePlane
@@ -115,7 +115,7 @@ class PlaneMove:
 
     @property
     def length(self) -> float:
-        """Length of the mill's path, in mm."""
+        """Return the length of the mill's path, in mm."""
         if self.center is None:
             return math.dist(self.start, self.end)
         _, sweep = self._start_and_sweep()
@@ -123,26 +123,26 @@ class PlaneMove:
 
     @property
     def is_feed_in_degrees(self) -> bool:
-        """Always False, because the feed is in mm."""
+        """Return False, because the feed is in mm."""
         return False
 
     @property
     def radius(self) -> float:
-        """Radius of the arc in mm, or 0 for a line."""
+        """Return the radius of the arc in mm, or 0 for a line."""
         return 0.0 if self.center is None else math.dist(self.start[:2], self._adjusted_center())
 
     @property
     def is_on_side_plane(self) -> bool:
-        """True if the mill machines the side of the part."""
+        """Return whether the move machines the side of the part."""
         return isinstance(self.frame, SidePlane)
 
     @property
     def is_straight(self) -> bool:
-        """True if the lathe axes move proportionally."""
+        """Return whether the lathe axes move proportionally."""
         return self.center is None and isinstance(self.frame, SidePlane)
 
     def mill_points(self, fractions: FloatArray) -> FloatArray:
-        """Return mill points (n, 3) at fractions of the path (n,)."""
+        """Return the mill points (n, 3) at fractions (n,) of the path."""
         start, end = np.array(self.start), np.array(self.end)
         points = np.asarray(start + fractions[:, None] * (end - start), dtype=np.float64)
         if self.center is not None:
@@ -153,18 +153,21 @@ class PlaneMove:
         return points
 
     def machine_positions(self, fractions: FloatArray) -> FloatArray:
-        """Return lathe X (radius), Z, C (n, 3) at fractions of the path (n,), with continuous C."""
+        """Return lathe X (radius), Z, C (n, 3) at fractions (n,) of the path, with continuous C."""
         points = self.mill_points(fractions)
         if isinstance(self.frame, SidePlane):
             return self.frame.to_lathe(points)
         return self.frame.to_lathe(points, self.polar_angles(points, fractions))
 
     def workpiece_points(self, positions: FloatArray) -> FloatArray:
-        """Return mill points (n, 3) of lathe X, Z, C (n, 3)."""
+        """Convert lathe X, Z, C (n, 3) to mill points (n, 3)."""
         return self.frame.to_mill(positions)
 
     def polar_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
-        """Return continuous polar angles (n,) of ``points`` of this path, from ``theta`` on, in radians."""
+        """Return the continuous polar angles (n,) of ``points`` on this path in radians.
+
+        The angles start at ``start_angle``.
+        """
         if self.center is None:
             x0, y0, _ = self.start if math.hypot(*self.start[:2]) > AXIS_TOLERANCE_MM else self.end
             at_centre = np.hypot(points[:, 0], points[:, 1]) <= AXIS_TOLERANCE_MM
@@ -177,7 +180,10 @@ class PlaneMove:
         return wound
 
     def split_at_axis(self) -> list[PlaneMove]:
-        """Return the move, divided in two if it passes through the axis, where C must turn in between."""
+        """Return the move as a list, divided into two moves if it passes through the axis.
+
+        C must turn between the two moves.
+        """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
         share = self.critical_fraction()
@@ -224,7 +230,7 @@ class PlaneMove:
         return math.hypot(x, y)
 
     def find_travel_range(self) -> tuple[FloatArray, FloatArray]:
-        """Return the least and greatest lathe X, Z, C (3,) along the path."""
+        """Return the minimum and the maximum of lathe X, Z, C (3,) along the path."""
         count = 2 if self.is_straight else _SAMPLES
         table = self.machine_positions(np.append(np.linspace(0.0, 1.0, count), self.critical_fraction()))
         return table.min(axis=0), table.max(axis=0)
@@ -232,7 +238,8 @@ class PlaneMove:
     def _fraction_at_angle(self, angle: float) -> float:
         """Return the fraction of the arc at this angle around its center.
 
-        If the arc does not contain the angle, the end closer to the axis is returned.
+        If the arc does not contain the angle, the fraction of the end that is closer to the axis is
+        returned.
         """
         first, sweep = self._start_and_sweep()
         turn = 2.0 * math.pi
@@ -243,7 +250,10 @@ class PlaneMove:
         return 0.0 if self.distance_from_axis(0.0) <= self.distance_from_axis(1.0) else 1.0
 
     def _adjusted_center(self) -> tuple[float, float]:
-        """Return the center moved to the bisector of the chord, so that the arc meets its end exactly."""
+        """Return the center, moved to the perpendicular bisector of the chord.
+
+        The arc then meets its end exactly.
+        """
         assert self.center is not None
         (x0, y0, _), (x1, y1, _), (cx, cy) = self.start, self.end, self.center
         dx, dy = x1 - x0, y1 - y0
@@ -254,17 +264,21 @@ class PlaneMove:
         return cx - off * dx, cy - off * dy
 
     def _start_and_sweep(self) -> tuple[float, float]:
-        """Return the start angle, from X toward Y, and the signed sweep in radians; clockwise is negative."""
+        """Return the start angle, from X toward Y, and the signed sweep, in radians.
+
+        A clockwise sweep is negative.
+        """
         cx, cy = self._adjusted_center()
         (x0, y0, _), (x1, y1, _) = self.start, self.end
         # With Y up, the angle from X toward Y is counterclockwise.
         return arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
 
     def _continuous_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
-        """Return polar angles (n,) of points of the arc, continuous along it except for a constant.
+        """Return the polar angles (n,) of points on the arc, except for a constant.
 
-        If the axis is inside the circle, the result is the angle around the center of the arc plus less than
-        90 degrees. Otherwise it is the direction of the center plus less than 90 degrees.
+        The angles are continuous along the arc. If the axis is inside the circle, each result differs by
+        less than 90 degrees from the angle around the center of the arc. Otherwise it differs by less than
+        90 degrees from the direction of the center.
         """
         cx, cy = self._adjusted_center()
         first, sweep = self._start_and_sweep()

@@ -1,7 +1,7 @@
 """Arcs, helices, mirroring and scaling in a mill's working plane, and the motion of all axes in a block.
 
-A point of the program is scaled, then mirrored, then rotated about the tool axis, in any order of
-programming.
+A point of the program is scaled, then mirrored, then rotated about the tool axis, in whatever order these
+functions are programmed.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ _SAMPLES = 65
 
 
 def to_plane_order(order: AxisOrder, point: Vector) -> Vector:
-    """Return a point X Y Z in the order of the axes of a plane."""
+    """Convert a point from the order X Y Z to the axis order of a plane."""
     return point[order[0]], point[order[1]], point[order[2]]
 
 
 def from_plane_order(order: AxisOrder, point: Vector) -> Vector:
-    """Return a point given in the order of the axes of a plane as X Y Z."""
+    """Convert a point from the axis order of a plane to the order X Y Z."""
     at = [0.0, 0.0, 0.0]
     for column, value in zip(order, point, strict=True):
         at[column] = value
@@ -42,7 +42,7 @@ def from_plane_order(order: AxisOrder, point: Vector) -> Vector:
 
 @dataclass(frozen=True, slots=True)
 class ProgramTransform:
-    """Mirrored axes, rotation about Z in degrees, and scale factor."""
+    """Transformation of program coordinates: mirrored axes, rotation about Z in degrees, and scale factor."""
 
     mirrored_axes: str = ""
     rotation_deg: float = 0.0
@@ -50,36 +50,39 @@ class ProgramTransform:
 
     @property
     def is_identity(self) -> bool:
-        """True if the program's coordinates are those of the plane."""
+        """Return whether the program's coordinates are the same as those of the plane."""
         return self == _IDENTITY_TRANSFORM
 
     @property
     def reverses_arcs(self) -> bool:
-        """True if arcs change their direction because either X or Y is mirrored."""
+        """Return whether arcs change their direction because only one of X and Y is mirrored."""
         return ("X" in self.mirrored_axes) != ("Y" in self.mirrored_axes)
 
     def to_plane(self, point: Vector) -> Vector:
-        """Return the point of the plane for a point of the program."""
+        """Convert a point of the program to the point of the plane."""
         x, y, z = (at * self._sign(axis) * self.scale_factor for axis, at in zip("XYZ", point, strict=True))
         c, s = exact_cos_sin(self.rotation_deg)
         return c * x - s * y, s * x + c * y, z
 
     def to_program(self, point: Vector) -> Vector:
-        """Return the point of the program for a point of the plane."""
+        """Convert a point of the plane to the point of the program."""
         c, s = exact_cos_sin(self.rotation_deg)
         turned = c * point[0] + s * point[1], -s * point[0] + c * point[1], point[2]
         x, y, z = (at * self._sign(axis) / self.scale_factor for axis, at in zip("XYZ", turned, strict=True))
         return x, y, z
 
     def transform_arc(self, arc: Arc) -> Arc:
-        """Return the arc of the plane for an arc of the program."""
+        """Convert an arc of the program to the arc of the plane."""
         if self.is_identity:
             return arc
         start, end, centre = (self._flat(at) for at in (arc.start, arc.end, arc.center))
         return Arc(start, end, centre, arc.clockwise != self.reverses_arcs)
 
     def transform_upright_arc(self, arc: Arc, order: AxisOrder) -> tuple[Arc, Matrix]:
-        """Return an arc in another plane of the program, and its axis directions (rows of a matrix)."""
+        """Return the scaled arc of another plane of the program, and its axis directions.
+
+        The directions are the rows of a matrix.
+        """
         start, end, centre = (
             (at[0] * self.scale_factor, at[1] * self.scale_factor) for at in (arc.start, arc.end, arc.center)
         )
@@ -102,12 +105,13 @@ _IDENTITY_TRANSFORM = ProgramTransform()
 
 @dataclass(frozen=True, slots=True)
 class HelixMove:
-    """A helix: ``arc`` in X Y of the system of ``transform``, while Z moves from ``z_start`` to ``z_end``.
+    """A helix in the system of a working plane.
 
-    ``base_position`` are the machine positions of all axes in the machine's order; X, Y and Z, at
-    ``xyz_columns``, are replaced. Units are mm and degrees. For an upright arc, ``frame`` (rows) contains
-    the directions of the two axes of its plane and of the third axis. X Y Z of the arc then refer to these
-    directions.
+    ``arc`` is in X and Y of the system of ``transform``, while Z moves from ``z_start`` to ``z_end``.
+    ``base_position`` contains the machine positions of all axes in the machine's order; X, Y and Z, at
+    ``xyz_columns``, are replaced. Units are mm and degrees. For an upright arc, ``frame`` (by rows)
+    contains the directions of the two axes of its plane and of the third axis. X, Y and Z of the arc then
+    refer to these directions.
     """
 
     transform: FrameTransform
@@ -120,21 +124,24 @@ class HelixMove:
 
     @property
     def length(self) -> float:
-        """Length of the path, in mm."""
+        """Return the length of the path, in mm."""
         return math.hypot(self.arc.length, self.z_end - self.z_start)
 
     @property
     def is_feed_in_degrees(self) -> bool:
-        """Always False, because the feed is in mm."""
+        """Return False, because the feed is in mm."""
         return False
 
     @property
     def is_straight(self) -> bool:
-        """Always False, because the linear axes do not move proportionally."""
+        """Return False, because the linear axes do not move proportionally."""
         return False
 
     def machine_positions(self, fractions: FloatArray) -> FloatArray:
-        """Return machine positions (k, axes), in the machine's order, at fractions (k,) of the move."""
+        """Return the machine positions (k, axes) at fractions (k,) of the move.
+
+        The columns are in the machine's axis order.
+        """
         (cx, cy), (x0, y0), radius = self.arc.center, self.arc.start, self.arc.radius
         # A positive sweep is clockwise, seen with X to the right and Y up.
         angle = math.atan2(y0 - cy, x0 - cx) - self.arc.sweep * fractions
@@ -146,7 +153,7 @@ class HelixMove:
         return rows
 
     def workpiece_points(self, positions: FloatArray) -> FloatArray:
-        """Return points (k, 3) of the working plane's system at machine positions (k, axes)."""
+        """Return the points (k, 3) in the system of the working plane for machine positions (k, axes)."""
         spots: FloatArray = (
             positions[:, self.xyz_columns] - np.array(self.transform.translation)
         ) @ np.array(self.transform.rotation)
@@ -171,9 +178,10 @@ turn most for the way.
 class AxisMove:
     """A move from ``start`` to ``end``, which are machine positions of all axes in the machine's order.
 
-    Linear axes come first, in mm. Rotary axes are in degrees and continuous. ``length`` is the length for the
-    feed: in mm, or in degrees if only rotary axes turn. ``way`` is given if the axes do not move
-    proportionally, and has the same length. ``slides`` is True if a linear axis is programmed to move.
+    Linear axes are first, in mm. Rotary axes are in degrees and continuous. ``length`` is the length to
+    which the feed applies, in mm, or in degrees if only rotary axes turn. ``way`` is the curved move if the
+    axes do not move proportionally; it has the same length. ``slides`` is True if a linear axis is
+    programmed to move.
     """
 
     start: tuple[float, ...]
@@ -183,7 +191,10 @@ class AxisMove:
     slides: bool = True
 
     def reach(self) -> tuple[FloatArray, FloatArray]:
-        """Return the least and greatest position of each axis (axes,); for straight moves, only the end."""
+        """Return the minimum and the maximum position of each axis (axes,).
+
+        For straight moves, only the end is returned.
+        """
         if self.way is None:
             return np.array(self.end), np.array(self.end)
         points = self.way.machine_positions(np.linspace(0.0, 1.0, _SAMPLES))

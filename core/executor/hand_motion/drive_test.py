@@ -1,11 +1,11 @@
-"""Drive test: one axis performs a step, a ramp or a sine while its lease is renewed, as in a jog.
+"""Drive test: one axis performs a step, a ramp or a sine while the test's lease is renewed, as in a jog.
 
-The queued setpoints always end in the stop of an expired lease. The full excursion must be within the travel
-before the axis moves. Nothing is written to a drive.
+The queued setpoints always end with the stop that follows an expired lease. The full excursion must be
+within the travel before the axis moves. The test does not change any drive parameter.
 
 A setpoint cannot jump, so a step is a move with the full acceleration of the axis over the first half and
-full braking over the second. A sine is s/2·(1 - cos ωt). It starts at rest and stays on one side of the start
-position.
+full braking over the second half. A sine is s/2·(1 - cos ωt). It starts at rest and stays on one side of
+the start position.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ TICK_SAMPLE_RATE_HZ = 100.0  # samples per second if the driver has no samples
 
 
 class Shape(StrEnum):
-    """The shape of the setpoints of a test over time."""
+    """Shape of the setpoints of a test over time."""
 
     STEP = "step"
     RAMP = "ramp"
@@ -51,7 +51,7 @@ class Shape(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """The limits of the axis in a test: speed in mm/s, acceleration in mm/s², and samples per second."""
+    """Limits of the axis in a test: speed in mm/s, acceleration in mm/s², and sample rate in Hz."""
 
     max_speed: float
     max_acceleration: float
@@ -59,7 +59,7 @@ class Limits:
 
     @property
     def max_sine_frequency_hz(self) -> float:
-        """The highest sine frequency in Hz, which gives ten samples per period."""
+        """Return the highest sine frequency in Hz, at which there are ten samples per period."""
         return self.sample_rate_hz / 10.0
 
 
@@ -68,7 +68,7 @@ class DriveTestPath:
     """The motion of a drive test.
 
     ``travel_mm`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in
-    mm/s. ``frequencies`` are those of the sines in Hz.
+    mm/s. ``frequencies`` are the frequencies of the sines in Hz.
     """
 
     axis: str
@@ -78,7 +78,7 @@ class DriveTestPath:
     frequencies: tuple[float, ...] = ()
 
     def find_refusal(self, limits: Limits) -> str:
-        """Return why the values are not valid for a test, or an empty string."""
+        """Return why the values are not permitted for a test, or an empty string."""
         longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_TRAVEL_MM
         if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
             return Message(
@@ -116,13 +116,16 @@ class DriveTestPath:
         return ""
 
     def sine_travel_mm(self, frequency: float, limits: Limits) -> float:
-        """Return the signed peak-to-peak travel in mm of the sine, reduced to what the axis can follow."""
+        """Return the signed peak-to-peak travel of the sine in mm.
+
+        The travel is limited to what the axis can follow.
+        """
         omega = 2.0 * math.pi * frequency
         able = min(2.0 * limits.max_speed / omega, 2.0 * limits.max_acceleration / omega**2)
         return math.copysign(min(abs(self.travel_mm), able), self.travel_mm)
 
     def make_ramps(self, limits: Limits) -> list[Ramp]:
-        """Return the ramps of the test from rest to rest: (seconds, start speed, acceleration)."""
+        """Return the ramps of the test from rest to rest, as (seconds, start speed, acceleration)."""
         if self.shape is Shape.SINE:
             return [piece for each in self.frequencies for piece in self._make_sine(each, limits)]
         top = self.speed if self.shape is Shape.RAMP else limits.max_speed
@@ -133,10 +136,11 @@ class DriveTestPath:
         ]
 
     def _make_sine(self, frequency: float, limits: Limits) -> list[Ramp]:
-        """Return the ramps of one sine, whose velocity is exact at the ends and linear between them.
+        """Return the ramps of one sine.
 
-        The amplitude is smaller than requested by (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the
-        others. The axis returns exactly to its start.
+        The velocity is exact at the ends of each ramp and linear between them. The amplitude is smaller
+        than requested by the fraction (ω dt)²/12: 2 % for the fastest sine and 0.2 % for the others. The
+        axis returns exactly to its start position.
         """
         count = max(_MIN_SINE_PIECES, min(_MAX_SINE_PIECES, int(1.0 / (frequency * _MIN_RAMP_S))))
         waves = max(_WAVES, math.ceil(_LASTS * frequency))
@@ -156,8 +160,8 @@ def total_duration_s(ramps: list[Ramp]) -> float:
 def travel_range(ramps: list[Ramp]) -> tuple[float, float]:
     """Return the lowest and the highest position relative to the start, in mm.
 
-    If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as the
-    ramps do.
+    If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as
+    the ramps do.
     """
     p, low, high = 0.0, 0.0, 0.0
     for dt, v, a in ramps:
@@ -169,7 +173,7 @@ def travel_range(ramps: list[Ramp]) -> tuple[float, float]:
 
 
 def slice_ramps(ramps: list[Ramp], start_s: float, end_s: float) -> list[Ramp]:
-    """Return the part of the ramps between two times in seconds from their start."""
+    """Return the section of the ramps between two times, in seconds from the start of the ramps."""
     found, at = [], 0.0
     for dt, v, a in ramps:
         first, last = max(start_s - at, 0.0), min(end_s - at, dt)
@@ -194,7 +198,7 @@ def find_unsupported_reason(ports: MachinePorts) -> str:
 
 
 class DriveTester:
-    """Runs the drive tests of the executor, one at a time."""
+    """Runner of the executor's drive tests, one at a time."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context, self._jogger = context, jogger
@@ -206,7 +210,7 @@ class DriveTester:
 
     @property
     def state(self) -> DriveTestState:
-        """The state of the drive tests for the snapshot."""
+        """Return the state of the drive tests for the snapshot."""
         jogger = self._jogger
         return DriveTestState(
             find_unsupported_reason(self._context.ports),
@@ -275,7 +279,7 @@ class DriveTester:
         return Limits(self._jogger.max_jog_speed(axis, homed=True), axis.amax, self._rate)
 
     def start_test(self, path: DriveTestPath, lease_s: float) -> bool:
-        """Start a test from rest; return False if its lease expires before anything moves.
+        """Start a test from rest; return False if the lease expires before any axis moves.
 
         Raises DriverError if the setpoints are rejected.
         """
@@ -286,21 +290,25 @@ class DriveTester:
         return begins
 
     def renew_lease(self, lease_s: float) -> None:
-        """Renew the lease of the test. A test that is braking or finished is not extended.
+        """Renew the lease of the test.
 
-        Raises DriverError if the setpoints are rejected.
+        A test that is braking or finished is not extended. Raises DriverError if the setpoints are
+        rejected.
         """
         jogger = self._jogger
         if jogger.is_testing and not jogger.is_stopping and self._until < self._lasts and lease_s > 0.0:
             self._queue(jogger.axis_name, lease_s)
 
     def check_guard(self) -> None:
-        """Stop the test if the guard is open. Called once per tick. Raises DriverError."""
+        """Stop the test if the guard is open.
+
+        The function is called once per tick. Raises DriverError.
+        """
         if self._jogger.is_testing and not self._jogger.is_stopping and self._context.spindle.is_guard_open:
             self._jogger.stop()
 
     def _queue(self, name: str, lease: float) -> bool:
-        """Queue the setpoints for the lease and the braking after it; return False if nothing remains."""
+        """Queue the setpoints for the lease and the braking after it; return False if no motion remains."""
         amax, until = self._context.machine.find_axis(name).amax, self._context.now + min(lease, MAX_LEASE_S)
 
         def go(start: float, _p: float, _v: float) -> list[Ramp]:

@@ -1,8 +1,9 @@
-"""Handwheel: each click moves one selected axis while the lease is renewed and no condition prevents it.
+"""Handwheel that moves the selected axis by each click.
 
-The axis follows the wheel with a delay of 0.1 s. The queue never contains more than this distance and the
-braking, so clicks faster than the axis are dropped. If the control ends the motion, the wheel must be
-selected again.
+An axis moves only while the lease is renewed and no condition prevents motion. The axis follows the
+handwheel with a delay of 0.1 s. The queue never contains more than the distance of this delay and the
+braking distance, so clicks faster than the axis can follow are dropped. If the control ends the motion, the
+handwheel must be selected again.
 """
 
 from __future__ import annotations
@@ -34,9 +35,9 @@ _ROUNDING = 1e-9
 
 
 class ClickCounter:
-    """Converts encoder counts to clicks.
+    """Converter of encoder counts to clicks.
 
-    ``per`` is the number of counts per click; a negative number reverses.
+    ``per`` is the number of counts per click; a negative number reverses the direction.
     """
 
     def __init__(self, per: int) -> None:
@@ -47,9 +48,9 @@ class ClickCounter:
         self.has_jumped = False  # the count has jumped in this tick, faster than a hand can turn
 
     def read_clicks(self, counts: int, now: float) -> int:
-        """Return the signed clicks since the last call.
+        """Return the signed number of clicks since the last call.
 
-        Half a click is ignored, so that a resting wheel is still.
+        Half a click is ignored, so that a handwheel at rest causes no motion.
         """
         before, self._last = self._last, (now, counts)
         if before is None:
@@ -67,9 +68,10 @@ class ClickCounter:
 
 
 class Handwheel:
-    """Moves ``axis``, which is empty while no axis is selected.
+    """Motion of the selected axis by the handwheel.
 
-    ``end_reason`` is why the control disabled the wheel.
+    ``axis`` is empty while no axis is selected. ``end_reason`` is the reason why the control disabled the
+    handwheel.
     """
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
@@ -87,7 +89,7 @@ class Handwheel:
         self._apart = -math.inf  # time until which jog keys are refused after simultaneous use
 
     def select(self, command: SelectHandwheel, state: MachineState) -> None:
-        """Select axis and step, or renew the lease. Raises DriverError if a driver fails."""
+        """Select the axis and the step, or renew the lease. Raises DriverError if a driver fails."""
         if self.end_reason:
             return
         if why := self._refusal(command) or self._find_end_reason(state, command.axis):
@@ -103,13 +105,16 @@ class Handwheel:
         self.axis = self.end_reason = ""
 
     def disable(self, reason: str, state: MachineState) -> None:
-        """Disable the handwheel and log the reason ``why``. Raises DriverError if a driver fails."""
+        """Disable the handwheel and log ``reason``. Raises DriverError if a driver fails."""
         self._stop(state)
         self.axis, self.end_reason = "", reason
         self._context.log("refused", Message("handwheel: {what}", what=reason))
 
     def follow_clicks(self, state: MachineState) -> bool:
-        """Follow the clicks, once per tick; return whether the axis moves. Raises DriverError."""
+        """Move the axis according to the clicks since the last tick; return whether the axis moves.
+
+        Raises DriverError.
+        """
         context, jogger = self._context, self._jogger
         clicks = self._clicks.read_clicks(context.signals.handwheel_counts, context.now)
         if not self.axis:
@@ -129,7 +134,7 @@ class Handwheel:
         return self._follow(clicks)
 
     def find_jog_refusal(self, state: MachineState) -> str:
-        """Return why the handwheel prevents a jog by key, or an empty string."""
+        """Return why the handwheel prevents a jog by a key, or an empty string."""
         if self._jogger.target_position is not None:
             self._together("a key or the screen was pressed while the handwheel was turning", state)
         if self._context.now >= self._apart:
@@ -229,14 +234,17 @@ class Handwheel:
 
 
 class _TargetMove:
-    """The move to ``wanted``, or as much of it as the axis can cover in time; ``goal`` is its end."""
+    """A move to ``wanted``, or as far toward it as the axis can move in time.
+
+    ``goal`` is the end of the move.
+    """
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
         self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
         self.goal = wanted
 
     def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
-        """Return the ramps for ``Jogger.follow_target``, with the speed that gives a delay of 0.1 s."""
+        """Return the ramps for ``Jogger.follow_target``, at the speed that results in a delay of 0.1 s."""
         way = self._wanted - p
         longest = max(self._top * _FOLLOW_DELAY_S + v * v / (2.0 * self._amax), self._step)
         if abs(way) > longest:

@@ -1,4 +1,4 @@
-"""The line of a jog: one axis, or X, Y and Z together along an axis of a tilted plane (3D-ROT)."""
+"""Line along which a jog moves: one axis, or X, Y and Z together along an axis of a tilted plane (3D-ROT)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _MIN_SHARE = 1e-9  # share below which an axis does not move
 
 
 def distance_to_limit(axis: Axis, position: float, direction: float) -> float:
-    """Return the distance to the soft limit in this direction; 0 if it is less than one encoder count."""
+    """Return the distance to the soft limit in this direction, or 0 if it is less than one encoder count."""
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
@@ -32,21 +32,21 @@ def distance_to_limit(axis: Axis, position: float, direction: float) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class JogLine:
-    """The axes of a machine with their shares of the distance along a line. A single axis has the share 1."""
+    """A line of motion with the share of each machine axis in the distance. A single axis has the share 1."""
 
     axes: Sequence[Axis]
     shares: FloatArray
 
     @classmethod
     def from_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
-        """Return the line of one axis alone."""
+        """Return the line along a single axis."""
         shares = np.zeros(len(axes))
         shares[index] = 1.0
         return cls(axes, shares)
 
     @classmethod
     def from_direction(cls, axes: Sequence[Axis], direction: Direction) -> JogLine:
-        """Return the line of X, Y and Z in a direction. An axis with a share near zero does not move."""
+        """Return the line along a direction in X, Y and Z. An axis with a share near zero does not move."""
         shares = np.zeros(len(axes))
         for name, share in zip("XYZ", direction, strict=True):
             index = next(place for place, axis in enumerate(axes) if axis.name == name)
@@ -58,7 +58,7 @@ class JogLine:
         return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_MIN_SHARE))
 
     def iter_moving_axes(self) -> Iterator[tuple[int, Axis, float]]:
-        """Yield index, axis and share of each axis that moves."""
+        """Yield the index, the axis and the share of each axis that moves."""
         yield from (
             (place, axis, share)
             for place, (axis, share) in enumerate(zip(self.axes, self.shares.tolist(), strict=True))
@@ -67,7 +67,7 @@ class JogLine:
 
     @property
     def max_acceleration(self) -> float:
-        """The acceleration along the line at which every axis stays within its own limit."""
+        """Return the highest acceleration along the line at which no axis exceeds its own limit."""
         return min(axis.amax / abs(share) for _, axis, share in self.iter_moving_axes())
 
     def project(self, values: FloatArray) -> float:
@@ -75,15 +75,19 @@ class JogLine:
         return float(sum(values[place] * share for place, _, share in self.iter_moving_axes()))
 
     def distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
-        """Return the distance along the line, in the direction ``sign``, to the first end of travel."""
+        """Return the distance along the line to the nearest limit of travel of an axis.
+
+        The direction along the line is ``sign``.
+        """
         return min(
             distance_to_limit(axis, position[place], math.copysign(share, share * sign)) / abs(share)
             for place, axis, share in self.iter_moving_axes()
         )
 
     def make_setpoints(self, start: float, start_position: FloatArray, ramps: Sequence[Ramp]) -> Segments:
-        """Return the ramps from ``start`` on as setpoints of all axes. Other axes stay at
-        ``start_position``.
+        """Return the ramps from the time ``start`` on as setpoints of all axes.
+
+        Axes that do not move remain at ``start_position``.
         """
         n = len(ramps)
         dt = np.array([piece[0] for piece in ramps])
@@ -97,5 +101,5 @@ class JogLine:
 
 
 def is_invalid_direction(direction: Direction) -> bool:
-    """Return whether the direction is not a unit vector."""
+    """Return whether the direction is invalid because it is not a unit vector."""
     return not abs(math.hypot(*direction) - 1.0) <= _UNIT_TOLERANCE

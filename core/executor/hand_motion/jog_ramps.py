@@ -1,4 +1,4 @@
-"""The ramps of a jog and of a step: phases of constant acceleration that end at rest."""
+"""Ramps of a jog and of a step, which are phases of constant acceleration that end at rest."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ POSITION_TOLERANCE = 1e-9  # mm or degrees; closer positions count as equal
 def plan_jog_ramps(
     start_speed: float, end_speed: float, acceleration: float, duration_s: float, distance: float
 ) -> list[Ramp]:
-    """Return ramps from speed ``start_speed`` to ``end_speed``, a cruise for the rest of ``duration_s``, and
-    braking to rest.
+    """Return ramps to ``end_speed``, a cruise for the rest of ``duration_s``, and braking to rest.
 
-    If ``distance`` (mm) is too short, the jog is slower or ends earlier. The braking distance v0²/2a is
-    always used.
+    The first ramp starts at ``start_speed``. If ``distance`` (mm) is too short, the jog is slower or ends
+    earlier. The distance is never shorter than the braking distance v0²/2a.
     """
     if start_speed * end_speed < 0.0:
         first = abs(start_speed) / acceleration
@@ -50,7 +49,7 @@ def plan_jog_ramps(
 
 
 def plan_step_ramps(distance: float, speed: float, acceleration: float) -> list[Ramp]:
-    """Return ramps from rest to rest over exactly ``distance``, at ``speed`` at most.
+    """Return ramps from rest to rest over exactly ``distance``, at no more than ``speed``.
 
     A short distance has no cruise; its top speed is √(a·|distance|).
     """
@@ -67,10 +66,10 @@ def plan_step_ramps(distance: float, speed: float, acceleration: float) -> list[
 def plan_stop_at_distance(
     start_speed: float, distance: float, max_speed: float, acceleration: float
 ) -> list[Ramp]:
-    """Return ramps from speed ``start_speed`` to rest at exactly the distance ``distance``.
+    """Return ramps from ``start_speed`` to rest at exactly ``distance``.
 
-    The speed does not exceed ``top`` except while the axis slows down to it. If the target is in the opposite
-    direction or within the braking distance, the axis stops first and then returns.
+    The speed does not exceed ``max_speed`` except while the axis slows down to it. If the target is in the
+    opposite direction or within the braking distance, the axis stops first and then returns.
     """
     stop = start_speed * abs(start_speed) / (2.0 * acceleration)
     if start_speed * distance < 0.0 or abs(stop) > abs(distance) + POSITION_TOLERANCE:

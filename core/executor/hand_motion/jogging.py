@@ -1,7 +1,8 @@
-"""Jog: manual motion of one axis while its lease is renewed, or by one step of a given length.
+"""Jog: manual motion of one axis while the jog's lease is renewed, or by one step of a given length.
 
-The queued setpoints always end in the stop of an expired lease. They consist of ramps, which are phases of
-constant acceleration that end at rest. A controller with its own planner uses its own jog function.
+The queued setpoints always end with the stop that follows an expired lease. They consist of ramps, which
+are phases of constant acceleration; the last ramp ends at rest. A controller with its own planner uses its
+own jog function.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _MARGINS = (0.0, 0.002, 0.02)  # s added to the start for the time between readi
 
 
 class Jogger:
-    """Jogs one axis, either while a lease lasts or by one step of a given length."""
+    """Manual motion of one axis, either while a lease lasts or by one step of a given length."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -52,7 +53,7 @@ class Jogger:
 
     @property
     def axis_name(self) -> str:
-        """The name of the moving axis, or an empty string."""
+        """Return the name of the moving axis, or an empty string."""
         return self._context.machine.axes[self._axis].name if self._axis >= 0 else ""
 
     def find_jog_refusal(
@@ -122,7 +123,10 @@ class Jogger:
         return self.find_spinning_reason(name) or self.request_c_axis(name)
 
     def find_spinning_reason(self, name: str) -> str:
-        """Return why C cannot move while it turns as the spindle, or an empty string."""
+        """Return why C cannot move because the spindle is turning, or an empty string.
+
+        This applies only if the spindle is the C axis.
+        """
         context = self._context
         turns = context.spindle.is_requested or not context.spindle.is_stopped
         if name == "C" and context.machine.spindle_is_c and turns:
@@ -130,7 +134,7 @@ class Jogger:
         return ""
 
     def request_c_axis(self, name: str) -> str:
-        """Start the change to C-axis mode if needed; return why C cannot move yet, or an empty string."""
+        """Start the change to C-axis mode if necessary; return why C cannot move yet, or an empty string."""
         if (
             name != "C"
             or not self._context.machine.spindle_is_c
@@ -140,7 +144,10 @@ class Jogger:
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
 
     def _find_travel_refusal(self, name: str, distance: float, direction: Direction | None) -> str:
-        """Return why a step that would leave the travel is refused. A step is never shortened."""
+        """Return why a step is refused because it would leave the travel, or an empty string.
+
+        A step is never shortened.
+        """
         line, sample = self._line_of(name, direction), self._context.sample
         homed = all(sample.homed[place] for place, _, _ in line.iter_moving_axes())
         if not homed or abs(distance) <= line.distance_to_limit(sample.demand, distance) + _STEP_ROUNDING:
@@ -157,10 +164,10 @@ class Jogger:
         self._axis, self.is_stepping = self._context.ports.axes.axes.index(name), True
 
     def jog(self, name: str, velocity: float, lease_s: float, direction: Direction | None = None) -> bool:
-        """Start or renew a jog; return False if no travel is left in that direction.
+        """Start or renew a jog; return False if no travel remains in that direction.
 
-        ``along`` is the direction, in machine coordinates, of an axis of a tilted plane. Raises DriverError
-        if the setpoints are rejected.
+        ``direction`` is the direction of an axis of a tilted plane, in machine coordinates. Raises
+        DriverError if the setpoints are rejected.
         """
         context, line = self._context, self._line_of(name, direction)
         homed = all(context.sample.homed[place] for place, _, _ in line.iter_moving_axes())
@@ -185,7 +192,10 @@ class Jogger:
         )
 
     def run_drive_test(self, name: str, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
-        """Start or continue a drive test; return False if nothing of it remains. Raises DriverError."""
+        """Start or continue a drive test; return False if no motion of the test remains.
+
+        Raises DriverError.
+        """
         index = self._context.ports.axes.axes.index(name)
         plays = self._splice_axis(index, ramps)
         if plays:
@@ -193,11 +203,17 @@ class Jogger:
         return plays
 
     def set_test_queued(self, is_queued: bool) -> None:
-        """Store whether the whole drive test is queued. If not, its end is logged as a premature stop."""
+        """Store whether the whole drive test is queued.
+
+        If the test is not completely queued, its end is logged as a premature stop.
+        """
         self._short = not is_queued
 
     def jog_to_target(self, name: str, target: float, speed: float, lease_s: float) -> bool:
-        """Jog like ``jog``, but no further than ``target``, where the axis stops. Raises DriverError."""
+        """Start or renew a jog that stops at ``target``; return False if no travel remains.
+
+        Raises DriverError.
+        """
         context = self._context
         index = context.ports.axes.axes.index(name)
         axis, until = context.machine.axes[index], context.now + min(lease_s, MAX_LEASE_S)
@@ -220,13 +236,13 @@ class Jogger:
     def follow_target(
         self, name: str, ramps: Callable[[float, float, float], list[Ramp]], target: float
     ) -> None:
-        """Move to the target of the handwheel from any present motion. Raises DriverError."""
+        """Move to the handwheel's target, starting from the present motion. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
         if self._splice_axis(index, ramps):
             self._axis, self.target_position, self.is_stopping = index, target, False
 
     def stop(self) -> None:
-        """Stop the jog. The early end of a step is logged when the axis is at rest."""
+        """Stop the jog. If a step ends early, this is logged when the axis is at rest."""
         line = self._line
         if self._axis < 0 or line is None:
             return
@@ -238,7 +254,7 @@ class Jogger:
         self.is_stepping, self.target_position, self.is_stopping = False, None, True
 
     def check_button(self) -> None:
-        """Stop the jog if its button is released or its state is unknown. Raises DriverError."""
+        """Stop the jog if its button is released or the button's state is unknown. Raises DriverError."""
         if self.button_input and not self._context.is_button_pressed(self.button_input):
             self.button_input = ""
             self.stop()
@@ -253,7 +269,7 @@ class Jogger:
         return True
 
     def finish_jog(self) -> None:
-        """Finish the jog at rest, and log a completed test or a step that was stopped early."""
+        """Finish the jog of an axis at rest; log a completed test, or a step that was stopped early."""
         if self._short and self.is_testing:
             self._context.log(
                 "refused",
@@ -280,10 +296,10 @@ class Jogger:
         return self._splice(line, lambda start, p, v: ramps(start, float(p[index]), float(v[index])))
 
     def _splice(self, line: JogLine, ramps: Callable[[float, FloatArray, FloatArray], list[Ramp]]) -> bool:
-        """Queue the ramps that ``ramps`` returns for (start, positions, velocities).
+        """Queue the ramps that ``ramps`` returns for (start time, positions, velocities).
 
-        A splice that was too late is retried with a later start. Returns False if there are no ramps. Raises
-        DriverError if the setpoints are rejected.
+        If a splice was too late, it is retried with a later start. Returns False if there are no ramps.
+        Raises DriverError if the setpoints are rejected.
         """
         axes = self._context.ports.axes
         for margin in _MARGINS:
@@ -303,14 +319,14 @@ class Jogger:
         return False
 
     def max_jog_speed(self, axis: Axis, homed: bool) -> float:
-        """Return the highest jog speed of an axis."""
+        """Return the highest jog speed of an axis, which is lower if the axis is not homed."""
         endless = axis.travel is None or axis.rotary
         rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.limits.manual_rapid)
         return rapid if homed else _UNHOMED_SPEED_FRACTION * rapid
 
 
 def travel_end_message(name: str, direction: float) -> str:
-    """Return the message that an axis is at the end of its travel."""
+    """Return the message for an axis that is at the end of its travel."""
     return Message(
         "{name} is at the end of its travel in the {ending} direction",
         name=name,
@@ -322,12 +338,15 @@ def travel_end_message(name: str, direction: float) -> str:
 
 
 def create_jogger(context: MachineContext) -> Jogger:
-    """Return the jogger for setpoints, or the one for a controller with its own jog function."""
+    """Create a jogger that queues setpoints, or one that uses the controller's own jog function."""
     return Jogger(context) if context.ports.blocks is None else BlockJogger(context, context.ports.blocks)
 
 
 class _PendingJog(NamedTuple):
-    """A jog requested while the previous one is still stopping; ``until`` is the end of its lease."""
+    """A jog that was requested while the previous jog was still stopping.
+
+    ``until`` is the end of its lease.
+    """
 
     axis: str
     velocity: float
@@ -335,10 +354,10 @@ class _PendingJog(NamedTuple):
 
 
 class BlockJogger(Jogger):
-    """A jogger that uses the jog function of the controller, with the same refusals as ``Jogger``.
+    """A jogger that uses the jog function of the controller and refuses the same requests as ``Jogger``.
 
-    The controller accepts a jog only after the previous one has ended. A key pressed again in the meantime
-    waits until then, if it is still pressed.
+    The controller accepts a jog only after the previous jog has ended. If a key is pressed in the meantime,
+    its jog waits for this end and starts only if the key is still pressed.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -378,7 +397,7 @@ class BlockJogger(Jogger):
         self._axis, self.is_stepping = index, True
 
     def jog(self, name: str, velocity: float, lease_s: float, direction: Direction | None = None) -> bool:
-        """Start or renew a jog; return False if no travel is left in that direction.
+        """Start or renew a jog; return False if no travel remains in that direction.
 
         Raises DriverError if the controller rejects the jog.
         """
@@ -397,7 +416,10 @@ class BlockJogger(Jogger):
         return moves
 
     def jog_to_target(self, name: str, target: float, speed: float, lease_s: float) -> bool:
-        """Jog like ``jog``, but no further than ``target``, where the axis stops. Raises DriverError."""
+        """Start or renew a jog that stops at ``target``; return False if no travel remains.
+
+        Raises DriverError.
+        """
         index, top = self._speed(name, speed)
         here = self._context.sample.demand[index]
         limits = (min(here, target), max(here, target))
@@ -409,7 +431,7 @@ class BlockJogger(Jogger):
         return moves
 
     def stop(self) -> None:
-        """Stop the jog. The early end of a step is logged when the axis is at rest."""
+        """Stop the jog. If a step ends early, this is logged when the axis is at rest."""
         if self._axis < 0:
             return
         self._short = self._short or self.is_stepping
@@ -428,7 +450,7 @@ class BlockJogger(Jogger):
         return not self.jog(pressed.axis, pressed.velocity, pressed.until - self._context.now)
 
     def clear_jog(self) -> None:
-        """Clear the jog and the waiting jog."""
+        """Clear the active jog and the jog that waits for its end."""
         super().clear_jog()
         self._pressed = None
 

@@ -1,7 +1,7 @@
-"""Homing of the axes in their order, and touch-off of a tool against a tool setter or probe.
+"""Homing of the axes in order, and touch-off of a tool against a tool setter or probe.
 
-The axis stops when the key is released, as in a jog. The position of the second touch is reported with its
-uncertainty. This module does not change any offset.
+The axis stops when the key is released, as in a jog. The touch-off reports the position of the second touch
+with its uncertainty. This module does not change any offset.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _SETTLING_TIME_S = 1.0  # s that the axes may take to stop before the next axis 
 
 
 class TouchOff:
-    """Performs touch-offs. ``phase`` is the present phase or None; ``last_result`` is the last result."""
+    """Touch-off sequence. ``phase`` is the present phase or None; ``last_result`` is the last result."""
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
         self._context = context
@@ -45,7 +45,7 @@ class TouchOff:
         self._failed = ""  # the failure to report when the axis is back
 
     def handle_request(self, command: TouchOffTool, state: MachineState, handwheel_axis: str) -> bool:
-        """Start or renew a touch-off; return True when it starts. Raises DriverError."""
+        """Start or renew a touch-off; return True if a new touch-off starts. Raises DriverError."""
         if command.press == self._ended:
             return False  # the key is still pressed, but its touch-off has ended
         if self.phase is None:
@@ -62,17 +62,17 @@ class TouchOff:
         return False
 
     def cancel(self, reason: str) -> None:
-        """Cancel the touch-off for the reason ``why`` and stop the axis. Raises DriverError."""
+        """Cancel the touch-off for the given reason and stop the axis. Raises DriverError."""
         if self.phase is None:
             return
         self._jogger.stop()
         self._over(reason)
 
     def check_state(self, state: MachineState) -> bool:
-        """Check the state, once per tick; return True if a jog runs into the tool setter.
+        """Check the machine state and the setter input; return True if a jog runs into the tool setter.
 
-        A touch-off ends if the machine leaves the jog state. A jog that hits the setter must stop; the next
-        jog can lead away.
+        The function is called once per tick. A touch-off ends if the machine leaves the jog state. A jog
+        that hits the setter must stop; the next jog can move away from the setter.
         """
         before, self._was_made = self._was_made, self._made
         if self.phase is not None and state is not MachineState.JOG:
@@ -143,7 +143,10 @@ class TouchOff:
         return found or self._find_abort_reason(command) or self._find_travel_refusal(command)
 
     def _find_abort_reason(self, command: TouchOffTool | None = None) -> str:
-        """Return why the touch-off must end. ``command`` is a touch-off that has not started yet."""
+        """Return why the touch-off must end, or an empty string.
+
+        ``command`` is a touch-off that has not started yet.
+        """
         context = self._context
         button = (command or self._command).while_on
         reasons = (
@@ -166,7 +169,10 @@ class TouchOff:
         return next((why for so, why in reasons if so), "")
 
     def _find_travel_refusal(self, command: TouchOffTool) -> str:
-        """Return why the search would leave the travel. The full search distance must be available."""
+        """Return why the search would leave the travel, or an empty string.
+
+        The full search distance must be available.
+        """
         assert self._model is not None
         axis = self._context.machine.find_axis(command.axis)
         low, high = axis.travel_with_margin
@@ -209,7 +215,7 @@ class TouchOff:
         self._move_to_target(self._here)
 
     def _move_to_target(self, position: float) -> bool:
-        """Renew the motion to the target; return True after a short rest there."""
+        """Renew the motion to the target; return whether the axis has been at rest there for a short time."""
         context, model, command = self._context, self._model, self._command
         assert model is not None
         axis = context.machine.find_axis(command.axis)
@@ -290,9 +296,9 @@ class TouchOff:
             self._finish_measurement()
 
     def _finish_measurement(self) -> None:
-        """Finish the touch-off with the position corrected by half of the detection delay.
+        """Finish the touch-off with the measured position, corrected by half of the detection delay.
 
-        The other half, plus half an encoder count, is the uncertainty.
+        The other half of the delay, plus half an encoder count, is the uncertainty.
         """
         assert self._latch is not None
         command, place = self._command, self._latch.axis_positions[self._index(self._command.axis)]
@@ -310,7 +316,7 @@ class TouchOff:
 
 
 class Homing:
-    """Homes the axes, one after the other."""
+    """Homing sequence that homes one axis after the other."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -319,7 +325,7 @@ class Homing:
         self._found_at = 0.0  # time at which the last axis was homed, s
 
     def start_homing(self, name: str) -> str:
-        """Start homing of one axis, or of all; return why it is refused, or an empty string."""
+        """Start homing of one axis, or of all axes; return why this is refused, or an empty string."""
         axes = self._context.machine.axes
         if name and name not in {axis.name for axis in axes}:
             return Message("this machine has no axis {name} to home", name=name)
@@ -335,14 +341,14 @@ class Homing:
         return ""
 
     def stop(self) -> None:
-        """Cancel the homing. The drives brake and hold position."""
+        """Cancel homing. The drives brake and hold position."""
         self._left, self._now = [], ""
         self._context.ports.axes.stop(StopMode.RAMP_HOLD)
 
     def advance(self) -> bool:
-        """Home the next axis when one is done; return whether all are done. Called every tick.
+        """Start homing the next axis when one axis is homed; return whether all axes are homed.
 
-        Raises DriverError if a drive rejects homing.
+        The function is called every tick. Raises DriverError if a drive rejects homing.
         """
         context = self._context
         homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))

@@ -1,8 +1,8 @@
-"""Motion by a controller with its own planner, which receives as few blocks ahead as possible.
+"""Motion by a controller with its own planner, with as few blocks sent ahead as possible.
 
-The controller executes the blocks that it has received even if the host fails. A long block is therefore sent
-in parts of a fraction of a second. The parts are on the same line or circle, so the controller does not slow
-down between them.
+The controller executes all blocks that it has received even if the host fails. A long block is therefore
+sent in parts of a fraction of a second. The parts are on the same line or circle, so the controller does
+not slow down between them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ _POSITION_TOLERANCE_MM = 0.01  # mm; the controller reports thousandths
 
 
 class BlockPart(NamedTuple):
-    """A part of a block as a controller operation, with the block and the shortest time in seconds."""
+    """A part of a block as a controller operation, with its block and its shortest duration in seconds."""
 
     operation: BlockOperation
     block: Block
@@ -54,7 +54,7 @@ class BlockPart(NamedTuple):
 
 
 class SpindleSpeed(NamedTuple):
-    """The spindle speed for feeds per revolution: actual over programmed speed, and the highest rpm."""
+    """Spindle speed for feeds per revolution: ratio of actual to programmed speed, and highest rpm."""
 
     speed_ratio: float
     max_rpm: float
@@ -63,9 +63,10 @@ class SpindleSpeed(NamedTuple):
 def split_block(
     block: Block, spindle_speed: SpindleSpeed, find_max_speed: Callable[[Block], float] = lambda _: math.inf
 ) -> Iterator[BlockPart]:
-    """Yield the parts of one moving block, limited to the speed ``find_max_speed`` (mm/s).
+    """Yield the parts of one moving block.
 
-    Raises AlarmError if the block has no feed rate or moves other axes than X and Z.
+    The speed is limited to the result of ``find_max_speed``, in mm/s. Raises AlarmError if the block has no
+    feed rate or moves axes other than X and Z.
     """
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller can move only X and Z", block.line)
@@ -84,17 +85,20 @@ def split_block(
 def _limit_operation_speed(
     op: RapidOperation | LineOperation | ArcOperation, fastest: float
 ) -> BlockOperation:
-    """Limit the speed of an operation, because the controller's own limits may be higher."""
+    """Return the operation with its speed limited to ``fastest``.
+
+    The controller's own limits may be higher.
+    """
     if isinstance(op, RapidOperation):
         return op._replace(rapid_rate=min(op.rapid_rate, fastest))
     return op._replace(feed=min(op.feed, fastest))
 
 
 def _count_parts(block: Block, seconds: float) -> int:
-    """Return the number of parts. The parts of an arc are shorter than half a circle.
+    """Return the number of parts into which a block is split.
 
-    The controller receives only end points and the center, which do not distinguish a full circle from a zero
-    move.
+    Each part of an arc is shorter than half a circle. The controller receives only the end points and the
+    center, which do not distinguish a full circle from a zero move.
     """
     least = math.ceil(abs(_sweep(block)[1]) / _MAX_ARC_SWEEP_RAD) if block.kind is BlockKind.ARC else 1
     return max(least, min(math.ceil(seconds / MAX_PART_S - 1e-9), math.ceil(block.length / _SHORTEST_PART)))
@@ -129,7 +133,7 @@ def _arc(block: Block, begin: float, end: float, turning: SpindleSpeed) -> ArcOp
 def _point_on_arc(block: Block, part: float) -> tuple[float, float]:
     """Return the point of an arc at a fraction of its length.
 
-    Both ends are exact, even if the rounded program gives them slightly different radii.
+    Both end points are exact, even if rounding in the program gives them slightly different radii.
     """
     if part == 0.0:
         return block.x0 + block.offset_x, block.z0 + block.offset_z
@@ -169,7 +173,7 @@ class _SentPart(NamedTuple):
 
 
 class _SurfaceSpeed(NamedTuple):
-    """A surface speed in mm/s with its direction of rotation and rpm limits."""
+    """A surface speed in mm/s with its direction of rotation and its lowest and highest rpm."""
 
     speed: float
     forward: bool
@@ -178,17 +182,17 @@ class _SurfaceSpeed(NamedTuple):
 
     @classmethod
     def of(cls, block: Block) -> _SurfaceSpeed | None:
-        """Return the surface speed of a block, or None."""
+        """Return the surface speed of a block, or None if the block has no surface speed or no rpm."""
         if block.css is None or not block.rpm:
             return None
         return cls(block.css, block.rpm > 0.0, block.modal.min_css_rpm, block.modal.max_css_rpm)
 
 
 class ControllerMotion:
-    """Executes a path section by sending blocks to the controller, on the executor's thread only.
+    """Motion along a path section, executed by sending blocks to the controller.
 
-    Single block takes effect at the end of the last block that the controller has, at most
-    ``BlockController.max_lead_s`` seconds later.
+    It is used on the executor's thread only. Single block takes effect at the end of the last block that
+    the controller has received, at most ``BlockController.max_lead_s`` seconds later.
     """
 
     def __init__(self, context: MachineContext, controller: BlockController) -> None:
@@ -218,23 +222,23 @@ class ControllerMotion:
 
     @property
     def has_section(self) -> bool:
-        """True if there is a path section."""
+        """Return whether there is a path section."""
         return self._active
 
     @property
     def is_moving(self) -> bool:
-        """True if anything is moving."""
+        """Return whether any axis moves."""
         return self._active and self._is_moving(self._poll_controller())
 
     @property
     def current_block(self) -> Block | None:
-        """The block being executed, or None."""
+        """Return the block being executed, or None."""
         self._poll_controller()
         return self._shown
 
     @property
     def following_block(self) -> Block | None:
-        """The block after the one being executed, if it belongs to the path section."""
+        """Return the block after the one being executed, or None if it is not in the path section."""
         if self._shown is None:
             return None
         cut = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
@@ -243,17 +247,17 @@ class ControllerMotion:
 
     @property
     def is_complete(self) -> bool:
-        """True if no block of the path section remains to be executed."""
+        """Return whether all blocks of the path section have been executed."""
         return not (self._waiting or self._pieces or self._sent)
 
     @property
     def last_block(self) -> Block | None:
-        """The last block at the end of the path section."""
+        """Return the block being executed, which is the last block at the end of the path section."""
         return self.current_block
 
     @property
     def starvation_time_s(self) -> float:
-        """Minus infinity if the control was absent too long, otherwise infinity."""
+        """Return minus infinity if the control was inactive too long, otherwise infinity."""
         return -math.inf if self._dry else math.inf
 
     # --- requests -----------------------------------------------------------------------------------------
@@ -268,14 +272,14 @@ class ControllerMotion:
         self._hand_over()
 
     def resume(self, last_executed_block: Block | None) -> None:  # noqa: ARG002  it always goes on where it rests
-        """Resume from rest within the path section: release the hold or send the next block."""
+        """Resume from rest within the path section, by releasing the hold or sending the next block."""
         self._last, self._dry, self._seen = None, False, self._context.now
         if not self._still:
             self._sink.resume()
         self._hand_over()
 
     def update_progress(self, feed: ReadAhead) -> SectionProgress:
-        """Apply switches and overrides, send permitted blocks and return the progress."""
+        """Apply switches and overrides, send the permitted blocks and return the progress."""
         if not self._active:
             return SectionProgress.DONE
         self._apply_overrides()
@@ -297,7 +301,7 @@ class ControllerMotion:
             self._hand_over()
 
     def hold_on_path(self) -> None:
-        """Stop on the path; a thread pass ends first."""
+        """Stop on the path; a thread pass is finished first."""
         if not self._thread:
             self._sink.hold_on_path()
 
@@ -307,20 +311,20 @@ class ControllerMotion:
         self._sink.abort_blocks()
 
     def run_to_stop(self) -> None:
-        """Do nothing, because the controller stops at the end of its blocks."""
+        """Do nothing, because the controller stops automatically at the end of its blocks."""
 
     def cancel_waiting_pass(self) -> bool:
-        """Return False, because only the controller knows whether a thread pass still waits for its index."""
+        """Return False, because only the controller knows whether a thread pass is still waiting."""
         return False
 
     def start_retract(self, block: Block) -> None:
-        """Stop a thread that has lost its spindle, to retract X afterwards."""
+        """Stop a thread pass that has lost spindle synchronization; X is retracted afterwards."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
         self.brake()
 
     def continue_retract(self) -> None:
-        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out.
+        """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread.
 
         The alarm is also raised, without a retract, if the controller cannot start a block.
         """
@@ -333,7 +337,7 @@ class ControllerMotion:
         self._hand_over()
 
     def clear_section(self) -> None:
-        """Clear the path section, in the controller as well."""
+        """Clear the path section here and in the controller."""
         self._poll_controller()
         if self._sent:
             self._sink.abort_blocks()
@@ -350,7 +354,7 @@ class ControllerMotion:
         self._seconds, self._still, self._dry, self._laid, self._speed = 0.0, False, False, None, None
 
     def _poll_controller(self) -> BlockState:
-        """Return the state of the controller and remove the blocks that it has finished."""
+        """Return the state of the controller, and remove the blocks that the controller has finished."""
         state = self._sink.state()
         while self._sent and self._sent[0].ticket <= state.last_done_ticket:
             done = self._sent.popleft().piece
@@ -360,11 +364,14 @@ class ControllerMotion:
         return state
 
     def _is_moving(self, state: BlockState) -> bool:
-        """Return whether the axes move. A controller in feed hold does not move although it has blocks."""
+        """Return whether the axes move.
+
+        A controller in feed hold does not move although it has blocks.
+        """
         return not state.is_in_feed_hold and (bool(self._sent) or not state.is_at_rest)
 
     def _detect_absence(self) -> None:
-        """Detect that the control was absent for longer than its blocks last.
+        """Detect that the control was inactive for longer than the motion that it had sent.
 
         The motion then does not resume automatically.
         """
@@ -378,7 +385,7 @@ class ControllerMotion:
         return SectionProgress.BLOCK_END if stepped else SectionProgress.MOVING
 
     def _apply_overrides(self) -> None:
-        """Apply the overrides. At 0 the controller is in feed hold, except in a thread."""
+        """Apply the overrides. If an override is 0, the controller is in feed hold, except in a thread."""
         feed = self._context.feed_override
         turn = round(self._context.spindle.override, 2)
         self._overrides = OverrideFactors(feed, min(feed, 1.0), turn)
@@ -406,8 +413,8 @@ class ControllerMotion:
     def _prepare_css(self, block: Block) -> bool:
         """Return whether the spindle can follow the radius in this block.
 
-        A spindle whose speed steps depend on its last S word is set up for each surface speed, at rest. It
-        must be at speed before any axis moves.
+        If the speed steps of a spindle depend on its last S word, the spindle is set up at rest for each
+        surface speed. The spindle must then be at speed before any axis moves.
         """
         surface = _SurfaceSpeed.of(block)
         if surface is None or surface == self._laid or math.isinf(self._sink.css_max_rpm):
@@ -440,8 +447,8 @@ class ControllerMotion:
     def _max_block_speed(self, block: Block) -> float:
         """Return the highest speed of a block in mm/s.
 
-        On a line, each axis has its own limit, as in the motion planner. On an arc, the slower axis and its
-        acceleration set the limit.
+        On a line, each axis has its own limit, as in the motion planner. On an arc, the limit is that of
+        the slower axis and of its acceleration.
         """
         if block.kind is not BlockKind.ARC:
             return self._sink.max_line_speed(block.x - block.x0, block.z - block.z0)
@@ -457,7 +464,8 @@ class ControllerMotion:
     def _may_send(self, piece: BlockPart) -> bool:
         """Return whether this part may be sent now.
 
-        Single block and the time that the controller could run alone limit the number of parts.
+        The number of parts is limited by single block and by the time that the controller could run without
+        the host.
         """
         if self._still or self._dry or not self._single(piece.block):
             return False

@@ -1,8 +1,8 @@
 """One cycle: a run of a program, block by block, with single block and feed hold on the path.
 
-A feed hold is requested by the operator, or caused by a lost spindle, an open guard, an output in the wrong
-state or an empty setpoint queue. The axes stop on their path, in a thread after its pull-out. Before the axes
-resume, the cycle waits for the spindle.
+A feed hold is requested by the operator, or is caused by a lost spindle, an open guard, an output in the
+wrong state or an empty setpoint queue. The axes stop on their path; in a thread they stop after its
+pull-out. Before the axes resume, the cycle waits for the spindle.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ _SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindlePositioning, ProgramEnd)
 
 
 class HoldController:
-    """Stops and resumes the motion of a cycle. Used on the executor's thread only."""
+    """Controller that stops and resumes the motion of a cycle. It is used on the executor's thread only."""
 
     def __init__(self, context: MachineContext, motion: PathMotion, standstill: Standstill) -> None:
         self._context = context
@@ -61,29 +61,29 @@ class HoldController:
 
     @property
     def resumes_in_section(self) -> bool:
-        """True if motion resumes within the present path section instead of the next one."""
+        """Return whether motion will resume within the present path section rather than in the next one."""
         return self._motion.has_section and not self._motion.is_complete
 
     @property
     def is_retracting(self) -> bool:
-        """True while the tool retracts from a thread that has lost its spindle."""
+        """Return whether the tool is retracting from a thread that has lost spindle synchronization."""
         return self._retracting
 
     @property
     def is_waiting_for_spindle(self) -> bool:
-        """True while the resume waits for the spindle."""
+        """Return whether the resume is waiting for the spindle."""
         return self._spin_up is not None
 
     @property
     def wait_label(self) -> str:
-        """The condition for which the resume waits, as a text, or an empty string."""
+        """Return the text of the condition for which the resume waits, or an empty string."""
         return self._spin_up.make_label() if self._spin_up is not None else ""
 
     def stop_motion(self, reason: str = "", source: str = "", code: AlarmCode | None = None) -> MachineState:
         """Stop the motion and return the new state of the machine.
 
-        ``reason`` is a text of the alarm catalog, or a detail for ``code``. It is empty if a button was
-        pressed; ``source`` then names the button.
+        ``reason`` is a text of the alarm catalog, or a detail for ``code``. If a button was pressed,
+        ``reason`` is empty and ``source`` names the button.
         """
         self.hold_reason, self._since = reason, self._context.now
         self._context.show_stop(*(find_hold_code(reason, source) if code is None else (code, reason.lower())))
@@ -94,20 +94,21 @@ class HoldController:
         return MachineState.HOLD
 
     def hold_for_underrun(self, code: AlarmCode, detail: str) -> None:
-        """Store and show that the queue was not refilled in time, so that the axes stop."""
+        """Store and show that the axes stop because the queue was not refilled in time."""
         self.hold_reason, self._since = CATALOGUE[code].text.upper(), self._context.now
         self._context.show_stop(code, detail)
 
     def start_retract(self, block: Block) -> None:
-        """Stop along a thread that has lost its spindle, to retract X afterwards."""
+        """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
         self._context.log("thread", "spindle speed lost during threading")
         self._motion.start_retract(block)
         self._retracting = True
 
     def is_at_rest(self) -> bool:
-        """Return whether the axes are at rest. Called every tick while they stop.
+        """Return whether the axes are at rest.
 
-        Raises AlarmError("thread-lost") when the tool has left a lost thread.
+        The function is called every tick while the axes stop. Raises AlarmError("thread-lost") when the
+        tool has left a thread that lost synchronization.
         """
         self._motion.extend_queue()
         if self._motion.is_moving:
@@ -117,7 +118,7 @@ class HoldController:
         return not self._retracting
 
     def resume(self, last_executed_block: Block | None, *, starts_spindle: bool) -> None:
-        """Resume after Cycle Start, as soon as a requested spindle is at speed.
+        """Resume after Cycle Start as soon as a requested spindle is at speed.
 
         ``last_executed_block`` is the last block that single block executed, or None.
         """
@@ -132,9 +133,10 @@ class HoldController:
             self._motion.resume(last_executed_block)
 
     def wait_for_spindle(self) -> MachineState:
-        """Wait for the spindle, once per tick; return the new state of the machine.
+        """Check once per tick whether the spindle is at speed; return the new state of the machine.
 
-        If the spindle does not reach its speed, the result is another hold, so that the program is not lost.
+        If the spindle does not reach its speed, the cycle enters feed hold again, so that the program is
+        not lost.
         """
         if self._spin_up is None:
             return MachineState.RUN
@@ -152,7 +154,7 @@ class HoldController:
         return MachineState.RUN
 
     def _make_spindle_wait(self) -> StandstillWait | None:
-        """Return the wait for a requested spindle that is not at speed, or None."""
+        """Return a wait for a requested spindle that is not at speed, or None if no wait is necessary."""
         spindle = self._context.spindle
         if not spindle.is_requested or spindle.is_at_speed(self._context.now):
             return None
@@ -160,7 +162,7 @@ class HoldController:
 
 
 class Cycle:
-    """One cycle, advanced by ``advance`` in every tick.
+    """One cycle of a program, advanced by ``advance`` in every tick.
 
     ``change_state`` is called at each change of state, and ``handle_end`` at the end of the program.
     ``initial_modal`` is the modal state before the first block.
@@ -192,7 +194,7 @@ class Cycle:
 
     @property
     def wait_label(self) -> str:
-        """The condition for which the cycle waits, as a text, or an empty string."""
+        """Return the text of the condition for which the cycle waits, or an empty string."""
         if self._state is MachineState.HOLD:
             return self._hold.hold_reason
         if self._later is not None:
@@ -205,13 +207,13 @@ class Cycle:
 
     @property
     def next_block(self) -> Block | None:
-        """The block after the one being executed, or None while a standstill is pending."""
+        """Return the block after the one being executed, or None while a standstill is pending."""
         following = self._motion.following_block or self._feed.next_block
         return None if following is self.current_block else following
 
     @property
     def is_at_rest(self) -> bool:
-        """True if no axis moves."""
+        """Return whether no axis moves."""
         return not self._motion.is_moving
 
     # --- requests of the operator -------------------------------------------------------------------------
@@ -219,11 +221,11 @@ class Cycle:
     def start_feed_hold(
         self, reason: str = "", source: str = "", code: AlarmCode | None = None, *, at_once: bool = False
     ) -> None:
-        """Hold the cycle. The parameters ``reason``, ``source`` and ``code`` are those of
-        ``HoldController.begin``.
+        """Hold the cycle.
 
-        A tap first leaves its hole, because the spindle turns on. The axes stop at once if the spindle is
-        stopped or ``at_once`` is True.
+        The parameters ``reason``, ``source`` and ``code`` are described in ``HoldController.stop_motion``.
+        A tap first leaves its hole while the spindle continues to turn. The axes stop at once if the
+        spindle is stopped or ``at_once`` is True.
         """
         if self._state in {MachineState.HOLD, MachineState.HOLDING}:
             self._hold.hold_reason = self._hold.hold_reason or reason
@@ -239,12 +241,12 @@ class Cycle:
 
     @property
     def _is_tapping(self) -> bool:
-        """True if a tap is in its hole, which it must leave while the spindle turns."""
+        """Return whether a tap is in its hole, which it must leave while the spindle turns."""
         block = self.current_block
         return block is not None and (block.in_hole or (block.follows_spindle and self._motion.is_moving))
 
     def _start_pending_hold(self) -> bool:
-        """Start a pending hold when the tap has left its hole; return whether it started."""
+        """Start a pending hold when the tap has left its hole; return whether the hold has started."""
         if self._later is None or self._is_tapping:
             return False
         begin, self._later = self._later, None
@@ -259,7 +261,7 @@ class Cycle:
             self._change(MachineState.HOLDING)
 
     def wait_for_next_cycle(self, label: str) -> None:
-        """Wait after the end of the program until another cycle replaces this one."""
+        """Wait after the end of the program until another cycle replaces this cycle."""
         self._still.wait_for_next_cycle(label)
 
     def stop_canceled_cycle(self) -> None:
@@ -277,7 +279,10 @@ class Cycle:
         )
 
     def resume(self, *, starts_spindle: bool = False) -> None:
-        """Resume after a hold, single block, M00 or M01. If the start turns on the spindle, wait for it."""
+        """Resume after a hold, single block, M00 or M01.
+
+        If the start turns the spindle on, the cycle waits for the spindle first.
+        """
         stopped, self._later = self._state, None
         self.message = ""
         if stopped is MachineState.PROGRAM_STOP:
@@ -289,11 +294,11 @@ class Cycle:
     # --- actions in every tick ----------------------------------------------------------------------------
 
     def update_current_block(self) -> None:
-        """Show the block at which the axes are, even if no tick has seen it while they moved."""
+        """Show the block at which the axes are, even if no tick occurred while the axes moved through it."""
         self._show_block_at_rest(self._motion.current_block)
 
     def advance(self) -> None:
-        """Refill the queue, then do the next action. Raises AlarmError, MotionError or DriverError."""
+        """Refill the queue, then perform the next action. Raises AlarmError, MotionError or DriverError."""
         playing = self._motion.current_block if self._motion.is_moving else None
         if playing is not None:
             self._show(playing)
@@ -342,7 +347,10 @@ class Cycle:
                 self._advance_at_rest()
 
     def _advance_at_rest(self) -> None:
-        """Wait, act or start the next path section at rest, within the limits of one tick."""
+        """Wait, perform an action or start the next path section from rest.
+
+        The number of actions per tick is limited.
+        """
         for _ in range(_MAX_ACTIONS_PER_TICK):
             match self._still.determine_next_action():
                 case NextAction.ASK_AGAIN:
@@ -373,7 +381,7 @@ class Cycle:
                 pass
 
     def _execute_block(self, block: Block) -> bool:
-        """Execute the block that needs the standstill; return False if the cycle stops or ends with it."""
+        """Execute the block that needs the standstill; return whether the cycle continues after it."""
         context, action = self._context, block.action
         if action is not None:
             self._show(block)
@@ -390,7 +398,7 @@ class Cycle:
         return True
 
     def _check_spindle(self, block: Block) -> None:
-        """Hold a feed per revolution that has lost its spindle; retract from a thread at once."""
+        """Hold a feed per revolution if the spindle speed is lost; retract from a thread at once."""
         spindle = self._context.spindle
         if (
             not needs_spindle_at_speed(block)
@@ -410,7 +418,7 @@ class Cycle:
             self.start_feed_hold(spindle.slow_reason or "SPINDLE BELOW HALF COMMANDED SPEED")
 
     def _show_block_at_rest(self, block: Block | None) -> None:
-        """Show a block at rest, because blocks without motion have been executed too."""
+        """Show the last block reached at rest, because blocks without motion have been executed too."""
         if block is not None and (self.current_block is None or block.n > self.current_block.n):
             self._show(block)
 

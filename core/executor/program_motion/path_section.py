@@ -1,7 +1,7 @@
-"""A path section: its blocks, its path with speeds, and the plans that fill the setpoint queue.
+"""Path section: its blocks, its path with speeds, and the plans that fill the setpoint queue.
 
-Only about one second of a plan is queued, followed by a braking tail. The axes therefore stop on the path if
-the queue is not extended.
+Only about one second of a plan is queued, followed by a braking tail. The axes therefore stop on the path
+if the queue is not extended.
 """
 
 from __future__ import annotations
@@ -37,7 +37,10 @@ class SectionProgress(Enum):
 
 
 class OverrideFactors(NamedTuple):
-    """The overrides as fractions of the programmed speeds. ``spindle`` is actual over programmed speed."""
+    """Overrides as fractions of the programmed speeds.
+
+    ``spindle`` is the ratio of the actual to the programmed spindle speed.
+    """
 
     feed: float = 1.0
     rapid: float = 1.0
@@ -53,7 +56,10 @@ class PathSection:
         self.first_block: Block | None = None
 
     def append_blocks(self, blocks: Iterable[Block], reached_distance: float = -np.inf) -> None:
-        """Append blocks; ``reached_distance`` is described in ``PathBuilder.add``."""
+        """Append blocks to the path section.
+
+        ``reached_distance`` is described in ``PathBuilder.add_blocks``.
+        """
         new = list(blocks)
         self._builder.add_blocks(new, reached_distance)
         for block in new:
@@ -65,31 +71,31 @@ class PathSection:
         return self._blocks.get(number)
 
     def following_blocks(self, block_number: int) -> list[Block]:
-        """Return the blocks after block ``n``, in order."""
+        """Return the blocks after block ``block_number``, in order."""
         return [block for number, block in sorted(self._blocks.items()) if number > block_number]
 
     @property
     def length_mm(self) -> float:
-        """The length of the stored path in mm, or in degrees if only C turns."""
+        """Return the length of the stored path in mm, or in degrees if only C turns."""
         return self._builder.build_path().length
 
     @property
     def end_distance(self) -> float:
-        """The distance along the path at its end."""
+        """Return the distance along the path at the end of the path."""
         return float(self._builder.build_path().joint_distances[-1])
 
     @property
     def last_block(self) -> Block | None:
-        """The block with the highest number, or None."""
+        """Return the block with the highest number, or None."""
         return self._blocks[max(self._blocks)] if self._blocks else None
 
     def block_end_distance(self, number: int) -> float:
-        """Return the distance at which block ``n`` ends; inf if the block is not on the path."""
+        """Return the distance at which block ``number`` ends, or inf if the block is not on the path."""
         path = self._builder.build_path()
         return path.block_span(number)[1] if number in self._blocks else np.inf
 
     def drop_blocks_before(self, block_number: int | None) -> None:
-        """Drop the blocks before block ``n``."""
+        """Drop the blocks before block ``block_number``."""
         if block_number is None or block_number not in self._blocks:
             return
         self._builder.drop_blocks_before(block_number)
@@ -98,10 +104,11 @@ class PathSection:
             del self._blocks[old]
 
     def scale_path(self, overrides: OverrideFactors, last_block_number: int | None) -> MotionPath:
-        """Return the path with scaled speeds, which are 0 after block ``last`` so that a plan stops there.
+        """Return the path with its speeds scaled by the overrides.
 
-        The limits do not depend on the overrides. A new plan from a moving state therefore meets the limits
-        of the plan that it replaces.
+        After block ``last_block_number`` the speeds are 0, so that a plan stops there. The limits do not
+        depend on the overrides. A new plan that starts during motion therefore meets the limits of the plan
+        that it replaces.
         """
         path = self._builder.build_path()
         if last_block_number is None and overrides == (1.0, 1.0, 1.0):
@@ -111,9 +118,10 @@ class PathSection:
         return dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=rate))
 
     def find_stop_block(self, first_block_number: int | None, distance: float) -> int | None:
-        """Return the first block from ``last`` on that ends at or after ``s`` and permits a stop.
+        """Return the first block at whose end the axes can stop, or None if no block permits a stop.
 
-        Returns None if no block does, for example while a tap is in its hole.
+        The search starts at block ``first_block_number``, and the block must end at or after ``distance``.
+        No block permits a stop while a tap is in its hole, for example.
         """
         path = self._builder.build_path()
         numbers: list[int] = path.block_numbers.tolist()
@@ -143,8 +151,9 @@ class PathSection:
 
 
 class QueuedPlan(NamedTuple):
-    """A plan in the queue. It is executed from time ``start_time_s`` on, and its own time zero is
-    ``origin``.
+    """A plan in the queue, which is executed from the time ``start_time_s`` on.
+
+    ``time_origin_s`` is the time at which the plan's own time is zero.
     """
 
     start_time_s: float
@@ -152,17 +161,17 @@ class QueuedPlan(NamedTuple):
     profile: MotionProfile
 
     def distance_and_speed_at(self, time_s: float) -> tuple[float, float]:
-        """Return the distance along the path and the speed at time ``t``."""
+        """Return the distance along the path and the speed at ``time_s``."""
         s, v = self.profile.distance_and_speed_at(time_s - self.time_origin_s)
         return float(s[0]), float(v[0])
 
     def block_number_at(self, time_s: float) -> int:
-        """Return the number of the block that is executed at time ``t``."""
+        """Return the number of the block that is executed at ``time_s``."""
         return self.profile.block_number_at(time_s - self.time_origin_s)
 
 
 class QueuedPlans:
-    """The queued plans in the order of their execution."""
+    """The queued plans in order of execution."""
 
     def __init__(self) -> None:
         self._tracks: list[QueuedPlan] = []
@@ -173,25 +182,25 @@ class QueuedPlans:
 
     @property
     def last_plan(self) -> QueuedPlan | None:
-        """The last plan in the queue, or None."""
+        """Return the last plan in the queue, or None."""
         return self._tracks[-1] if self._tracks else None
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
-        """Return the plan that is executed at ``t``, or the first plan if ``t`` is before it."""
+        """Return the plan that is executed at ``time_s``, or the first plan before its start."""
         for track in reversed(self._tracks):
             if track.start_time_s <= time_s:
                 return track
         return self._tracks[0] if self._tracks else None
 
     def replace_from(self, time_s: float, plans: Sequence[QueuedPlan], now: float) -> None:
-        """Replace the plans from ``t`` on, and drop the plans that are over at ``now``."""
+        """Replace the plans from ``time_s`` on, and drop the plans that have ended at ``now``."""
         kept = [track for track in self._tracks if track.start_time_s < time_s]
         over = max((i for i, track in enumerate(kept) if track.start_time_s <= now), default=0)
         self._tracks = [*kept[over:], *plans]
 
 
 class PlanQueue:
-    """The setpoint queue and the rest of the present plan. Used on the executor's thread only."""
+    """Setpoint queue with the rest of the present plan. It is used on the executor's thread only."""
 
     def __init__(self, axes: AxisSink, lateness: TickLateness) -> None:
         self._axes = axes
@@ -204,41 +213,44 @@ class PlanQueue:
 
     @property
     def planned_end_s(self) -> float:
-        """The time at which the present plan comes to rest."""
+        """Return the time at which the motion of the present plan comes to rest."""
         return self._origin + (self._profile.duration_s if self._profile else 0.0)
 
     @property
     def starvation_time_s(self) -> float:
-        """The start time of the braking tail if the queue is not extended; inf if all is queued."""
+        """Return the start time of the braking tail if the queue is not extended.
+
+        The result is inf if the whole plan is queued.
+        """
         return self._queued_to if self._queued_to < self.planned_end_s - 1e-9 else np.inf
 
     @property
     def last_plan(self) -> QueuedPlan | None:
-        """The last plan in the queue, or None."""
+        """Return the last plan in the queue, or None."""
         return self._tracks.last_plan
 
     def earliest_splice_time(self, now: float) -> float:
-        """Return the earliest time from which a plan started now can change the queue."""
+        """Return the earliest time from which a plan that is started at ``now`` can change the queue."""
         return now + self._axes.commit + 1.5 * self._cost
 
     def latest_splice_time(self, now: float) -> float:
-        """Return the splice time if the plan needs all its attempts."""
+        """Return the splice time of a plan that needs all its attempts."""
         return self.earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
-        """Return the plan that is executed at ``t``, or None if the queue is empty."""
+        """Return the plan that is executed at ``time_s``, or None if the queue is empty."""
         return self._tracks.find_plan(time_s)
 
     def clear(self) -> None:
-        """Discard the plan and the record of the queue."""
+        """Discard the present plan and the stored queue."""
         self._tracks.clear()
         self._profile, self._origin, self._queued_to = None, 0.0, 0.0
 
     def splice_plan(self, make_plan: Callable[[float], MotionProfile], *, as_soon_as_possible: bool) -> None:
-        """Make a plan from a time that can still be changed, and splice it. Retry later if it came too late.
+        """Make a plan that starts at a time that can still be changed, and splice it into the queue.
 
-        With ``as_soon_as_possible`` the plan starts as soon as possible, otherwise after the queued motion.
-        Raises MotionError or DriverError.
+        If the plan is too late, another attempt is made with a later time. If ``as_soon_as_possible`` is
+        False, the plan starts after the queued motion. Raises MotionError or DriverError.
         """
         for attempt in range(_MAX_ATTEMPTS):
             began = self._axes.now()
@@ -259,7 +271,7 @@ class PlanQueue:
             return
 
     def extend_queue(self, now: float) -> bool:
-        """Extend the queue from the present plan; return False if that is too late."""
+        """Extend the queue from the present plan; return False if it is too late to extend the queue."""
         if (
             self._profile is None
             or self._queued_to - now >= self._lateness.lookahead_s
@@ -273,14 +285,17 @@ class PlanQueue:
         return True
 
     def run_to_stop(self) -> None:
-        """Leave the tail in the queue and discard the rest of the plan."""
+        """Discard the rest of the plan, but leave the braking tail in the queue."""
         track = self._tracks.last_plan
         if track is not None:
             self._origin, self._profile = track.time_origin_s, track.profile
             self._queued_to = self.planned_end_s
 
     def _queue_plan(self, t: float, origin: float, profile: MotionProfile) -> None:
-        """Splice the plan from ``t`` to the end of the look-ahead, followed by its braking tail."""
+        """Splice into the queue the plan from ``t`` to the end of the look-ahead.
+
+        A braking tail follows the plan.
+        """
         ahead = self._axes.now() + self._lateness.lookahead_s + QUEUE_RESERVE_S
         end = min(origin + profile.duration_s, max(ahead, t + QUEUE_RESERVE_S))
         parts = [profile.make_segments(t - origin, end - origin, origin)]

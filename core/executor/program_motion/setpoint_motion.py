@@ -1,6 +1,6 @@
 """Motion by setpoints: one path section or thread pass at a time, from rest to rest.
 
-Feed hold, override and single block use the same method. A new plan starts from the present state with the
+Feed hold, override and single block use the same method: a new plan starts from the present state with the
 present overrides and switches, and is spliced into the queue.
 """
 
@@ -32,7 +32,10 @@ _LEAST = 0.2  # fraction of the acceleration that braking has at least in short 
 
 
 class SetpointMotion:
-    """Plans, queues, stops and resumes a path section. Used on the executor's thread only."""
+    """Planner that plans, queues, stops and resumes a path section.
+
+    It is used on the executor's thread only.
+    """
 
     def __init__(self, context: MachineContext) -> None:
         machine = context.machine
@@ -55,22 +58,22 @@ class SetpointMotion:
 
     @property
     def has_section(self) -> bool:
-        """True if there is a path section or a thread pass."""
+        """Return whether there is a path section or a thread pass."""
         return self._section is not None or self._pass is not None
 
     @property
     def is_moving(self) -> bool:
-        """True if a path section or a thread pass is active and the axes are not at rest."""
+        """Return whether a path section or a thread pass is active and the axes are not at rest."""
         return self.has_section and not self._is_at_rest()
 
     @property
     def current_block(self) -> Block | None:
-        """The block being executed, not one that is planned ahead."""
+        """Return the block being executed, which may precede the blocks that are already planned."""
         return self._block_at(self._context.now)
 
     @property
     def following_block(self) -> Block | None:
-        """The block after the one being executed, if it belongs to the path section."""
+        """Return the block after the one being executed, or None if it is not in the path section."""
         if self._pass is not None:
             behind = self._following_blocks(self._pass.block_at(self._axes.now()))
             return behind[0] if behind else None
@@ -78,20 +81,23 @@ class SetpointMotion:
 
     @property
     def is_complete(self) -> bool:
-        """True if no block of the path section remains to be started."""
+        """Return whether no block of the path section remains to be started."""
         left = self._context.switches.single_block and self._has_steps_left()
         return self._is_fully_queued() and not left
 
     @property
     def last_block(self) -> Block | None:
-        """The last block at the end of the path section, which may have no length."""
+        """Return the last block of the path section, which may have no length."""
         if self._pass is not None:
             return self._pass.blocks[-1]
         return self._section.last_block if self._section is not None else None
 
     @property
     def starvation_time_s(self) -> float:
-        """The start time of the braking tail if the queue is not extended; inf if all is queued."""
+        """Return the start time of the braking tail if the queue is not extended.
+
+        The result is inf if all motion is queued.
+        """
         return np.inf if self._pass is not None else self._queue.starvation_time_s
 
     # --- requests -----------------------------------------------------------------------------------------
@@ -99,8 +105,8 @@ class SetpointMotion:
     def start_section(self, blocks: list[Block]) -> None:
         """Start a new path section, or a thread pass that follows the spindle, from rest.
 
-        Raises AlarmError if the spindle does not turn, MotionError if a block cannot be planned, or
-        DriverError.
+        Raises AlarmError if the spindle does not turn, MotionError if a block cannot be planned, and
+        DriverError if a driver fails.
         """
         self._single_from = None
         if blocks[0].kind is BlockKind.THREAD:
@@ -112,7 +118,7 @@ class SetpointMotion:
     def resume(self, last_executed_block: Block | None) -> None:
         """Resume from rest within the path section.
 
-        With single block, the motion ends with the block after ``behind``.
+        With single block, the motion ends with the block after ``last_executed_block``.
         """
         self._single_from = last_executed_block.n + 1 if last_executed_block else None
         self._plan_motion()
@@ -147,7 +153,7 @@ class SetpointMotion:
         self._extend(self._context.now)
 
     def hold_on_path(self) -> None:
-        """Stop as soon as the path permits; a thread pass ends after its pull-out."""
+        """Stop as soon as the path permits; a thread pass stops after its pull-out."""
         if self._pass is not None:
             self._pass.hold_pass()
         else:
@@ -162,22 +168,25 @@ class SetpointMotion:
             self._queue.splice_plan(lambda t: self._plan_stop(t, OverrideFactors()), as_soon_as_possible=True)
 
     def run_to_stop(self) -> None:
-        """Leave the tail in the queue and discard the rest of the plan."""
+        """Discard the rest of the plan, but leave the braking tail in the queue."""
         self._queue.run_to_stop()
 
     def cancel_waiting_pass(self) -> bool:
-        """Cancel a thread pass that still waits for its index; return False if it moves."""
+        """Cancel a thread pass that is waiting for the index pulse.
+
+        Return False if the pass already moves.
+        """
         if self._pass is not None:
             self._pass.hold_pass()
         return self._pass is not None and not self._pass.is_fully_queued
 
     def start_retract(self, block: Block) -> None:
-        """Stop along a thread that has lost its spindle, to retract X afterwards."""
+        """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
         self._retract = ThreadRetract.from_block(block, self._following_blocks(block), self._context.spindle)
         self.brake()
 
     def continue_retract(self) -> None:
-        """Retract X at rest, and raise AlarmError("thread-lost") when the tool is out."""
+        """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread."""
         if self._retract is None:
             return
         # The time of the tick may be before the end of the braking if the computer was late.
@@ -201,7 +210,7 @@ class SetpointMotion:
     def _begin_thread(self, blocks: list[Block]) -> None:
         """Start a thread pass, inside the driver if it has a gear, otherwise by setpoints over time.
 
-        Overrides, holds and single block take effect at its end.
+        Overrides, holds and single block take effect at the end of the pass.
         """
         self._clear()
         gear, angle = self._context.ports.gear, self._context.spindle.angle
@@ -216,7 +225,10 @@ class SetpointMotion:
         self._queue.clear()
 
     def _present_overrides(self) -> OverrideFactors:
-        """Return the present overrides. A rapid never exceeds its rate; G95 follows the spindle override."""
+        """Return the present overrides.
+
+        A rapid never exceeds its programmed rate. Feed per revolution (G95) follows the spindle override.
+        """
         feed = self._context.feed_override
         return OverrideFactors(feed, min(feed, 1.0), round(self._context.spindle.override, 2))
 
@@ -230,9 +242,9 @@ class SetpointMotion:
         self._splice(self._overrides, self._last, soon=as_soon_as_possible)
 
     def _splice(self, overrides: OverrideFactors, last: int | None, *, soon: bool = True) -> None:
-        """Plan from the present state to the end of the path section or of block ``last``.
+        """Plan from the present state to the end of the path section, or of block ``last``.
 
-        With ``soon`` the plan takes effect as soon as possible, otherwise after the queued motion.
+        If ``soon`` is True, the plan takes effect as soon as possible, otherwise after the queued motion.
         """
         if self._pass is not None:
             self._pass.restart_pass()
@@ -250,7 +262,9 @@ class SetpointMotion:
         return _make_plan(self._section.scale_path(overrides, None), self._queue.find_plan(t), t, stop=True)
 
     def _refill(self, feed: ReadAhead) -> None:
-        """Add blocks that were read ahead before the braking end of the path section is near."""
+        """Append blocks that were read ahead before the axes come near the braking end of the
+        path section.
+        """
         now = self._context.now
         left = (self._pass.end_time_s if self._pass is not None else self._queue.planned_end_s) - now
         ahead = self._context.lateness.lookahead_s
@@ -266,7 +280,7 @@ class SetpointMotion:
             )
 
     def _add(self, blocks: Iterable[Block]) -> None:
-        """Append blocks to the path section; the next splice plans them."""
+        """Append blocks to the path section; the next splice includes them in the plan."""
         assert self._section is not None
         self._section.append_blocks(blocks, self._stop_distance())
 
@@ -277,7 +291,7 @@ class SetpointMotion:
         self._queue.extend_queue(now)
 
     def _stop_distance(self) -> float:
-        """Return the distance before which the present motion can stop if it is changed now."""
+        """Return the shortest distance along the path at which the present motion can still stop."""
         t = self._queue.latest_splice_time(self._axes.now())
         track = self._queue.find_plan(t)
         if track is None:
@@ -288,7 +302,10 @@ class SetpointMotion:
     # --- single block and the present block ---------------------------------------------------------------
 
     def _last_block(self) -> int | None:
-        """Return the block at whose end single block stops, no earlier than the axes can."""
+        """Return the number of the block at whose end single block stops the axes.
+
+        The block is never one at whose end the axes can no longer stop.
+        """
         now = self._context.now
         current = self._block_at(now)
         first = self._single_from if self._single_from is not None else (current.n if current else None)
@@ -297,7 +314,10 @@ class SetpointMotion:
         return last
 
     def _stoppable(self, first: int | None, now: float) -> int | None:
-        """Return the first block from ``first`` on at whose end the axes can still stop, or None."""
+        """Return the number of the first block at whose end the axes can still stop, or None.
+
+        The search starts at block ``first``.
+        """
         if self._pass is not None:
             return self._pass.blocks[-1].n
         assert self._section is not None
@@ -319,7 +339,10 @@ class SetpointMotion:
         return True
 
     def _has_steps_left(self) -> bool:
-        """Return whether blocks follow the present one at rest, including blocks without length."""
+        """Return whether blocks remain after the block at which the axes are at rest.
+
+        Blocks without length count too.
+        """
         if self._section is None:
             return False
         at = self._block_at(self._axes.now())
@@ -335,7 +358,10 @@ class SetpointMotion:
         return track is not None and track.profile.end_distance >= self._section.end_distance - 1e-9
 
     def _is_at_rest(self) -> bool:
-        """Return whether the queue has ended. The clock is read last because it continues to run."""
+        """Return whether the queue has ended.
+
+        The clock is read last because it continues to run.
+        """
         horizon = self._axes.horizon()
         return is_queue_finished(horizon, self._axes.now())
 
@@ -361,7 +387,10 @@ class SetpointMotion:
 def _make_plan(
     path: MotionPath, present: QueuedPlan | None, t: float, *, stop: bool = False
 ) -> MotionProfile:
-    """Return a plan from the state of the present plan at time ``t``, or from rest without one."""
+    """Return a plan that starts from the state of the present plan at time ``t``.
+
+    Without a present plan, the new plan starts from rest.
+    """
     if present is None:
         return plan_motion(path, stop=stop)
     s, v = present.distance_and_speed_at(t)

@@ -1,4 +1,4 @@
-"""The angle of the spindle ahead of time, predicted from the latest readings of its encoder."""
+"""Prediction of the spindle angle from the latest encoder readings."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ _MIN_READINGS = 8  # readings
 
 
 class SpindleAnglePredictor:
-    """Prediction of the spindle angle by a cubic fit to the latest encoder readings.
+    """Predictor of the spindle angle by a cubic fit to the latest encoder readings.
 
-    Angles are in signed revolutions and times in seconds. With one reading every 10 ms and 4096 counts per
-    revolution, the angle 45 ms ahead is accurate within 0.25 degree. If the speed varies by 2 % in 2 s, it is
-    accurate within 0.2 degree.
+    Angles are in signed revolutions and times are in seconds. With one reading every 10 ms and 4096 counts
+    per revolution, the angle 45 ms ahead is accurate to within 0.25 degree. If the speed varies by 2 % in 2
+    s, the angle is accurate to within 0.2 degree.
     """
 
     def __init__(self) -> None:
@@ -28,7 +28,10 @@ class SpindleAnglePredictor:
         self._fit: tuple[list[float], float] | None = None
 
     def add_reading(self, reading: tuple[float, float] | None) -> None:
-        """Add a reading (time, revolutions). None means that the spindle has no encoder."""
+        """Add a reading (time, revolutions).
+
+        None means that the spindle has no encoder.
+        """
         if reading is None:
             self._reads.clear()
         elif not self._reads or reading[0] > self._reads[-1][0]:
@@ -41,20 +44,21 @@ class SpindleAnglePredictor:
 
     @property
     def latest_revolutions(self) -> float:
-        """Revolutions of the latest reading; NaN if there are no readings."""
+        """Return the revolutions of the latest reading, or NaN if there are no readings."""
         return self._reads[-1][1] if self._reads else math.nan
 
     @property
     def is_predictable(self) -> bool:
-        """True if there are enough recent readings for a prediction.
+        """Return whether there are enough recent readings for a prediction.
 
-        It is False immediately after an interruption of the control, and always without an encoder.
+        The result is False immediately after an interruption of the control, and always without an encoder.
         """
         return len(self._reads) >= _MIN_READINGS
 
     def predict(self, time_s: float) -> tuple[float, float] | None:
-        """Return (revolutions, revolutions per second) at time ``time_s``, or None without enough
-        readings.
+        """Return (revolutions, revolutions per second) at ``time_s``.
+
+        The result is None if there are not enough readings.
         """
         if not self.is_predictable:
             return None
@@ -69,7 +73,10 @@ class SpindleAnglePredictor:
         return base + turns + speed * (u - near), speed
 
     def predict_turning(self, time_s: float) -> tuple[float, float]:
-        """Return the result of ``at``, but raise AlarmError if the spindle is stopped or not measured."""
+        """Return the result of ``predict`` for a turning spindle.
+
+        Raises AlarmError if the spindle is stopped or not measured.
+        """
         state = self.predict(time_s)
         if state is None:
             raise AlarmError("thread-no-encoder", "the spindle encoder does not count")
@@ -78,18 +85,20 @@ class SpindleAnglePredictor:
         return state
 
     def _fit_readings(self) -> tuple[list[float], float]:
-        """Return the coefficients of the cubic from the last reading on, and the angle of that reading."""
+        """Return the coefficients of the cubic relative to the last reading, and the angle of
+        this reading.
+        """
         last, base = self._reads[-1]
         times, turns = zip(*self._reads, strict=True)
         return _least_squares([t - last for t in times], [each - base for each in turns], _FIT_DEGREE), base
 
 
 def _least_squares(u: list[float], y: list[float], degree: int) -> list[float]:
-    """Return the coefficients of the least-squares polynomial through ``y`` at ``u``, the constant first.
+    """Return the coefficients of the least-squares polynomial through ``y`` at ``u``, constant term first.
 
     The method uses polynomials that are orthogonal on these points (Forsythe 1957), each computed from the
-    two previous ones. For 20 readings it takes a tenth of the time of a matrix solver and tolerates readings
-    that are close together.
+    two previous ones. For 20 readings it takes a tenth of the time of a matrix solver and tolerates
+    readings that are close together.
     """
     shape = [0.0] * (degree + 1)
     factors, factors_before = [1.0], [0.0]

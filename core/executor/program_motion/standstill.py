@@ -1,6 +1,7 @@
-"""Standstill between path sections: execution of M functions and dwells, and their waits.
+"""Standstill between path sections: execution of M functions and dwells, and the resulting waits.
 
-Each wait has a text for the screen, an end condition, and a time limit after which it is an alarm.
+Each wait has a text for the screen, an end condition, and a time limit. If the limit is exceeded, an alarm
+is raised.
 """
 
 from __future__ import annotations
@@ -41,7 +42,10 @@ _ORIENTATION_TURNS = 3.0  # revolutions at orienting speed: to the index, to the
 
 @dataclass(slots=True)
 class StandstillWait:
-    """A wait for a condition. ``label`` is empty for short waits. Time in feed hold does not count."""
+    """A wait for a condition.
+
+    The label is empty for short waits. Time in feed hold does not count toward the time limit.
+    """
 
     make_label: Callable[[], str]
     is_condition_met: Callable[[float], bool]
@@ -70,7 +74,7 @@ def make_position_wait(context: MachineContext) -> StandstillWait:
 
 
 def make_spindle_speed_wait(context: MachineContext, *, thread: bool = False) -> StandstillWait:
-    """Return a wait until the spindle is at speed, and for a thread until its encoder can be read.
+    """Return a wait until the spindle is at speed and, for a thread, until its encoder can be read.
 
     The wait has no time limit while the operator prevents the spindle from turning.
     """
@@ -96,9 +100,10 @@ def make_spindle_speed_wait(context: MachineContext, *, thread: bool = False) ->
 
 
 def execute_block_action(block: Block, context: MachineContext) -> StandstillWait | None:
-    """Execute the action of a block and return its wait, or None. Raises AlarmError or DriverError.
+    """Execute the action of a block and return its wait, or None if there is nothing to wait for.
 
-    The cycle handles stops and ends of the program. Offsets, shifts and presets are already in the blocks.
+    The cycle handles stops and the end of the program. Offsets, shifts and presets are already included in
+    the blocks. Raises AlarmError or DriverError.
     """
     match block.action:
         case SpindleRun():
@@ -156,7 +161,7 @@ def _make_spindle_stop_wait(context: MachineContext) -> StandstillWait:
 def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
     """Return a wait until the spindle is stopped and engaged as the C axis.
 
-    A spindle that is already engaged is not stopped again.
+    If the spindle is already engaged, it is not stopped again.
     """
     spindle, change = context.spindle, 0.0
     if context.ports.lock is None or not spindle.is_c_axis_ready:
@@ -208,7 +213,7 @@ def _orient_spindle(context: MachineContext, angle: float, direction: int) -> St
 
 
 def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
-    """Switch the collet and return its wait.
+    """Open or close the collet and return the wait for this motion.
 
     If the machine file forbids unclamping at speed, opening waits until the spindle has stopped.
     """
@@ -239,7 +244,7 @@ def _move_collet(closed: bool, context: MachineContext) -> StandstillWait:
 
 
 class NextAction(Enum):
-    """The next action of the cycle at rest."""
+    """The next action of a cycle at rest."""
 
     WAIT = auto()  # nothing, because a wait is active
     ASK_AGAIN = auto()  # ask again, because a wait has started or ended
@@ -251,9 +256,10 @@ class NextAction(Enum):
 
 
 class Standstill:
-    """Determines the next action at rest. ``done`` is True if a block was executed since the last stop.
+    """Sequencer that determines the next action of a cycle at rest.
 
-    ``in_hole`` returns whether a tap is in its hole, where single block does not stop.
+    ``has_executed_block`` is True if a block was executed since the last stop. ``in_hole`` returns whether
+    a tap is in its hole, where single block does not stop.
     """
 
     def __init__(self, context: MachineContext, feed: ReadAhead, in_hole: Callable[[], bool]) -> None:
@@ -264,11 +270,14 @@ class Standstill:
 
     @property
     def wait_label(self) -> str | None:
-        """The text of the present wait, empty for a short wait, or None without a wait."""
+        """Return the text of the present wait, or None if there is no wait.
+
+        The text of a short wait is empty.
+        """
         return self._wait.make_label() if self._wait is not None else None
 
     def determine_next_action(self) -> NextAction:
-        """Return the next single action of the cycle.
+        """Return the next action of the cycle.
 
         Raises AlarmError if a wait takes too long or a block is invalid.
         """
@@ -290,7 +299,10 @@ class Standstill:
         return NextAction.END if feed.is_at_end else NextAction.NOTHING
 
     def execute_action(self, block: Block) -> None:
-        """Execute an action, or wait for the speed that a block needs. Raises AlarmError or DriverError."""
+        """Execute the action of a block, or wait for the spindle speed that the block needs.
+
+        Raises AlarmError or DriverError.
+        """
         if block.action is not None:
             self._wait = execute_block_action(block, self._context)
         elif needs_spindle_at_speed(block):
@@ -299,7 +311,7 @@ class Standstill:
             self._waited()
 
     def wait_for_next_cycle(self, label: str) -> None:
-        """Wait until another cycle replaces this one."""
+        """Wait until another cycle replaces the present cycle."""
         if self._wait is None:
             self._wait = StandstillWait(lambda: label, lambda _: False, self._context.now)
 

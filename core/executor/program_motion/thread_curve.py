@@ -1,9 +1,9 @@
-"""X and Z along a chain of thread blocks, as functions of s, the spindle revolutions times a lead.
+"""Curve of X and Z along a chain of thread blocks, as functions of s, the spindle revolutions times a lead.
 
 In a thread of one block, Z is proportional to s. In a chain, the lead changes between blocks, and with G34
 and G35 also within a block. An axis cannot change its speed at once. Around each joint, both axes therefore
-change to the next lead over as many revolutions as half of their acceleration requires at the commanded
-speed.
+change to the next lead over a number of revolutions, which is the number that half of their acceleration
+requires at the commanded speed.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SAME_POINT_TOLERANCE = 1e-9
 
 
 class ThreadCurve(NamedTuple):
-    """Machine X and Z in mm at the knots ``s`` in mm, which start at 0.
+    """Positions of X and Z in machine coordinates at the knots ``s``, all in mm; the first knot is 0.
 
     The curve is linear between the knots and continues linearly after the last one.
     """
@@ -40,11 +40,11 @@ class ThreadCurve(NamedTuple):
 
     @property
     def length(self) -> float:
-        """The value of s at the end."""
+        """Return the value of s at the end of the curve."""
         return float(self.s[-1])
 
     def evaluate(self, s: float) -> tuple[float, float, float, float]:
-        """Return X and Z at ``s``, and their derivatives by s."""
+        """Return X and Z at ``s``, and their derivatives with respect to s."""
         i = int(np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2))
         step = float(self.s[i + 1] - self.s[i])
         dx, dz = float(self.x[i + 1] - self.x[i]) / step, float(self.z[i + 1] - self.z[i]) / step
@@ -52,24 +52,27 @@ class ThreadCurve(NamedTuple):
         return float(self.x[i]) + dx * ahead, float(self.z[i]) + dz * ahead, dx, dz
 
     def find_s(self, z: float) -> float:
-        """Return s at which Z is ``z``, extrapolated before the start and after the end."""
+        """Return the s at which Z equals ``z``.
+
+        The curve is extrapolated before its start and after its end.
+        """
         sign = math.copysign(1.0, float(self.z[-1] - self.z[0]))
         i = int(np.clip(np.searchsorted(sign * self.z, sign * z, side="right") - 1, 0, len(self.s) - 2))
         return float(self.s[i] + (z - self.z[i]) * (self.s[i + 1] - self.s[i]) / (self.z[i + 1] - self.z[i]))
 
     def max_acceleration(self, ax: float, az: float) -> float:
-        """Return the acceleration along s in mm/s² that the axis limits ``ax`` and ``az`` permit."""
+        """Return the highest acceleration along s in mm/s² at which X and Z stay within ``ax`` and ``az``."""
         dx, dz = np.abs(np.diff(self.x) / np.diff(self.s)), np.abs(np.diff(self.z) / np.diff(self.s))
         return float(min(az / dz.max(), ax / dx.max() if dx.max() else math.inf))
 
 
 def spindle_revolutions(block: Block) -> float:
-    """Return the spindle revolutions of a thread block, whose feed is its mean lead."""
+    """Return the number of spindle revolutions of a thread block, whose feed is its mean lead."""
     return abs(block.z - block.z0) / block.feed
 
 
 def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
-    """Return the curve of a chain of threads. Its s is measured with the first lead."""
+    """Return the curve of a chain of threads; the lead of the first block defines the scale of s."""
     first = blocks[0]
     unit = first.feed - 0.5 * first.growth * spindle_revolutions(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
@@ -86,7 +89,7 @@ def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadC
 
 
 def _chord_points(block: Block) -> list[tuple[float, float]]:
-    """Return points along a block: the share of its length, and the revolutions since the previous point."""
+    """Return points along a block as (fraction of its length, revolutions since the previous point)."""
     whole = spindle_revolutions(block)
     if not block.growth:
         return [(1.0, whole)]
@@ -100,7 +103,10 @@ def _chord_points(block: Block) -> list[tuple[float, float]]:
 def _round_joints(
     raw: ThreadCurve, joints: Sequence[float], speed: float, limits: MotionLimits
 ) -> ThreadCurve:
-    """Return the curve with rounded joints where the axes cannot follow. ``speed`` is along s, in mm/s."""
+    """Return the curve with rounded joints where the axes cannot follow the sharp joint.
+
+    ``speed`` is the speed along s, in mm/s.
+    """
     s, points = list(raw.s), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
     for joint in joints:
         x0, z0, dx1, dz1 = raw.evaluate(joint)

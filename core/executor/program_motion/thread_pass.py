@@ -1,9 +1,9 @@
-"""A thread pass that follows the measured spindle angle, by repeated planning of setpoints or by a gear.
+"""Thread pass that follows the measured spindle angle, by repeated planning of setpoints or by a gear.
 
-The axis is in step if s = lead · (turns - index), with s along Z from the start of the pass and the
-revolutions as counted by the encoder. Every pass therefore enters at the same angle at any speed. The queue
-always contains the complete pass with pull-out and stop, based on the predicted spindle angle. Each tick
-corrects it from one commit time ahead.
+The axis is in step if s = lead · (revolutions - index), where s is the distance along Z from the start of
+the pass and the encoder counts the revolutions. Every pass therefore enters the thread at the same angle at
+any speed. The queue always contains the complete pass with pull-out and stop, based on the predicted
+spindle angle. Each tick corrects the queue from one commit time ahead.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _START_ERROR_CODES = {"late", "broken-path"}  # error codes of a driver if the p
 
 
 class SpindlePass:
-    """A thread pass that follows the spindle, with its largest deviation from it."""
+    """A thread pass that follows the spindle, with the largest deviation between axis and spindle."""
 
     def __init__(
         self,
@@ -63,7 +63,7 @@ class SpindlePass:
         self.max_deviation = 0.0  # largest deviation in revolutions between axis and spindle while in step
 
     def block_at_revolution(self, revolutions: float) -> Block:
-        """Return the thread block that is cut ``turns`` revolutions after the start of the pass."""
+        """Return the thread block that is cut ``revolutions`` revolutions after the start of the pass."""
         cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
         for block in cut:
             revolutions -= spindle_revolutions(block)
@@ -73,19 +73,23 @@ class SpindlePass:
 
     @property
     def is_fully_queued(self) -> bool:
-        """True if the queue contains the complete pass."""
+        """Return whether the queue contains the complete pass."""
         return not self._stopped
 
     def detect_lost_step(self) -> bool:
-        """Return True once per pass if axis and spindle deviate too much for a good thread."""
+        """Return whether axis and spindle deviate too much for a good thread.
+
+        The result is True only once per pass.
+        """
         before, self._reported = self._reported, self.max_deviation > _ALLOWED_DEVIATION
         return self._reported and not before
 
 
 class ThreadPass(SpindlePass):
-    """A thread pass by setpoints: the thread, followed by its pull-out or a straight rapid in X.
+    """A thread pass by setpoints.
 
-    Raises AlarmError if the spindle does not turn or has no encoder.
+    The thread is followed by its pull-out or by a straight rapid in X. Raises AlarmError if the spindle
+    does not turn or has no encoder.
     """
 
     def __init__(
@@ -107,7 +111,7 @@ class ThreadPass(SpindlePass):
 
     @property
     def end_time_s(self) -> float:
-        """The planned time at which the pass comes to rest, in seconds."""
+        """Return the planned time at which the pass comes to rest, in seconds."""
         return self._ends
 
     def block_at(self, now: float) -> Block:
@@ -121,7 +125,7 @@ class ThreadPass(SpindlePass):
         )
 
     def start_pass(self) -> None:
-        """Select the index and queue the pass from rest."""
+        """Select the index pulse and queue the pass from rest."""
         now = self._axes.now()
         # Nothing has started yet, so a pass that cannot be queued starts on resume.
         self._stopped, self._ends, self._leaves, self._index = True, now, math.inf, 0.0
@@ -136,7 +140,10 @@ class ThreadPass(SpindlePass):
         raise DriverError("the thread moves could not be queued in time", "late")
 
     def correct_motion(self) -> None:
-        """Correct the motion from one commit time ahead, and measure the deviation. Called once per tick."""
+        """Correct the motion from one commit time ahead, and measure the deviation.
+
+        The function is called once per tick.
+        """
         now = self._axes.now()
         if self._stopped or now >= self._leaves or self._turns.predict(now) is None:
             return  # without encoder data the queued pass is the best choice
@@ -146,7 +153,7 @@ class ThreadPass(SpindlePass):
         self._replan()
 
     def _replan(self) -> bool:
-        """Plan and queue the pass again; return False if that came too late, so that the old plan remains."""
+        """Plan and queue the pass again; return False if this is too late, so that the old plan remains."""
         now = self._axes.now()
         t = now + self._axes.commit + 1.5 * self._cost
         try:
@@ -161,7 +168,7 @@ class ThreadPass(SpindlePass):
         return True
 
     def hold_pass(self) -> None:
-        """Cancel a pass that has not started to move; any other pass is finished."""
+        """Cancel a pass that has not started to move. A pass that already moves is finished."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         if self._stopped or t >= self._begins[0]:
             return
@@ -170,13 +177,13 @@ class ThreadPass(SpindlePass):
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
     def restart_pass(self) -> None:
-        """Start a pass again, at another index, after a hold before its first motion."""
+        """Start the pass again at another index pulse, if a hold canceled it before its first motion."""
         s, v = self._demand(self._axes.now())
         if self._stopped and abs(s) <= _AT_START and v == 0.0:
             self.start_pass()
 
     def stop_in_thread(self) -> None:
-        """Stop along the thread, unless the pass already pulls out."""
+        """Stop along the thread, unless the pull-out has started."""
         t = self._axes.now() + self._axes.commit + max(1.5 * self._cost, _BRAKING_DELAY_S)
         s, v = self._demand(t)
         if (
@@ -202,14 +209,17 @@ class ThreadPass(SpindlePass):
         self._leaves, self._ends = leaves, _end(segments)
 
     def _plan_run_up(self, t: float) -> Phases | None:
-        """Return a wait and an acceleration from rest to the line, or None if the start has passed."""
+        """Return a wait and an acceleration from rest to the thread line, or None if it is too late."""
         starts, v = self._begins = self._find_start()
         if starts < t:
             return None
         return [(starts - t, 0.0), (v / self._ramp, self._ramp)]
 
     def _plan_blend(self, t: float, s: float, v: float) -> Phases | None:
-        """Return two phases that lead to the line without reversing, or None without room for them."""
+        """Return two phases that lead to the thread line without reversing, or None.
+
+        The result is None if there is no room for the phases.
+        """
         path, time = self._path, _BLEND
         while time <= _MAX_CORRECTION_S:
             goal, speed, rest = self._target(t + time)
@@ -239,8 +249,8 @@ class ThreadPass(SpindlePass):
     def _find_start(self) -> tuple[float, float]:
         """Return the start time of the run-up and its final speed.
 
-        The run-up starts half its duration before the index. An axis that accelerates from rest lags a moving
-        one by v²/2a, so it must start v/2a earlier.
+        The run-up starts half its duration before the index. An axis that accelerates from rest lags an
+        axis that already moves by v²/2a, so it must start v/2a earlier.
         """
         at = self._axes.now()
         for _ in range(3):
@@ -257,7 +267,10 @@ class ThreadPass(SpindlePass):
         return self._sign * state[0], self._sign * state[1]
 
     def _measure(self, now: float) -> None:
-        """Record the deviation between setpoints and spindle, in leads, when the axis is at speed."""
+        """Record the deviation between setpoints and spindle when the axis is at speed.
+
+        The deviation is a multiple of the lead.
+        """
         s, v = self._demand(now)
         turns, speed = self._spindle_state(now)
         if v < 0.9 * self._lead * speed:
@@ -274,13 +287,11 @@ def _end(segments: Segments) -> float:
 
 
 class GearedThreadPass(SpindlePass):
-    """A thread pass by a cam along which the driver's axes follow the spindle; planned once.
+    """A thread pass that is planned once as a cam, along which the driver's axes follow the spindle.
 
-    The axis is in step if s = lead · turns, counted from an index that is selected when the pass starts.
-    Run-up, pull-out and stop are on the cam too. They depend on the spindle speed only because they must stay
-    within the axis limits.
-
-    Raises AlarmError if the spindle does not turn or has no encoder.
+    The axis is in step if s = lead · revolutions, counted from an index pulse that is selected when the
+    pass starts. Run-up, pull-out and stop are on the cam too. They depend on the spindle speed only because
+    they must stay within the axis limits. Raises AlarmError if the spindle does not turn or has no encoder.
     """
 
     def __init__(
@@ -300,11 +311,11 @@ class GearedThreadPass(SpindlePass):
 
     @property
     def end_time_s(self) -> float:
-        """The time at which the pass will come to rest at the present speed, in seconds."""
+        """Return the time at which the pass will come to rest at the present spindle speed, in seconds."""
         return self._axes.horizon()
 
     def block_at(self, _now: float) -> Block:
-        """Return the block being executed."""
+        """Return the block being executed, regardless of the time."""
         geared = self._gear.geared()
         if geared is None:
             return self.blocks[0] if self._stopped else self.blocks[-1]
@@ -315,7 +326,7 @@ class GearedThreadPass(SpindlePass):
         )
 
     def start_pass(self) -> None:
-        """Select the index and send the pass to the driver, from rest."""
+        """Select the index pulse and send the pass to the driver, from rest."""
         self._stopped = True  # Nothing has started yet, so a pass that cannot be queued starts on resume.
         for early in _FROM_REST:
             if self._engage_from_rest(early):
@@ -324,7 +335,10 @@ class GearedThreadPass(SpindlePass):
         raise DriverError("the thread moves could not be queued in time", "late")
 
     def correct_motion(self) -> None:
-        """Measure the deviation, and plan the rest again if the speed has changed. Called once per tick."""
+        """Measure the deviation, and plan the remaining pass again if the spindle speed has changed.
+
+        The function is called once per tick.
+        """
         geared = self._gear.geared()
         state = self._turns.predict(self._axes.now())
         if self._stopped or geared is None or state is None:
@@ -336,7 +350,7 @@ class GearedThreadPass(SpindlePass):
             self._replan_for_speed(speed, geared)
 
     def hold_pass(self) -> None:
-        """Cancel a pass that has not started to move; any other pass is finished."""
+        """Cancel a pass that has not started to move. A pass that already moves is finished."""
         t = self._axes.now() + self._axes.commit + _CHANGE_LEAD_S
         geared = self._gear.geared()
         if self._stopped or geared is None or self._reachable_position(geared, t) >= -self._ramp:
@@ -351,20 +365,20 @@ class GearedThreadPass(SpindlePass):
         self._stopped = True
 
     def restart_pass(self) -> None:
-        """Start a pass again, at another index, after a hold before its first motion."""
+        """Start the pass again at another index pulse, if a hold canceled it before its first motion."""
         (_, z, *_), _ = self._axes.demand_at(self._axes.now())
         if self._stopped and self._gear.geared() is None and abs(z - self._path.z) <= _AT_START:
             self.start_pass()
 
     def stop_in_thread(self) -> None:
-        """Stop along the thread, unless the pass only retracts X."""
+        """Stop along the thread, unless only the X retract remains."""
         if self._stopped or self._gear.geared() is None:
             return
         self._axes.stop(StopMode.RAMP_HOLD)
         self._stopped = True
 
     def _engage_from_rest(self, early: float) -> bool:
-        """Plan the complete pass; return False if it was too late."""
+        """Plan the complete pass from rest; return False if this was too late."""
         state = self._turns.predict_turning(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._run_up_revolutions(self._speed)
@@ -379,18 +393,18 @@ class GearedThreadPass(SpindlePass):
         return True
 
     def _run_up_revolutions(self, speed: float) -> float:
-        """Return the revolutions from rest to the index.
+        """Return the number of revolutions from rest to the index.
 
-        An axis that accelerates from rest lags a moving one by v²/2a, so it must start v/2a earlier, which is
-        half of its run-up.
+        An axis that accelerates from rest lags an axis that already moves by v²/2a. It must therefore start
+        v/2a earlier, which is half of its run-up.
         """
         return 0.5 * self._path.lead * speed**2 / (_GEARED_SHARE * self._path.acceleration)
 
     def _replan_for_speed(self, speed: float, geared: GearState) -> None:
-        """Plan the run-up, or the part after the thread, for another spindle speed.
+        """Plan the run-up, or the motion after the thread, again for another spindle speed.
 
-        If the driver rejects the change, the complete pass that it already has continues. An axis that cannot
-        follow it then lags.
+        If the driver rejects the change, it continues with the complete pass that it already has. An axis
+        that cannot follow this pass then lags.
         """
         path, ramp = self._path, self._run_up_revolutions(speed)
         for early in _CHANGE_LEADS_S:
@@ -417,16 +431,20 @@ class GearedThreadPass(SpindlePass):
         self._ramp = ramp
 
     def _send_path(self, revolutions: float, s: float, v: float, speed: float, run_up: Phases) -> None:
-        """Send the path from ``turns`` on, where the axis is at ``s`` with ``v`` mm per revolution.
+        """Send the path from ``revolutions`` on, where the axis is at ``s`` with ``v`` mm per revolution.
 
-        Raises DriverError if the driver rejects it. The path sent before then remains in force.
+        Raises DriverError if the driver rejects the path. The path that was sent before then remains
+        active.
         """
         path, leaves = self._path_per_revolution(speed).plan_remaining_pass(revolutions, s, v, run_up)
         self._gear.mesh(Cam(self._zero, self._sign, path, self._path.make_retract()))
         self._leaves, self._speed = leaves, speed
 
     def _path_per_revolution(self, speed: float) -> ThreadPath:
-        """Return the path with limits per revolution, up to where it no longer follows the spindle."""
+        """Return the path with limits per revolution.
+
+        The path ends where it no longer follows the spindle.
+        """
         path, share = self._path, _GEARED_SHARE / speed**2
         out = path.retract_x_mm if path.exit_length_mm else path.x_end
         return path._replace(
@@ -437,5 +455,8 @@ class GearedThreadPass(SpindlePass):
         )
 
     def _reachable_position(self, geared: GearState, t: float) -> float:
-        """Return the furthest cam position in revolutions at time ``t`` if the speed does not rise."""
+        """Return the furthest possible cam position at time ``t``, in revolutions.
+
+        The spindle speed is assumed not to rise.
+        """
         return geared.revolutions + max(self._speed, geared.speed) * (t - self._axes.now())

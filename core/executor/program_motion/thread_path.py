@@ -1,4 +1,4 @@
-"""The path of one thread pass: s along Z from the start, X as a function of s, and the exit.
+"""Path of one thread pass: s along Z from the start, X as a function of s, and the exit.
 
 Plans are lists of phases (seconds, acceleration). Units are mm and seconds, X is a radius, and signs are
 those of the machine.
@@ -33,11 +33,12 @@ class ThreadPath(NamedTuple):
     """The path of a thread pass in machine coordinates.
 
     The thread starts at ``x z`` and has the ``length`` along Z in the direction ``z_direction`` (±1). X
-    changes by ``x_slope`` per s. Then X moves to ``retract_x_mm`` while Z continues in step by
-    ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at rest. ``a`` is the
-    acceleration along the thread, and ``x_acceleration z_acceleration`` are those of the axes. A chain of
-    threads has a ``curve``, whose s is the revolutions times ``lead``. ``x_slope`` and ``end_lead`` are then
-    the changes of X and Z per s at its end.
+    changes by ``x_slope`` per unit of s. Then X moves to ``retract_x_mm`` while Z continues in step with
+    the spindle by ``exit_length_mm``. If ``exit_length_mm`` is 0, X moves at ``rapid_speed`` with Z at
+    rest. ``acceleration`` is the acceleration along the thread; ``x_acceleration`` and ``z_acceleration``
+    are the accelerations of the axes. A chain of threads has a ``curve``, whose s is the number of
+    revolutions times ``lead``. ``x_slope`` and ``end_lead`` are then the changes of X and Z per unit of s
+    at the end of the curve.
     """
 
     x: float
@@ -58,7 +59,7 @@ class ThreadPath(NamedTuple):
 
     @classmethod
     def from_blocks(cls, blocks: Sequence[Block], limits: MotionLimits) -> ThreadPath:
-        """Return the path of a pass from its blocks: the thread and its pull-out, if any."""
+        """Return the path of a pass from its blocks, which are the thread and its pull-out, if any."""
         first, out = blocks[0], blocks[-1]
         cut = [first, *(block for block in blocks[1:] if block.continues)]
         length = abs(first.z - first.z0)
@@ -111,27 +112,27 @@ class ThreadPath(NamedTuple):
 
     @property
     def x_end(self) -> float:
-        """Machine X at the end of the thread."""
+        """Return X at the end of the thread, in machine coordinates."""
         return self.x + self.x_slope * self.length if self.curve is None else float(self.curve.x[-1])
 
     def find_s_and_speed(self, z: float, vz: float) -> tuple[float, float]:
-        """Return s and its speed where Z is at ``z`` and moves at ``vz``."""
+        """Return s and the speed along s for the position ``z`` and the velocity ``vz`` of Z."""
         if self.curve is not None:
             s = self.curve.find_s(z)
             return s, vz / self.curve.evaluate(s)[3]
         return (z - self.z) * self.z_direction, vz * self.z_direction
 
     def full_depth_end(self, speed: float) -> float:
-        """Return the s up to which only the thread itself is cut at speed ``v``."""
+        """Return the value of s up to which a pass at ``speed`` cuts only the thread itself."""
         return min(self.length, self.length + self.exit_length_mm - 0.5 * speed * speed / self.z_acceleration)
 
     def plan_remaining_pass(
         self, start_time_s: float, s: float, entry_speed: float, lead_in_phases: Phases
     ) -> tuple[Segments, float]:
-        """Plan the rest of the pass from ``s`` at time ``t`` and speed ``entry_speed``.
+        """Plan the rest of the pass from ``s`` at the time ``start_time_s`` and the speed ``entry_speed``.
 
-        The phases ``lead_in_phases`` come first. The pass then continues at the speed reached to its end.
-        Returns the setpoints and the time at which the thread is left.
+        The plan starts with the phases ``lead_in_phases``. The pass then continues to its end at the speed
+        that these phases reach. Returns the setpoints and the time at which the tool leaves the thread.
         """
         at, speed = _after(s, entry_speed, lead_in_phases)
         end = self.length + self.exit_length_mm
@@ -156,9 +157,9 @@ class ThreadPath(NamedTuple):
         return self._join_axes(start_time_s, x, self._z(s, entry_speed, z_phases)), start_time_s + left
 
     def make_retract(self) -> Segments | None:
-        """Return the straight retract of X after a thread without pull-out, or None with one.
+        """Return the straight retract of X after a thread without pull-out.
 
-        Its time starts at 0.
+        The result is None if the thread has a pull-out. The time of the retract starts at 0.
         """
         x = self.x_end
         phases = _plan_trapezoid(abs(self.retract_x_mm - x), 0.0, self.rapid_speed, self.x_acceleration)
@@ -186,7 +187,7 @@ class ThreadPath(NamedTuple):
         return _axis_motion(self.z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
     def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> Segments:
-        """Join both axes as phases of constant acceleration that start and end together."""
+        """Return the motion of both axes as common phases of constant acceleration."""
         joints = np.unique(np.concatenate([x.t, z.t]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
         starts, dt = joints[:-1], np.diff(joints)
@@ -209,8 +210,8 @@ def _joints(phases: Phases) -> Floats:
 class _AxisMotion(NamedTuple):
     """The motion of one axis.
 
-    ``t``, ``p`` and ``v`` are times, positions and speeds at n + 1 joints, and ``a`` are the n accelerations
-    between them.
+    ``t``, ``p`` and ``v`` are the times, positions and speeds at n + 1 joints. ``a`` contains the n
+    accelerations between the joints.
     """
 
     t: Floats
@@ -219,7 +220,7 @@ class _AxisMotion(NamedTuple):
     a: Floats
 
     def then(self, p: float, v: float, phases: Phases) -> _AxisMotion:
-        """Return the motion with phases appended from this position and speed."""
+        """Return the motion followed by phases that start from this position and speed."""
         more = _axis_motion(p, v, phases)
         return _AxisMotion(
             np.concatenate([self.t[:-1], self.t[-1] + more.t]),
@@ -266,7 +267,7 @@ def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc
 
 
 def _axis_motion(p: float, v: float, phases: Phases) -> _AxisMotion:
-    """Return the motion of one axis from a position and a speed with the given phases."""
+    """Return the motion of one axis for the given phases, starting from a position and a speed."""
     positions, speeds = [p], [v]
     for dt, a in phases:
         p, v = p + (v + 0.5 * a * dt) * dt, v + a * dt
@@ -285,7 +286,10 @@ def _after(p: float, v: float, phases: Phases) -> tuple[float, float]:
 
 
 def _target_time(phases: Phases, p: float, v: float, goal: float) -> tuple[float, float]:
-    """Return the time and speed at which ``goal`` is reached, or those at the end of the phases."""
+    """Return the time and speed at which ``goal`` is reached.
+
+    If it is not reached, those at the end of the phases are returned.
+    """
     t = 0.0
     for dt, a in phases:
         end = p + (v + 0.5 * a * dt) * dt
@@ -309,8 +313,9 @@ def _phases_before(phases: Phases, end: float) -> Phases:
 
 
 def _plan_trapezoid(length: float, v: float, max_speed: float, a: float) -> Phases:
-    """Return phases from speed ``v`` (positive toward the goal) to rest at the goal, at most at
-    ``max_speed``.
+    """Return phases from speed ``v`` to rest at the goal, with a speed of at most ``max_speed``.
+
+    ``v`` is positive toward the goal.
     """
     if length <= 0.0:
         return []
@@ -321,10 +326,11 @@ def _plan_trapezoid(length: float, v: float, max_speed: float, a: float) -> Phas
 
 
 class ThreadRetract(NamedTuple):
-    """The retract from a thread that has lost its spindle: a stop along the thread, then a move of X.
+    """The retract from a thread that has lost spindle synchronization.
 
-    ``x`` is the machine X of the programmed pull-out. ``is_cutting`` is True if the tool was still in the
-    thread itself. ``reason`` is the fault of the spindle, for the operator.
+    The axes stop along the thread, and then X moves. ``retract_x_mm`` is the X of the programmed pull-out
+    in machine coordinates. ``is_cutting`` is True if the tool was still in the thread itself. ``reason`` is
+    the fault of the spindle, for the operator.
     """
 
     block: Block
@@ -336,16 +342,21 @@ class ThreadRetract(NamedTuple):
     def from_block(
         cls, block: Block, following_blocks: Sequence[Block], spindle: SpindleControl
     ) -> ThreadRetract:
-        """Return the retract from ``block``; ``following_blocks`` are the blocks of its pass that follow."""
+        """Return the retract from ``block``; ``following_blocks`` are the later blocks of the same pass."""
         return cls(block, [block, *following_blocks][-1].mx, bool(following_blocks), _why_lost(spindle))
 
     def require_axes_in_thread(self, position: Sequence[float]) -> None:
-        """Raise AlarmError("thread-lost") if the axes, at machine X, Z and C, have left the thread."""
+        """Raise AlarmError("thread-lost") if the axes have left the thread.
+
+        ``position`` contains X, Z and C in machine coordinates.
+        """
         if abs(position[0] - self.retract_x_mm) < _RETRACTED_TOLERANCE_MM:
             raise AlarmError("thread-lost", self._describe_thread_state(position[1]), self.block.line)
 
     def make_retract_block(self, position: Sequence[float]) -> Block:
-        """Return a rapid along X alone from the position of the axes (machine X, Z, C)."""
+        """Return a rapid along X alone from ``position``, which contains X, Z and C in machine
+        coordinates.
+        """
         block = self.block
         return dataclasses.replace(
             block,

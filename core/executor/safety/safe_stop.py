@@ -1,6 +1,7 @@
-"""The safe stop: axes braked, spindle off, outputs safe. Failed steps are repeated until they succeed.
+"""Safe stop, which brakes the axes, stops the spindle and switches the outputs to their safe states.
 
-A driver that rejects one step, or fails in it, does not prevent the other steps.
+Failed steps are repeated until they succeed. A driver that rejects one step, or fails in it, does not
+prevent the other steps.
 """
 
 from __future__ import annotations
@@ -23,9 +24,11 @@ StopStep = tuple[str, Callable[[], None]]
 
 
 class SafeStop:
-    """Runs all steps of a safe stop with ``run_steps`` and repeats failed steps with ``retry_failed_steps``.
+    """The steps of a safe stop.
 
-    Only KeyboardInterrupt passes through.
+    ``run_steps`` runs all steps, and ``retry_failed_steps`` repeats failed steps.
+
+    No exception except KeyboardInterrupt is passed to the caller.
     """
 
     def __init__(self, context: MachineContext) -> None:
@@ -36,7 +39,7 @@ class SafeStop:
 
     @property
     def failed_steps_text(self) -> str:
-        """The steps that failed more than once, as a text; empty if all steps succeeded."""
+        """Return the names of the steps that failed more than once, as a text; empty if there are none."""
         return ", ".join(name for name, _ in self._failed) if self._tries > 1 else ""
 
     def run_steps(self, reaction: Reaction) -> None:
@@ -60,12 +63,15 @@ class SafeStop:
         self._carry_out(steps)
 
     def retry_failed_steps(self) -> None:
-        """Repeat failed steps, ten times per second. Called once per tick."""
+        """Repeat failed steps ten times per second.
+
+        The function is called once per tick.
+        """
         if self._failed and self._context.now - self._tried_at >= _RETRY_INTERVAL_S:
             self._carry_out(self._failed)
 
     def retry_last_time(self) -> None:
-        """Repeat failed steps a last time, and switch off drives that cannot be braked."""
+        """Repeat failed steps a last time, and switch off the drives if they cannot be braked."""
         if self._failed:
             self._carry_out(self._failed)
         if any(name == _AXES_STEP_NAME for name, _ in self._failed):

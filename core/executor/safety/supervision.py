@@ -1,12 +1,12 @@
 """Supervision in every tick: following error, standstill, drives, collet, outputs and driver host.
 
-A driver host that receives no data stops spindle and outputs. A terminal, a module or a controller may do the
-same. If an output changes without a command of the program, the cycle enters feed hold and its part is not
-counted. No axis feeds while an output differs from its command, and an output that a start turns on again is
-announced.
+A driver host that receives no data stops the spindle and the outputs. A terminal, a module or a controller
+may do the same. If an output changes without a command of the program, the cycle enters feed hold, and the
+part in progress is not counted. No axis feeds while an output differs from its command. If a start turns an
+output on again, this is announced first.
 
-The drives supervise themselves too, with one window for all speeds. The window here is narrower and also
-applies at rest. ``spindle_control`` supervises the spindle.
+The drives supervise themselves too, with one window for all speeds. The window in this module is narrower
+and also applies at rest. ``spindle_control`` supervises the spindle.
 """
 
 from __future__ import annotations
@@ -41,7 +41,10 @@ _NO_DATA_TIMEOUT_S = 0.25  # s without axis data before a driver must report a f
 
 
 class FollowingErrorWatch:
-    """Supervises all axes at rest and in motion, with and without power. ``look`` is called once per tick."""
+    """Supervision of the position of all axes, at rest and in motion, with and without power.
+
+    ``check_sample`` is called once per tick.
+    """
 
     def __init__(self, axes: Sequence[Axis]) -> None:
         self._axes = [_AxisWatch(axis) for axis in axes]
@@ -50,7 +53,7 @@ class FollowingErrorWatch:
     def check_sample(self, sample: AxisSample, *, is_unpowered: bool) -> None:
         """Check a sample and raise AlarmError for the first axis that is out of position.
 
-        ``is_unpowered`` means that the drives are off without a fault, so that no axis should move.
+        If ``is_unpowered`` is True, the drives are off without a fault, so that no axis should move.
         """
         if sample.enabled is not self._enabled:
             self._enabled = sample.enabled
@@ -74,7 +77,7 @@ class FollowingErrorWatch:
 
 
 class _AxisWatch:
-    """Supervision of one axis. It uses the times of the samples, so that a late tick does not count."""
+    """Supervision of one axis, based on the times of the samples, so that a late tick has no effect."""
 
     def __init__(self, axis: Axis) -> None:
         self._axis = axis
@@ -93,7 +96,7 @@ class _AxisWatch:
         self._stood: float | None = None  # position at which the axis came to rest
 
     def passes(self, t: float) -> bool:
-        """Store the time of a sample and return whether the sample is new."""
+        """Store the time of a sample; return whether the sample is newer than the previous one."""
         self._dt, self._t = t - self._t, t
         return self._dt > 0.0
 
@@ -118,7 +121,7 @@ class _AxisWatch:
     def _at_standstill(self, error: float, rest: float) -> None:
         """Raise AlarmError if the axis does not reach its target at rest.
 
-        A smaller error is permitted for a longer time.
+        A small error is permitted for a longer time than a large error.
         """
         axis, unmoved = self._axis, self._t - self._counted_at
         pushed = max(_WINDOW_FRACTION * axis.still_window, 4.0 * axis.in_position)
@@ -138,12 +141,12 @@ class _AxisWatch:
             )
 
     def sent(self) -> None:
-        """Forget the position at rest because the driver reports motion."""
+        """Clear the stored rest position because the driver reports motion."""
         self._stood = None
         self._since.pop("rest", None)
 
     def unasked(self, actual: float, *, at_rest: bool) -> None:
-        """Raise AlarmError if the axis moves at rest without a setpoint that controls it."""
+        """Raise AlarmError if the axis moves although it should be at rest and no setpoint controls it."""
         axis = self._axis
         if not at_rest:
             self.sent()
@@ -167,7 +170,7 @@ class _AxisWatch:
     def _encoder(self, demand: float, actual: float) -> None:
         """Raise AlarmError if the axis is commanded to move but its encoder does not count.
 
-        The axis is then jammed, or its position is unknown.
+        In this case the axis is jammed, or its position is unknown.
         """
         axis, (since, sent_from, read) = self._axis, self._counted
         if abs(actual - read) > 1.5 * axis.count:
@@ -188,7 +191,7 @@ class _AxisWatch:
             )
 
     def _lasts(self, what: str, holds: bool) -> float:
-        """Return the time in seconds for which the condition has been true without a break."""
+        """Return for how many seconds the condition has been true without interruption."""
         if not holds:
             self._since.pop(what, None)
             return 0.0
@@ -203,7 +206,7 @@ class _AxisWatch:
 
 
 class Supervisor:
-    """Supervises drives, axes and collet."""
+    """Supervision of drives, axes and collet."""
 
     def __init__(self, context: MachineContext) -> None:
         self._context = context
@@ -211,7 +214,7 @@ class Supervisor:
         self.max_following_error = 0.0
 
     def accept_positions(self) -> None:
-        """Accept the present positions of the axes after the operator has acknowledged an alarm."""
+        """Accept the present positions of the axes because the operator has acknowledged an alarm."""
         self._axes.reset()
 
     def check(self, state: MachineState) -> None:
@@ -244,7 +247,7 @@ class Supervisor:
             raise AlarmError("drive-silent", "no data from the axes")
 
     def _check_numbers(self, sample: AxisSample) -> None:
-        """Raise AlarmError if a position is not a number, because no comparison would detect that."""
+        """Raise AlarmError if a position is not a number, because no comparison would detect this."""
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )
@@ -256,7 +259,7 @@ class Supervisor:
                 )
 
     def _check_collet(self) -> None:
-        """Raise AlarmError if the collet switch is off longer than contact bounce can last."""
+        """Raise AlarmError if the collet switch is off for longer than contact bounce can last."""
         now = self._context.now
         self._open_since = now if self._open_since is None else self._open_since
         if now - self._open_since > 2.0 * self._context.machine.collet.close_time:
@@ -270,7 +273,10 @@ class Supervisor:
 
 
 class OutputsWatch:
-    """Supervises the outputs and the driver host in every tick. Used on the executor's thread only."""
+    """Supervision of the outputs and the driver host in every tick.
+
+    It is used on the executor's thread only.
+    """
 
     def __init__(self, context: MachineContext, program_run: ProgramRun) -> None:
         self._context = context
@@ -278,7 +284,7 @@ class OutputsWatch:
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
     def check(self) -> None:
-        """Hold the cycle if an output changed without a command. Raises DriverError or AlarmError."""
+        """Hold the cycle if an output has changed without a command. Raises DriverError or AlarmError."""
         trips = self._context.ports.trip_monitor
         trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:
@@ -301,7 +307,7 @@ class OutputsWatch:
             self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
     def list_restart_outputs(self) -> Iterator[AnnouncedStart]:
-        """Yield the outputs that a resume switches back to their commanded states, for the announcement."""
+        """Yield announcements of the outputs that a resume switches back to their commanded states."""
         if self._program_run.status.state in STOPPED_STATES:
             for name, wanted in self._context.outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
@@ -309,7 +315,7 @@ class OutputsWatch:
                 yield AnnouncedStart(Message("output {name}", name=name), words, begin)
 
     def _handle_trip(self, trip: DriverHostTrip) -> None:
-        """Handle outputs that the driver host has switched off.
+        """Hold the cycle if the driver host has switched off outputs or the spindle.
 
         Lamps are ignored, because they are not outputs of the program and are turned on again.
         """

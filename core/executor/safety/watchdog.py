@@ -1,9 +1,10 @@
-"""The executor's thread and the watchdog; each supervises the other.
+"""The executor's thread and the watchdog, which supervise each other.
 
-The watchdog makes the machine safe when the executor is dead or stuck. The executor reports a watchdog that
-is dead or stuck. The watchdog counts its own looks, not time: when the whole process stops for a while, both
-stop, and neither is reported. The watchdog calls the drivers only through ``MachinePorts.halt``, which any
-thread may call, and only on a separate thread, because a driver may block.
+The watchdog makes the machine safe if the executor has ended or is stuck. The executor reports a watchdog
+that has ended or is stuck. The watchdog counts its own checks instead of time. If the whole process stops
+for a while, both threads stop, and neither is reported. The watchdog calls the drivers only through
+``MachinePorts.halt_machine``, which any thread may call, and only on a separate thread, because a driver
+may block.
 """
 
 from __future__ import annotations
@@ -40,7 +41,10 @@ HaltFunction = Callable[[], None]
 
 
 class ExecutorThread:
-    """The thread in which the executor ticks. An error that the executor cannot catch stops the machine."""
+    """The thread in which the executor ticks.
+
+    If an error occurs that the executor cannot catch, the machine stops.
+    """
 
     def __init__(self, executor: Executor, clock: Clock, tick: float = TICK_PAUSE_S) -> None:
         self.executor = executor
@@ -53,18 +57,18 @@ class ExecutorThread:
 
     @property
     def is_alive(self) -> bool:
-        """True if the thread still ticks."""
+        """Return whether the executor's thread is still running."""
         return self._thread.is_alive()
 
     def start(self) -> None:
-        """Start the ticks."""
+        """Start the thread, which then ticks."""
         self._thread.start()
 
     def close(self, timeout_s: float = _CLOSE_TIMEOUT_S) -> None:
         """Stop the machine as an E-stop would, and end the thread.
 
-        A thread that does not end within ``timeout_s`` seconds is left running, and the drivers are halted
-        instead.
+        If the thread does not end within ``timeout_s`` seconds, it is left running, and the drivers are
+        halted instead.
         """
         self._closing.set()
         self.executor.wake()
@@ -96,14 +100,17 @@ def is_thread_running(name: str) -> bool:
 
 
 class MachineHalter:
-    """Halts the machine through the drivers on a separate thread, because a driver may block."""
+    """Helper that halts the machine through the drivers on a separate thread, because a driver may block."""
 
     def __init__(self, halt: HaltFunction | None) -> None:
         self._halt = halt
         self._thread: threading.Thread | None = None
 
     def start_halt(self, timeout_s: float = 0.0) -> None:
-        """Start to halt unless the last call is still blocked, and wait at most ``timeout_s`` seconds."""
+        """Start to halt the machine unless the last call is still blocked.
+
+        The function waits at most ``timeout_s`` seconds.
+        """
         if self._halt is None:
             return
         if self._thread is None or not self._thread.is_alive():
@@ -120,10 +127,10 @@ class MachineHalter:
 
 
 class ThreadWatch:
-    """Supervises threads by their names, even if they start later.
+    """Supervision of threads by their names, including threads that start later.
 
-    ``report_failure`` receives the name of each thread that has ended, once. A thread is supervised from the
-    first check that finds it, or from ``watch_thread``.
+    ``report_failure`` receives the name of each thread that has ended, once. A thread is supervised from
+    the first check that finds it, or from the call of ``watch_thread``.
     """
 
     def __init__(self, names: Iterable[str], report_failure: ReportFailure) -> None:
@@ -137,7 +144,10 @@ class ThreadWatch:
         self._running.append(name)
 
     def check_threads(self) -> None:
-        """Check the threads once. After ``end``, threads that have ended are not reported."""
+        """Check the threads once.
+
+        After ``stop_reporting``, threads that have ended are not reported.
+        """
         for name in [name for name in self._awaited if is_thread_running(name)]:
             self._awaited.remove(name)
             self._running.append(name)
@@ -148,11 +158,11 @@ class ThreadWatch:
                 self._tell(name)
 
     def start(self) -> None:
-        """Check once per second on a separate thread."""
+        """Start to check the threads once per second on a separate thread."""
         threading.Thread(target=self._look_again, name="thread-watch", daemon=True).start()
 
     def stop_reporting(self) -> None:
-        """Stop reporting, because threads now end normally."""
+        """Stop reporting ended threads, because threads now end normally."""
         self._closing.set()
 
     def _look_again(self) -> None:
@@ -166,11 +176,12 @@ def _report(error: BaseException) -> None:
 
 
 class Watchdog:
-    """Supervises the executor's thread, and other threads by their names.
+    """Supervision of the executor's thread, and of other threads by their names.
 
     ``halt`` stops the machine through the drivers, or is None if they have no such function.
-    ``report_failure`` receives the name of another thread that has ended, once. The end of the executor is
-    an alarm. A thread is supervised from the first check that finds it, or from ``watch_thread``.
+    ``report_failure`` receives the name of each other thread that has ended, once. The end of the
+    executor's thread causes an alarm. A thread is supervised from the first check that finds it, or from
+    the call of ``watch_thread``.
     """
 
     def __init__(
@@ -192,16 +203,16 @@ class Watchdog:
 
     @property
     def is_alive(self) -> bool:
-        """True if the watchdog is running."""
+        """Return whether the watchdog is running."""
         return self._thread.is_alive()
 
     @property
     def is_closing(self) -> bool:
-        """True if the watchdog was requested to end."""
+        """Return whether the watchdog was requested to end."""
         return self._closing.is_set()
 
     def start(self) -> None:
-        """Start the watchdog, and let the executor's thread supervise it."""
+        """Start the watchdog, and register it with the executor's thread for supervision."""
         self._executor.check_watchdog = WatchdogSupervisor(self, self._tell).check
         self._thread.start()
 
@@ -210,18 +221,18 @@ class Watchdog:
         self._others.watch_thread(name)
 
     def stop_checks(self) -> None:
-        """Stop the checks without waiting, because threads now end normally."""
+        """Stop the checks because threads now end normally. The function does not wait."""
         self._closing.set()
         self._others.stop_reporting()
 
     def close(self, timeout_s: float = CLOSE_TIMEOUT_S) -> None:
-        """End the thread, or leave it running if it does not end within ``timeout_s`` seconds."""
+        """End the watchdog's thread, or leave it running if it does not end within ``timeout_s`` seconds."""
         self.stop_checks()
         if self._thread.is_alive():
             self._thread.join(timeout_s)
 
     def check(self) -> None:
-        """Check the executor and the other threads once. Raises nothing."""
+        """Check the executor and the other threads once. This function raises no exceptions."""
         with Attempt() as trial:
             self._mind_executor()
             if self.check_count % CHECKS_PER_THREAD_CHECK == 0:
@@ -263,8 +274,9 @@ class Watchdog:
 
 
 class WatchdogSupervisor:
-    """The executor's supervision of the watchdog. ``report_failure`` receives its name once if it stops
-    checking.
+    """Supervision of the watchdog by the executor.
+
+    ``report_failure`` receives the name of the watchdog once if it stops checking.
     """
 
     def __init__(self, watchdog: Watchdog, report_failure: ReportFailure) -> None:
@@ -276,7 +288,7 @@ class WatchdogSupervisor:
     def check(self, now: float) -> None:
         """Check the watchdog once after a tick.
 
-        A gap between two ticks counts as a short one, because both threads were late.
+        A long gap between two ticks counts as a short gap, because both threads were late.
         """
         looks, last = self._watchdog.check_count, self._last
         self._last = now

@@ -1,7 +1,7 @@
 """PINs, stored only as slow hashes, with delays after wrong attempts.
 
-TurnDesk stores the scrypt hash (RFC 7914) of a PIN with its own salt. One attempt takes at least 0.5 s and 64
-MiB, so trying all four-digit PINs takes more than an hour even for an attacker with the file.
+TurnDesk stores the scrypt hash (RFC 7914) of each PIN with a separate salt. One attempt takes at least 0.5
+s and 64 MiB, so trying all four-digit PINs takes more than an hour even for an attacker who has the file.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _MOST_MEMORY = 2**28  # bytes
 
 
 class ScryptCost(NamedTuple):
-    """Parameters of scrypt: log2 of N, r and p, each stored as one byte in front of the hash."""
+    """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte in front of the hash."""
 
     log2_n: int
     r: int
@@ -32,7 +32,7 @@ _FIRST_COST = ScryptCost(14, 8, 1)  # parameters of hashes from older versions, 
 
 
 class PinError(CodedError):
-    """A PIN that is not acceptable; the text has the reason."""
+    """An error raised if a PIN is not acceptable; the text states the reason."""
 
 
 class PinHash(NamedTuple):
@@ -54,13 +54,16 @@ def check_pin(pin: str) -> None:
 
 
 def hash_pin(pin: str, salt: bytes | None = None) -> PinHash:
-    """Hash a PIN with ``salt`` or a new salt. Call it in a worker thread, because it is slow."""
+    """Hash a PIN with ``salt`` or, if it is None, with a new salt.
+
+    The calculation is slow, so call it in a worker thread.
+    """
     salt = salt if salt is not None else secrets.token_bytes(_SALT)
     return PinHash(salt, bytes(DEFAULT_COST) + _scrypt(pin, salt, DEFAULT_COST))
 
 
 def matches_hash(pin: str, stored_hash: PinHash) -> bool:
-    """Return whether the PIN matches the hash; False for an empty hash.
+    """Return whether the PIN matches the hash. The result is False for an empty hash.
 
     The calculation is slow, so call it in a worker thread.
     """
@@ -70,7 +73,7 @@ def matches_hash(pin: str, stored_hash: PinHash) -> bool:
 
 
 def is_outdated(stored_hash: PinHash) -> bool:
-    """Return whether the hash has other parameters than new hashes."""
+    """Return whether the hash was made with other parameters than new hashes."""
     return _cost_of(stored_hash) != DEFAULT_COST
 
 
@@ -92,7 +95,7 @@ _FIRST, _MOST = 5.0, 300.0  # s
 
 
 def calculate_delay(wrong_attempts: int) -> float:
-    """Return the delay in seconds after this many wrong PINs in a row: 0, 0, 5, 10, 20 … 300."""
+    """Return the delay in seconds after this number of consecutive wrong PINs: 0, 0, 5, 10, 20 … 300."""
     return (
         min(_MOST, _FIRST * 2.0 ** (wrong_attempts - FREE_ATTEMPTS - 1))
         if wrong_attempts > FREE_ATTEMPTS
@@ -102,21 +105,21 @@ def calculate_delay(wrong_attempts: int) -> float:
 
 @dataclass(slots=True)
 class WrongPinCounter:
-    """The number of wrong PINs in a row by all users; ``last_attempt_s`` is the monotonic time of the last
-    in seconds.
+    """Counter of consecutive wrong PINs of all users.
 
-    After a restart the delay starts again, because ``count`` is stored and the time is not.
+    ``last_attempt_s`` is the monotonic time of the last wrong PIN in seconds. ``count`` is stored, but the
+    time is not, so the delay starts again after a restart.
     """
 
     count: int = 0
     last_attempt_s: float = 0.0
 
     def get_remaining_delay(self, now: float) -> float:
-        """Return the seconds until a PIN is accepted again, or 0."""
+        """Return the time in seconds until a PIN is accepted again, or 0."""
         return max(0.0, self.last_attempt_s + calculate_delay(self.count) - now)
 
     def count_wrong_pin(self, now: float) -> None:
-        """Count a wrong PIN."""
+        """Increment the count and record ``now`` as the time of the last wrong PIN."""
         self.count, self.last_attempt_s = self.count + 1, now
 
     def reset(self) -> None:

@@ -1,7 +1,7 @@
-"""Path error along the part with its worst lines, and the ball-bar plot of an arc.
+"""Path error of a measured path with its worst lines, and ball-bar analysis of an arc.
 
 The measured path is in the plane (u, v) of two axes. The results describe the encoder positions: an encoder
-on the motor does not show the backlash of the screw, and a linear scale does.
+on the motor does not show the backlash of the screw, but a linear scale does.
 """
 
 from __future__ import annotations
@@ -28,11 +28,11 @@ _TELL = 30.0  # largest condition number at which the values can be separated
 class BallBarResult:
     """Result of a ball-bar analysis of one arc.
 
-    ``angles_deg`` are in degrees, and ``deviation`` (m,) is the distance of each sample outside the
-    programmed arc, in mm. ``backlash_mm`` and ``reversal_spike_mm`` are (u, v) in mm.
-    ``squareness_error_mm_m`` is the tilt of v toward u in mm per meter, ``scale_error_mm_m`` the excess
-    length of u over v in mm per meter, and ``size_error_mm`` the excess radius in mm. Values are NaN if the
-    arc is too short to determine them.
+    ``angles_deg`` (m,) contains the angles of the samples in degrees, and ``deviations_mm`` (m,) the
+    distances of the samples outside the programmed arc in mm. ``backlash_mm`` and ``reversal_spike_mm`` are
+    pairs (u, v) in mm. ``squareness_error_mm_m`` is the tilt of v toward u in mm per meter.
+    ``scale_error_mm_m`` is the excess length of u over v in mm per meter, and ``size_error_mm`` is the
+    excess radius in mm. Values are NaN if the arc is too short to determine them.
     """
 
     center: tuple[float, float]
@@ -47,17 +47,17 @@ class BallBarResult:
 
     @property
     def circularity_mm(self) -> float:
-        """Difference between the largest and the smallest deviation, in mm."""
+        """Return the difference between the largest and the smallest deviation, in mm."""
         return float(np.ptp(self.deviations_mm))
 
     @property
     def arc_angle_deg(self) -> float:
-        """Angle of the arc in degrees, at most 360."""
+        """Return the angle of the arc in degrees, at most 360."""
         return float(min(360.0, np.ptp(np.unwrap(np.radians(self.angles_deg))) * 180.0 / math.pi))
 
 
 def fit_circle(points: FloatArray) -> tuple[float, float, float]:
-    """Return center and radius of the circle nearest to points (n, 2).
+    """Return the center (u, v) and the radius of the circle that best fits the points (n, 2).
 
     The least-squares equation is u² + v² = 2au + 2bv + c.
     """
@@ -116,10 +116,11 @@ def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult
 
 
 def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tuple[list[float], FloatArray]:
-    """Return size, backlash of u and v and the coefficients of sin 2θ and cos 2θ, and the residual.
+    """Return the fitted coefficients and the residual of the radial deviation.
 
-    A backlash b of u leaves the axis b/2 short of its setpoint, which is −(b/2)·sign(u′)·cos θ of the radius.
-    A tilt φ gives φR/2·sin 2θ, and a scale error e between u and v gives eR/2·cos 2θ.
+    The coefficients are the size error, the backlash of u and v, and those of sin 2θ and cos 2θ. A backlash
+    b of u leaves the axis b/2 short of its setpoint, which changes the radius by −(b/2)·sign(u′)·cos θ. A
+    tilt φ gives φR/2·sin 2θ, and a scale error e between u and v gives eR/2·cos 2θ.
     """
     way = 1.0 if turned[-1] > turned[0] else -1.0
     towards_u, towards_v = -way * np.sign(np.sin(theta)), way * np.sign(np.cos(theta))
@@ -143,7 +144,10 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
 
 
 def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
-    """Return the largest residual a few degrees after a reversal of this axis; NaN without a reversal."""
+    """Return the largest residual within a few degrees after a reversal of this axis.
+
+    The result is NaN without a reversal.
+    """
     step = np.sign(np.diff(position))
     moving = np.flatnonzero(step)
     if not len(moving):
@@ -159,7 +163,10 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
 
 
 def find_arcs(setpoints: FloatArray, lines: FloatArray) -> tuple[tuple[int, slice], ...]:
-    """Return the lines whose setpoints (m, 2) form a sufficiently long arc, each with its samples."""
+    """Return the program lines whose setpoints (m, 2) form a sufficiently long arc.
+
+    Each line has the range of its samples.
+    """
     if not len(lines):
         return ()
     edges = np.flatnonzero(np.diff(lines)) + 1
@@ -190,11 +197,12 @@ _SAME = 1e-9  # mm, distance below which points are treated as equal
 
 @dataclass(frozen=True, slots=True)
 class PathError:
-    """Deviation of each measured sample (m,) from the path.
+    """Deviations of the measured samples (m,) from the path.
 
-    ``distance`` is in mm; with two axes it is positive to the left of the path direction, and with three axes
-    it has no sign. ``nearest_path_points`` (m, 2 or 3) is the nearest point of the path,
-    ``path_positions_mm`` the path length up to that point in mm, and ``lines`` the source line there.
+    ``distances_mm`` is in mm. With two axes a distance is positive to the left of the path direction, and
+    with three axes it has no sign. ``nearest_path_points`` (m, 2 or 3) are the nearest points of the path.
+    ``path_positions_mm`` is the path length up to these points in mm, and ``line_numbers`` contains the
+    source line at each of them.
     """
 
     distances_mm: FloatArray
@@ -205,17 +213,17 @@ class PathError:
 
     @property
     def max_distance_mm(self) -> float:
-        """Largest distance on either side, in mm."""
+        """Return the largest distance on either side of the path, in mm."""
         return float(np.abs(self.distances_mm).max())
 
     def magnify_deviation(self, factor: float) -> FloatArray:
-        """Return the measured path (m, 2 or 3) with its deviation from the path multiplied by ``factor``."""
+        """Return the measured path (m, 2 or 3), with its deviation from the path multiplied by ``factor``."""
         return self.nearest_path_points + factor * (self.measured_points - self.nearest_path_points)
 
 
 @dataclass(frozen=True, slots=True)
 class WorstDeviation:
-    """Location of the largest deviation of a program line, with the distance in mm."""
+    """The largest deviation of a program line, with its position and its distance in mm."""
 
     line: int
     distance_mm: float
@@ -230,8 +238,8 @@ def calculate_path_error(
 
     ``lines`` (n,) are the source lines of the points of ``programmed``. ``due`` (m,) is the index of the
     point that each sample should have reached. The nearest point is searched within ``search_point_count``
-    points of it, so that a path that crosses itself is not assigned to the wrong branch. Raises
-    AnalysisError.
+    points of this index, so that a sample is not assigned to the wrong branch where the path crosses
+    itself. Raises AnalysisError.
     """
     _check(programmed, lines, measured, due)
     n = len(programmed)
@@ -280,10 +288,10 @@ def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: I
 def calculate_from_samples(
     setpoints: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, delay_s: float = 0.1
 ) -> PathError:
-    """Return the deviations in a record, with the setpoints ``setpoints`` (m, 2 or 3) as the programmed path.
+    """Return the deviations in a record, with ``setpoints`` (m, 2 or 3) as the programmed path.
 
-    ``actual`` are the measured positions. The nearest point is searched within ``delay_s`` s of each sample.
-    Raises AnalysisError.
+    ``actual`` contains the measured positions. The nearest point is searched within ``delay_s`` seconds of
+    each sample. Raises AnalysisError.
     """
     if len(setpoints) < MIN_SAMPLES:
         raise AnalysisError(
@@ -306,7 +314,10 @@ def calculate_from_samples(
 
 
 def find_worst_deviations(error: PathError, max_count: int = 10) -> tuple[WorstDeviation, ...]:
-    """Return the places of the lines with the largest deviations, worst first, without samples of line 0."""
+    """Return the worst deviation of each line, largest first, without samples of line 0.
+
+    At most ``max_count`` lines are returned.
+    """
     found = []
     for line in np.unique(error.line_numbers[error.line_numbers > 0]):
         of_line = np.flatnonzero(error.line_numbers == line)

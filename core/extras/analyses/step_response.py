@@ -1,4 +1,4 @@
-"""Response of an axis to a step, ramp or sine, and the effect of another window or speed.
+"""Response of an axis to a step, ramp or sine, and the effect of a different error limit or speed.
 
 All values are measured from the samples. Only ``scale_error_to_speed`` assumes that the lag of the drive is
 proportional to its speed.
@@ -24,10 +24,10 @@ MIN_SAMPLES = 20  # samples
 class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
-    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot`` is the fraction of the step beyond its end, or
-    0. ``settling_time_s`` is the time from the end of the request until the axis remains within ``band``; NaN
-    if it does not settle in the record. ``delay_s`` is the delay at half of the step. ``final_error`` is the
-    final error.
+    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot`` is the overshoot as a fraction of the step,
+    or 0. ``settling_time_s`` is the time from the end of the commanded step until the axis remains within
+    ``settling_band``, or NaN if it does not settle in the record. ``delay_s`` is the delay at half of the
+    step. ``final_error`` is the error at the end of the record.
     """
 
     step_size: float
@@ -40,9 +40,9 @@ class StepResponse:
 
 
 def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
-    """Analyze the samples (n,) from before a step until after it. Raises AnalysisError.
+    """Analyze the samples (n,) from before a step until after it.
 
-    ``band`` is the in-position window in mm.
+    ``band`` is the in-position window in mm. Raises AnalysisError.
     """
     _check(times, request, response)
     way = float(request[-1] - request[0])
@@ -75,7 +75,10 @@ def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, b
 
 @dataclass(frozen=True, slots=True)
 class SineResponse:
-    """Response to a sine: ``gain`` is the ratio of the amplitudes, and ``lag`` the phase lag in degrees."""
+    """Response to a sine.
+
+    ``gain`` is the ratio of the amplitudes, and ``phase_lag_deg`` is the phase lag in degrees.
+    """
 
     frequency_hz: float
     gain: float
@@ -84,16 +87,16 @@ class SineResponse:
 
     @property
     def lag_s(self) -> float:
-        """Phase lag as a time in seconds."""
+        """Return the phase lag as a time in seconds."""
         return self.phase_lag_deg / 360.0 / self.frequency_hz
 
 
 def analyze_sine(
     times: FloatArray, request: FloatArray, response: FloatArray, frequency: float
 ) -> SineResponse:
-    """Analyze the response to a sine of ``frequency`` Hz over whole periods. Raises AnalysisError.
+    """Analyze the response to a sine of ``frequency`` Hz over whole periods.
 
-    A sine is fitted to the request and to the response.
+    A sine is fitted to the request and to the response. Raises AnalysisError.
     """
     _check(times, request, response)
     waves = math.floor((times[-1] - times[0]) * frequency + 1e-6)
@@ -113,7 +116,10 @@ def analyze_sine(
 
 
 def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
-    """Return amplitude and phase of the sine in the samples, fitted together with an offset and a slope."""
+    """Return the amplitude and phase of the sine in the samples as a complex number.
+
+    The sine is fitted together with an offset and a slope.
+    """
     t = times - times[0]
     turn = 2.0 * math.pi * frequency * t
     system = np.column_stack([np.cos(turn), np.sin(turn), np.ones_like(t), t])
@@ -123,7 +129,10 @@ def _wave(times: FloatArray, values: FloatArray, frequency: float) -> complex:
 
 @dataclass(frozen=True, slots=True)
 class RampResponse:
-    """Response to a ramp: ``speed_mm_s`` in mm/s, and ``error`` is the lag in mm at constant speed."""
+    """Response to a ramp.
+
+    ``speed_mm_s`` is the constant speed in mm/s, and ``lag_mm`` is the lag in mm at this speed.
+    """
 
     speed_mm_s: float
     lag_mm: float
@@ -131,14 +140,14 @@ class RampResponse:
 
     @property
     def lag_s(self) -> float:
-        """Lag as a time in seconds."""
+        """Return the lag as a time in seconds."""
         return self.lag_mm / self.speed_mm_s
 
 
 def analyze_ramp(times: FloatArray, request: FloatArray, response: FloatArray) -> RampResponse:
-    """Analyze the response to a ramp in the second half of its constant speed. Raises AnalysisError.
+    """Analyze the response to a ramp in the second half of its constant speed, where the lag has settled.
 
-    The lag has settled in the second half.
+    Raises AnalysisError.
     """
     _check(times, request, response)
     speeds = np.gradient(request, times)
@@ -170,7 +179,7 @@ def _check(times: FloatArray, request: FloatArray, response: FloatArray) -> None
 
 
 def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
-    """Return the interpolated time at which the share first reaches ``level``; NaN if it never does."""
+    """Return the interpolated time at which ``share`` first reaches ``level``, or NaN if it never does."""
     above = np.flatnonzero(share >= level)
     if not len(above) or above[0] == 0:
         return float(times[0]) if len(above) else math.nan
@@ -181,14 +190,17 @@ def _crossing(times: FloatArray, share: FloatArray, level: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Bandwidth:
-    """Frequencies in Hz at which the response is down by 3 dB and lags by 90 degrees; None if not reached."""
+    """Frequencies in Hz at which the gain has fallen by 3 dB and the phase lags by 90 degrees.
+
+    A frequency is None if the responses do not reach this point.
+    """
 
     gain_bandwidth_hz: float | None
     phase_bandwidth_hz: float | None
 
 
 def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
-    """Return the bandwidth from sine responses, interpolated over the logarithm of the frequency."""
+    """Return the bandwidth from sine responses, interpolated on a logarithmic frequency scale."""
 
     def reached(values: list[float]) -> float | None:
         for i in range(1, len(values)):
@@ -210,8 +222,9 @@ def calculate_bandwidth(responses: Sequence[SineResponse]) -> Bandwidth:
 
 
 def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, duration_s: float) -> float | None:
-    """Return the time at which an error above ``window`` for ``duration_s`` s would trip; None if it would
-    not.
+    """Return the time at which the error would cause a trip, or None.
+
+    A trip occurs if the error exceeds ``limit_mm`` for ``duration_s`` seconds.
     """
     off = np.abs(error) > limit_mm
     edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
@@ -222,9 +235,10 @@ def find_trip_time(times: FloatArray, error: FloatArray, limit_mm: float, durati
 
 
 def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float) -> float:
-    """Return the narrowest window in mm that this error would not trip within ``duration_s`` s.
+    """Return the smallest error limit in mm that this error does not exceed long enough for a trip.
 
-    The window is found by bisection to a thousandth of the largest error.
+    A trip occurs if the error exceeds the limit for ``duration_s`` seconds. The limit is found by bisection
+    to a thousandth of the largest error.
     """
     low, high = 0.0, float(np.abs(error).max(initial=0.0))
     for _ in range(10):
@@ -236,10 +250,11 @@ def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float
 
 
 def find_speed_at_limit(lag_s: float, still: float, window: float, vmax: float) -> float | None:
-    """Return the speed at which an axis with a lag of ``lag`` s reaches a window that grows with speed.
+    """Return the speed in mm/s at which the lag of an axis reaches an error limit that grows with speed.
 
-    The window is ``still`` mm at rest and ``window`` mm at ``vmax``: lag · v = still + (window - still) · v /
-    vmax. The result is None if the axis does not reach the window at any speed.
+    ``lag_s`` is the lag of the axis in seconds. The limit is ``still`` mm at rest and ``window`` mm at
+    ``vmax``: lag_s · v = still + (window - still) · v / vmax. The result is None if the axis does not reach
+    the limit at any speed.
     """
     steeper = lag_s - (window - still) / vmax
     speed = still / steeper if steeper > 0.0 else math.inf
@@ -247,17 +262,20 @@ def find_speed_at_limit(lag_s: float, still: float, window: float, vmax: float) 
 
 
 def fit_lag(velocity: FloatArray, error: FloatArray) -> float:
-    """Return the lag in seconds from the best line error = lag · velocity; NaN if the axis does not move."""
+    """Return the lag in seconds from the best-fit line error = lag · velocity.
+
+    The result is NaN if the axis does not move.
+    """
     known = np.isfinite(velocity) & np.isfinite(error)
     square = float((velocity[known] ** 2).sum())
     return float((velocity[known] * error[known]).sum()) / square if square > 0.0 else math.nan
 
 
 def scale_error_to_speed(velocity: FloatArray, error: FloatArray, speed_factor: float) -> FloatArray:
-    """Return the following error (n,) in mm that is expected at ``speed_factor`` times the speed.
+    """Return the expected following error (n,) in mm at ``speed_factor`` times the speed.
 
-    The part on the best line error = k · velocity grows with speed. The rest, such as friction, weight and
-    cutting force, remains unchanged.
+    The component on the best-fit line error = k · velocity grows with speed. The rest, which is caused by
+    friction, weight and cutting force, remains unchanged.
     """
     lag = np.nan_to_num(fit_lag(velocity, error))
     return np.asarray(error + (speed_factor - 1.0) * lag * np.where(np.isfinite(velocity), velocity, 0.0))

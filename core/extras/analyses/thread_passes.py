@@ -1,7 +1,7 @@
 """Comparison of thread passes by spindle angle: entry angle, lead error and speed under load.
 
-A pass is a period of at least two revolutions in which the axis moves by the same distance per revolution. It
-is described by its best line: distance = lead · revolutions + entry.
+A pass is a period of at least two revolutions in which the axis moves by the same distance per revolution.
+A pass is described by its best-fit line, distance = lead · revolutions + entry.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ _POINTS = 24  # points per revolution at which the travel is compared
 class ThreadPass:
     """One pass of a thread.
 
-    ``first_sample`` and ``last_sample`` are sample numbers. ``turns`` (k,) are revolutions from the start of
-    the thread, and ``deviations_mm`` (k,) the deviations in mm. ``entry_angle_deg`` is the spindle angle at
-    the start of the thread in degrees, relative to the first pass. ``lead`` is in mm per revolution. Speeds
-    are in rpm. ``depth`` is the position of the other axis in mm.
+    ``first_sample`` and ``last_sample`` are sample numbers. ``spindle_revolutions`` (k,) are counted from
+    the start of the thread, and ``deviations_mm`` (k,) are in mm. ``entry_angle_deg`` is the spindle angle
+    at the start of the thread in degrees, relative to the first pass. ``lead_mm`` is in mm per revolution.
+    Speeds are in rpm. ``depth_mm`` is the position of the other axis in mm.
     """
 
     first_sample: int
@@ -47,7 +47,10 @@ class ThreadPass:
 
     @property
     def speed_drop_rpm(self) -> float:
-        """Drop of the spindle speed in the cut, from the highest speed just before it, in rpm."""
+        """Return the drop of the spindle speed during the cut, in rpm.
+
+        The drop is measured from the highest speed just before the cut.
+        """
         return self.speed_before_rpm - self.min_speed_rpm
 
 
@@ -60,20 +63,20 @@ class ThreadAnalysis:
 
     @property
     def entry_spread_deg(self) -> float:
-        """Difference between the largest and the smallest entry angle, in degrees."""
+        """Return the difference between the largest and the smallest entry angle, in degrees."""
         entries = [each.entry_angle_deg for each in self.passes]
         return max(entries) - min(entries)
 
     @property
     def max_lead_error_mm(self) -> float:
-        """Largest deviation of a lead from the reference lead, in mm per revolution."""
+        """Return the largest deviation of a lead from the reference lead, in mm per revolution."""
         return max((each.lead_mm - self.reference_lead_mm for each in self.passes), key=abs)
 
 
 def calculate_max_rpm(lead: float, vmax: float) -> float:
     """Return the highest spindle speed in rpm at which an axis can follow the lead.
 
-    ``lead`` is in mm per revolution, and ``vmax`` is the limit of the axis in mm/s.
+    ``lead`` is in mm per revolution, and ``vmax`` is the speed limit of the axis in mm/s.
     """
     return 60.0 * vmax / abs(lead) if lead else math.inf
 
@@ -85,11 +88,11 @@ def analyze_thread(
     speed: FloatArray,
     lead: float | None = None,
 ) -> ThreadAnalysis:
-    """Find the passes of a thread in samples (n,). Raises AnalysisError.
+    """Find the passes of a thread in samples (n,).
 
-    ``turns`` are spindle revolutions, ``along`` and ``depth`` the positions of the axis along the thread and
-    of the other axis in mm, and ``speed`` is in rpm. ``lead`` is in mm per revolution; None takes it from the
-    similar passes.
+    ``axis_positions`` and ``depth`` are the positions in mm of the axis along the thread and of the other
+    axis. ``speed`` is in rpm. ``lead`` is in mm per revolution; if it is None, it is derived from the
+    similar passes. Raises AnalysisError.
     """
     if len(spindle_revolutions) < 100:
         raise AnalysisError(
@@ -158,7 +161,10 @@ def _runs(turns: FloatArray, along: FloatArray) -> list[SampleRange]:
 def _joined(
     runs: list[SampleRange], turns: FloatArray, along: FloatArray, direction: float
 ) -> list[SampleRange]:
-    """Join pieces of one pass: a piece that starts on the line on which the previous piece ended."""
+    """Return the periods, with pieces of the same pass joined.
+
+    A piece belongs to the same pass if it starts on the line on which the previous piece ended.
+    """
     found: list[SampleRange] = []
     for run in runs:
         if found:
@@ -173,7 +179,10 @@ def _joined(
 
 
 def _alike(runs: list[SampleRange]) -> list[SampleRange]:
-    """Return the passes with the coarsest lead that occurs more than once, or else with the coarsest lead."""
+    """Return the passes with the coarsest lead that occurs more than once.
+
+    If no lead occurs more than once, the passes with the coarsest lead are returned.
+    """
     if not runs:
         return []
     groups = [[each for each in runs if abs(each[2] - one[2]) <= _ALIKE * abs(one[2])] for one in runs]
@@ -189,7 +198,10 @@ def _passes(
     depth: FloatArray,
     speed: FloatArray,
 ) -> tuple[ThreadPass, ...]:
-    """Return each pass with its best line, and entry angles within half a revolution of the first pass."""
+    """Return each pass with its best-fit line and its entry angle.
+
+    Entry angles are within half a revolution of that of the first pass.
+    """
     begin = float(np.median([along[first] for first, *_ in runs]))
     found: list[ThreadPass] = []
     base = 0.0

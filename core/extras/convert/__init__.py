@@ -1,1 +1,1 @@
-"""Conversion of turning programs of other controls to OmniTurn."""
+"""Conversion of turning programs for other controls to OmniTurn."""

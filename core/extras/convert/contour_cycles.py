@@ -1,4 +1,4 @@
-"""Roughing along a contour in passes (G71, G72), by repeating the contour (G73), and finishing (G70)."""
+"""Contour cycles: roughing in passes (G71, G72), contour repetition (G73) and finishing (G70)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ _SAME = 1e-6  # mm
 
 @dataclass(slots=True)
 class Roughing:
-    """Values of the first line of a cycle, in mm: depth, retract, relief in X and Z; and the count."""
+    """Values of the first line of a roughing cycle.
+
+    Depth, retract and relief are in mm. ``count`` is the number of repetitions.
+    """
 
     depth: float = 0.0
     retract: float = 0.5
@@ -29,7 +32,7 @@ class Roughing:
 
 
 def roughing_words(state: SourceState, statement: Statement, code: Word, rough: Roughing) -> bool:
-    """Store the words of the first line of a cycle; return whether the line is such a line."""
+    """Store the words of the first line of a roughing cycle; return whether the line is such a line."""
     if statement.word("P") is not None:
         return False
     u, w, r = (statement.word(letter) for letter in "UWR")
@@ -56,7 +59,10 @@ def allowances(state: SourceState, statement: Statement) -> Point:
 
 
 def depth_of_pass(state: SourceState, statement: Statement, code: Word, rough: Roughing) -> float:
-    """Return the depth of a pass in mm. Raises ProgramError if it is missing."""
+    """Return the depth of a pass in mm.
+
+    Raises ProgramError if the depth is missing.
+    """
     d = statement.word("D")
     if d is not None:
         return abs(state.increment(d)) if state.control.has_system_a else abs(state.length(d))
@@ -68,7 +74,10 @@ def depth_of_pass(state: SourceState, statement: Statement, code: Word, rough: R
 def passes(
     state: SourceState, code: Word, contour: Sequence[Step], depth: float, retract: float, allowance: Point
 ) -> None:
-    """Append the passes of G71 or G72, the pass along the contour, and the return. Raises ProgramError."""
+    """Append the passes of G71 or G72, the pass along the contour, and the return move.
+
+    Raises ProgramError.
+    """
     start = state.here(code)
     across_x = code.value == 71
     shifted = shift_steps(contour, allowance)
@@ -97,7 +106,7 @@ def passes(
 
 
 class Level(NamedTuple):
-    """One depth of the passes: start point of the cycle, signs of depth and travel, and sizes in mm."""
+    """One depth level of the passes: start point of the cycle, signs of depth and travel, and sizes in mm."""
 
     begin: Point
     level: float
@@ -108,7 +117,10 @@ class Level(NamedTuple):
 
 
 def _one_level(state: SourceState, code: Word, pieces: Sequence[Piece], at: Level, *, across_x: bool) -> None:
-    """Append the passes at one depth, one for each section of the contour that is deeper."""
+    """Append the passes at one depth level.
+
+    There is one pass for each section where the contour is deeper than this level.
+    """
     begin, level, toward = at.begin, at.level, at.toward
     for low, high in deeper_sections(pieces, level, toward):
         enter = begin[1] if low is None else low
@@ -134,7 +146,7 @@ def _one_level(state: SourceState, code: Word, pieces: Sequence[Piece], at: Leve
 def repeats(
     state: SourceState, code: Word, contour: Sequence[Step], rough: Roughing, allowance: Point
 ) -> None:
-    """Append the repetitions of the contour of G73, from the relief to the allowance."""
+    """Append the repetitions of the contour of G73, which progress from the relief to the allowance."""
     start = state.here(code)
     for k in range(rough.count):
         share = 1.0 - k / (rough.count - 1) if rough.count > 1 else 0.0
@@ -147,7 +159,7 @@ def repeats(
 
 
 def shift_steps(steps: Sequence[Step], by: Point) -> list[Step]:
-    """Return the moves shifted by X and Z in mm."""
+    """Return the steps shifted by the X and Z distances ``by`` in mm."""
     return [
         replace(
             step,
@@ -161,7 +173,7 @@ def shift_steps(steps: Sequence[Step], by: Point) -> list[Step]:
 
 
 def _follow(state: SourceState, code: Word, step: Step) -> None:
-    """Append a move of the contour at the feed of the cycle."""
+    """Append a move along the contour at the feed of the cycle."""
     if step.kind is Kind.RAPID:
         state.rapid(step.line, step.x, step.z)
     elif step.kind is Kind.ARC:
@@ -176,12 +188,12 @@ def _follow(state: SourceState, code: Word, step: Step) -> None:
 
 
 def replace_line(code: Word, line: int) -> Word:
-    """Return the word of a cycle at another line, to which its moves belong."""
+    """Return the word of a cycle with another line number, so that its moves belong to this line."""
     return code._replace(line=line)
 
 
 def _swap(point: Point, *, across_x: bool) -> Point:
-    """Return (depth, along) for (x, z) and conversely."""
+    """Convert (x, z) to (depth, travel), or back."""
     return point if across_x else (point[1], point[0])
 
 

@@ -1,4 +1,4 @@
-"""Contours of roughing cycles, and the sections of them that are deeper than a pass."""
+"""Pieces of the contour of a roughing cycle, and the sections of the contour that are deeper than a pass."""
 
 from __future__ import annotations
 
@@ -13,7 +13,10 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A line or arc of a contour. Points are the depth of the passes, and the coordinate along them."""
+    """A line or arc of a contour.
+
+    The first coordinate of a point is in the direction of depth, and the second is along the passes.
+    """
 
     start: Point
     end: Point
@@ -21,7 +24,7 @@ class Piece:
     clockwise: bool = False
 
     def at(self, share: float) -> Point:
-        """Return the point after this share of the piece, from 0 to 1."""
+        """Return the point at a fraction of the length of the piece, from 0 to 1."""
         if self.center is None:
             return (
                 self.start[0] + (self.end[0] - self.start[0]) * share,
@@ -32,7 +35,10 @@ class Piece:
         return self.center[0] + radius * sin(angle), self.center[1] + radius * cos(angle)
 
     def shares(self, level: float, axis: int = 0) -> list[float]:
-        """Return the shares at which the piece crosses a depth, or a coordinate along with ``axis`` 1."""
+        """Return the fractions of the length at which the piece crosses a coordinate.
+
+        ``level`` is a depth if ``axis`` is 0, or a coordinate along the passes if ``axis`` is 1.
+        """
         if self.center is None:
             step = self.end[axis] - self.start[axis]
             share = (level - self.start[axis]) / step if abs(step) > _SAME else -1.0
@@ -49,7 +55,10 @@ class Piece:
         return sorted(share for share in found if 0.0 < share < 1.0)
 
     def extremes(self, axis: int) -> list[float]:
-        """Return the least and greatest depth of an arc inside its ends, or of its coordinate along."""
+        """Return the extreme coordinates of an arc that are between its ends.
+
+        The coordinates are depths if ``axis`` is 0, or coordinates along the passes if ``axis`` is 1.
+        """
         if self.center is None:
             return []
         radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
@@ -65,14 +74,15 @@ class Piece:
         return atan2(point[0] - self.center[0], point[1] - self.center[1])
 
     def _sweep(self, point: Point) -> float:
-        """Return the angle from the start to a point in the sense of the arc, from 0 to 2 pi."""
+        """Return the angle from the start to a point in the direction of the arc, from 0 to 2 pi."""
         return (self._sense * (self._angle(point) - self._angle(self.start))) % (2 * pi)
 
 
 def deeper_sections(pieces: Sequence[Piece], level: float, toward: float) -> list[tuple[float | None, float]]:
-    """Return start and end, along the passes, of each section that is deeper than ``level``.
+    """Return the start and end coordinates of each section that is deeper than ``level``.
 
-    The start is None if the contour begins deeper, so that the pass begins at the start point of the cycle.
+    The coordinates are along the passes. The start is None if the contour begins deeper than ``level``, so
+    that the pass begins at the start point of the cycle.
     """
     found: list[tuple[float | None, float]] = []
     inside = False
@@ -91,7 +101,7 @@ def deeper_sections(pieces: Sequence[Piece], level: float, toward: float) -> lis
 
 
 def turns_back(pieces: Sequence[Piece], along: float) -> bool:
-    """Return whether a contour moves back toward the start of the passes, as in an undercut."""
+    """Return whether a contour reverses toward the start of the passes, as in an undercut."""
     farthest = along * pieces[0].start[1]
     for piece in pieces:
         for each in (*piece.extremes(1), piece.end[1]):

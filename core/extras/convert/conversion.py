@@ -1,4 +1,4 @@
-"""Conversion of a source program: reading, writing and proof."""
+"""Conversion of a source program: the source is read, the result is written, and the result is proved."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from core.language.diagnostics import Diagnostic, ProgramError, Severity
 
 @dataclass(frozen=True, slots=True)
 class Conversion:
-    """A converted program.
+    """A converted program with its findings and its proof.
 
-    ``findings`` are about lines of the source. If they include an error, ``lines`` must not be used.
+    ``findings`` refer to lines of the source. If they include an error, ``lines`` must not be used.
     """
 
     lines: tuple[WrittenLine, ...]
@@ -28,17 +28,20 @@ class Conversion:
 
     @property
     def errors(self) -> Sequence[Diagnostic]:
-        """The findings that prevent the conversion."""
+        """Return the findings that prevent the conversion."""
         return [each for each in self.findings if each.severity is Severity.ERROR]
 
     @property
     def text(self) -> str:
-        """The converted program."""
+        """Return the text of the converted program."""
         return "".join(f"{each.text}\n" for each in self.lines)
 
 
 def convert(texts: Sequence[str], options: Options, limits: ControlLimits) -> Conversion:
-    """Convert the lines of a source program to OmniTurn, and prove the result for a machine."""
+    """Convert the lines of a source program to OmniTurn, and prove the result.
+
+    ``limits`` are the limits of the control for which the result is proved.
+    """
     state, findings = read_source(texts, options)
     if any(each.severity is Severity.ERROR for each in findings):
         return Conversion((), tuple(findings), Proof())

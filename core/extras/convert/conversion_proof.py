@@ -1,4 +1,4 @@
-"""Proof of a conversion: the blocks of the converted program against the steps of the source."""
+"""Proof of a conversion by comparing the blocks of the converted program with the steps of the source."""
 
 from __future__ import annotations
 
@@ -32,7 +32,8 @@ _KINDS = {
 class Proof:
     """Result of a proof: the differences, and the number of compared steps.
 
-    ``rounded`` counts the moves whose end the resolution of the control changes, by at most ``most`` mm.
+    ``rounded`` is the number of moves whose end point changes because of the resolution of the control, and
+    ``most`` is the largest such change in mm.
     """
 
     errors: tuple[Diagnostic, ...] = ()
@@ -51,7 +52,7 @@ def prove(
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
-    ``sources`` are the source lines of the lines of ``text``.
+    ``sources`` contains the source line of each line of ``text``.
     """
     tools = dict.fromkeys(range(1, 33), _OFFSET)
     nose = dict.fromkeys(range(1, 33), SecondaryOffset())
@@ -66,7 +67,7 @@ def prove(
 
 
 def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
-    """Return a finding of the interpreter at the source line of its line."""
+    """Convert a finding about the converted program to a finding about the corresponding source line."""
     line = sources[found.line - 1] if found.line else 0
     made = text.splitlines()[found.line - 1] if found.line else ""
     error = refuse(line, 0, "target", made=made, message=found.message, hint=found.hint)
@@ -74,7 +75,7 @@ def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnost
 
 
 class _DifferenceError(Exception):
-    """The first difference of a converted program."""
+    """An error raised at the first difference of a converted program."""
 
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(diagnostic.message)
@@ -82,7 +83,7 @@ class _DifferenceError(Exception):
 
 
 class _Comparison:
-    """Comparison of blocks and steps, in their order."""
+    """Comparison of blocks and steps in order."""
 
     def __init__(
         self,
@@ -160,7 +161,7 @@ class _Comparison:
             self._action(step, block.action)
 
     def _home(self, step: Step) -> None:
-        """Compare a move to machine home, which is not a block if the axes are already there."""
+        """Compare a move to machine home. There is no block for it if the axes are already there."""
         at = self._at
         if (
             at < len(self._blocks)
@@ -209,7 +210,11 @@ class _Comparison:
             self._differs(step.line, "proof-differs", action, wanted, "the step")
 
     def _spindle(self, step: Step, made: actions.SpindleRun, wanted: actions.SpindleRun) -> None:
-        """Compare the speed; under constant surface speed, the rpm of a block depends on its position."""
+        """Compare the spindle speeds.
+
+        With constant surface speed, the rpm of a block depends on its position, so the surface speeds are
+        compared.
+        """
         css = made.surface_speed is not None
         if css != (wanted.surface_speed is not None) or (made.rpm > 0) != (wanted.rpm > 0):
             self._differs(step.line, "proof-differs", made, wanted, "the spindle")
@@ -219,7 +224,10 @@ class _Comparison:
     # --- threads
 
     def _thread_zone(self, at: int) -> int:
-        """Compare a thread pass with the rapids around it; return the number of steps, or 0 for no thread."""
+        """Compare a thread pass and the rapids around it; return the number of steps.
+
+        The number is 0 if there is no thread.
+        """
         steps, blocks = self._steps, self._blocks
         infeed = at
         while infeed < len(steps) and steps[infeed].kind is Kind.RAPID:
@@ -241,7 +249,7 @@ class _Comparison:
         return end - at
 
     def _zone(self, steps: Sequence[Step], blocks: Sequence[Block]) -> None:
-        """Compare threads exactly, and rapids as far as the retract of the cycle allows."""
+        """Compare threads exactly, and compare rapids only as far as the retract of the cycle permits."""
         made = iter(blocks)
         for step in steps:
             for block in made:
@@ -262,14 +270,20 @@ class _Comparison:
 
 
 def _is_idle(block: Block) -> bool:
-    """Return whether a block is not compared: a tool change, a preset, or a move without length."""
+    """Return whether a block is excluded from the comparison.
+
+    Tool changes, presets and moves without length are excluded.
+    """
     if block.action is not None:
         return isinstance(block.action, actions.ToolChange | actions.Preset)
     return block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
 
 
 def _known(steps: Sequence[Step]) -> Iterator[Step]:
-    """Yield the steps that blocks must match: without nose codes, presets and moves of unknown end."""
+    """Yield the steps that blocks must match.
+
+    Nose codes, presets and moves whose end point is unknown are omitted.
+    """
     spindle = Spindle()
     for step in steps:
         if step.kind in MOVES and (step.x is None or step.z is None):
@@ -284,7 +298,7 @@ def _known(steps: Sequence[Step]) -> Iterator[Step]:
 
 
 def _action_of(step: Step, *, metric: bool) -> actions.Action | None:
-    """Return the action of a block that is equal to a step; None if there is no such action."""
+    """Return the block action that corresponds to a step, or None if there is no such action."""
     if step.kind is Kind.SPINDLE:
         return _spindle_of(step, metric=metric)
     if step.kind is Kind.DWELL:

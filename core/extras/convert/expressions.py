@@ -1,4 +1,4 @@
-"""Expressions and variables of macros: ``#100``, ``#<name>``, ``[#1 + 2] * SIN[30]``."""
+"""Expressions and variables of macros, such as ``#100``, ``#<name>`` and ``[#1 + 2] * SIN[30]``."""
 
 from __future__ import annotations
 
@@ -54,13 +54,16 @@ Variables = MutableMapping[str, float]
 
 
 class Expression:
-    """A reader of the expressions in one line. ``at`` is the index of the next character."""
+    """A reader of the expressions in one line.
+
+    ``at`` is the index of the next character.
+    """
 
     def __init__(self, line: int, text: str, variables: Variables, at: int = 0) -> None:
         self.line, self.text, self.variables, self.at = line, text, variables, at
 
     def blank(self) -> None:
-        """Advance to the next character that is not a blank."""
+        """Skip blanks."""
         while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1
 
@@ -70,16 +73,16 @@ class Expression:
         return self.text[self.at : self.at + 1]
 
     def take(self, sign: str) -> bool:
-        """Advance after ``sign`` if it is next."""
+        """Skip ``sign`` if it is next; return whether it was."""
         self.blank()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
         self.at += len(sign) * found
         return found
 
     def value(self) -> tuple[float, bool]:
-        """Return the value of a word, and whether it is not a plain number without a decimal point.
+        """Return the value of a word and whether the decimal point rule does not apply to it.
 
-        Raises ProgramError.
+        The second result is False only for a plain number without a decimal point. Raises ProgramError.
         """
         begin = self.at
         negative = False
@@ -111,7 +114,7 @@ class Expression:
         return found
 
     def whole(self) -> float:
-        """Return the value of the expression at the right of ``=``. Raises ProgramError."""
+        """Return the value of the expression to the right of ``=``. Raises ProgramError."""
         begin = self.at
         try:
             return self._binary(0)
@@ -119,7 +122,7 @@ class Expression:
             raise refuse(self.line, begin + 1, "division") from error
 
     def variable(self) -> str:
-        """Return the key of the variable at a ``#``. Raises ProgramError."""
+        """Return the key of the variable that starts with ``#``. Raises ProgramError."""
         self.at += 1
         if self.take("<"):
             end = self.text.find(">", self.at)

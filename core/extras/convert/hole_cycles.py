@@ -17,9 +17,9 @@ _SAME = 1e-6  # mm
 
 
 def hole_cycle(state: SourceState, statement: Statement, code: Word) -> None:
-    """Append the moves of a hole cycle; words of earlier lines of the cycle remain active.
+    """Append the moves of a hole cycle.
 
-    Raises ProgramError.
+    Words of earlier lines of the cycle remain active. Raises ProgramError.
     """
     for word in statement.words:
         if word.letter in "ZWRQPK":
@@ -52,7 +52,10 @@ def _bottom(state: SourceState, code: Word, z0: float) -> float:
 
 
 def _plane(state: SourceState, z0: float) -> float:
-    """Return Z at which the feed begins: R is a distance on Fanuc controls, and a coordinate on others."""
+    """Return the Z at which the feed begins.
+
+    R is a distance on Fanuc controls and a coordinate on other controls.
+    """
     word = state.hole.get("R")
     if word is None:
         return z0
@@ -62,7 +65,10 @@ def _plane(state: SourceState, z0: float) -> float:
 
 
 def _pecks(state: SourceState, code: Word, plane: float, bottom: float, *, full: bool) -> None:
-    """Append the pecks; without ``full``, the drill retracts only to break the chip."""
+    """Append the pecks of a hole.
+
+    If ``full`` is False, the drill retracts only far enough to break the chip.
+    """
     q = state.hole.get("Q")
     x = state.x
     if q is None:

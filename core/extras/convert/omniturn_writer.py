@@ -1,4 +1,4 @@
-"""Writer of an OmniTurn program from the steps of a source program."""
+"""Writer that makes an OmniTurn program from the steps of a source program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NOT_IN_COMMENTS = re.compile(r"[^ -'*-~]")
 
 
 class WrittenLine(NamedTuple):
-    """A line of the converted program, with the source line that it comes from (0 for none)."""
+    """A line of the converted program, with the number of its source line (0 if it has none)."""
 
     text: str
     line: int
@@ -28,7 +28,10 @@ class WrittenLine(NamedTuple):
 
 @dataclass(slots=True)
 class Writer:
-    """State of the converted program while it is written. Lengths are in mm, X is a radius."""
+    """Writer of the converted program, with the modal state after the last line.
+
+    Lengths are in mm, and X is a radius.
+    """
 
     metric: bool
     options: Options
@@ -50,22 +53,25 @@ class Writer:
     # --- numbers
 
     def grid(self, value: float, *, across: bool = False) -> float:
-        """Return a length in units of the program, rounded to the resolution of the control."""
+        """Convert a length in mm to the unit of the program, rounded to the resolution of the control.
+
+        If ``across`` is True, the result is a diameter.
+        """
         if self.metric:
             return round(value * (2 if across else 1), 4) + 0.0
         steps = round(value / MM_PER_INCH / 0.00005)
         return round(steps * (0.0001 if across else 0.00005), 5) + 0.0
 
     def word(self, letter: str, value: float, places: int = 5) -> str:
-        """Return a word with a decimal point and without unnecessary zeros."""
+        """Return a word without unnecessary zeros after the decimal point."""
         return letter + number(value, places)
 
     def say(self, text: str, step: Step) -> None:
-        """Append a line for a step, with its source in a comment."""
+        """Append a line for a step, with the source in a comment."""
         self.lines.append(WrittenLine(text + self.comment(step), step.line))
 
     def comment(self, step: Step) -> str:
-        """Return the comment of a line; empty if comments are not wanted."""
+        """Return the comment for the line of a step, or an empty text if comments are disabled."""
         stop = step.kind is Kind.M and step.number in {0, 1}
         if not self.options.comments and not (stop and step.comment):
             return ""
@@ -166,12 +172,12 @@ class Writer:
         self.x, self.z = step.x, step.z
 
     def snap_x(self, x: float | None) -> float:
-        """Return X in mm as a radius, as the control rounds it."""
+        """Return X in mm as a radius, rounded to the resolution of the control."""
         unit = 1.0 if self.metric else MM_PER_INCH
         return self.grid(x or 0.0, across=True) * unit / 2
 
     def snap_z(self, z: float | None) -> float:
-        """Return Z in mm, as the control rounds it."""
+        """Return Z in mm, rounded to the resolution of the control."""
         return self.grid(z or 0.0) * (1.0 if self.metric else MM_PER_INCH)
 
     def _feed(self, step: Step) -> str:
@@ -185,7 +191,7 @@ class Writer:
         return ("G95" if step.per_rev else "G94") + self.word("F", value, 8)
 
     def go_rapid(self, step: Step, x: float, z: float) -> None:
-        """Write a rapid to a point, with the source line of ``step``."""
+        """Write a rapid to a point; the line refers to the source line of ``step``."""
         self._go(Step(Kind.RAPID, step.line, x, z))
 
     def _home(self, step: Step) -> None:
@@ -227,7 +233,10 @@ class Writer:
 
 
 def number(value: float, places: int = 5) -> str:
-    """Return a number without unnecessary zeros, such as ``.5`` or ``-1.25``; whole numbers have no point."""
+    """Format a number without unnecessary zeros, such as ``.5`` or ``-1.25``.
+
+    An integer has no decimal point.
+    """
     text = f"{value:.{places}f}".rstrip("0").rstrip(".") if places else f"{value:.0f}"
     text = "0" if text in {"-0", ""} else text
     return re.sub(r"^(-?)0\.", r"\1.", text)
@@ -239,10 +248,11 @@ _NEAR = 1e-6  # mm
 
 
 def _write_thread(writer: Writer, step: Step, after: Sequence[Step]) -> int:
-    """Write one pass; return the number of steps that it includes: thread, pull-out and return.
+    """Write one thread pass; return the number of steps that it includes: thread, pull-out and return.
 
-    The tool must already be at the start of the thread, and a rapid straight out in X must follow. The cycle
-    needs a start point outside the thread; its retract is then the X of the pull-out. Raises ProgramError.
+    The tool must already be at the start of the thread, and a rapid straight out in X must follow. The
+    cycle needs a start point outside the thread; its retract is then the X of the pull-out. Raises
+    ProgramError.
     """
     assert step.x is not None
     assert step.z is not None
@@ -287,7 +297,7 @@ def _is_pull_out(step: Step, out: Step | None) -> bool:
 
 
 def _returns(out: Step, after: Sequence[Step], start_z: float) -> int:
-    """Return 1 if the next step is the return of the pass to its start Z at the X of the pull-out."""
+    """Return 1 if the next step returns to the start Z of the pass at the X of the pull-out, otherwise 0."""
     back = after[0] if after else None
     if back is None or back.kind is not Kind.RAPID or back.x is None or back.z is None:
         return 0
@@ -296,7 +306,7 @@ def _returns(out: Step, after: Sequence[Step], start_z: float) -> int:
 
 
 def _drop_infeed(writer: Writer, start_z: float) -> None:
-    """Remove the rapid to the depth of the pass if it was written last, because the cycle makes it."""
+    """Remove the rapid to the depth of the pass if it was written last, because the cycle makes this move."""
     if writer.infeed is None:
         return
     count, x, z, was_rapid = writer.infeed

@@ -1,4 +1,4 @@
-"""Steps of a turning program: moves, spindle, tools and M codes, independent of any language."""
+"""Steps of a turning program in a language-independent form: moves, spindle, tools and M codes."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ MOVES = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
 
 @dataclass(frozen=True, slots=True)
 class Spindle:
-    """State of the spindle: ``direction`` 1 is M03, -1 is M04 and 0 is stopped.
+    """State of the spindle. ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle.
 
-    ``speed`` is in rpm, or in units of the program per minute with ``css`` (ft/min or m/min). ``most`` is the
-    maximum rpm under ``css``, or 0.
+    ``speed`` is in rpm or, with ``css``, in units of the program per minute (ft/min or m/min). ``most`` is
+    the maximum rpm with ``css``, or 0.
     """
 
     direction: int = 0
@@ -41,18 +41,19 @@ class Spindle:
 
 
 def is_same_run(one: Spindle, other: Spindle) -> bool:
-    """Return whether two states of the spindle differ at most in the maximum speed."""
+    """Return whether two spindle states are equal or differ only in the maximum speed."""
     return (one.direction, one.speed, one.css) == (other.direction, other.speed, other.css)
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One step. Lengths are in mm, X is a radius, and a coordinate that is unknown is None.
+    """One step of a turning program. Lengths are in mm, X is a radius, and an unknown coordinate is None.
 
     ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is seen with X+ toward the
-    operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev with ``per_rev``; for a thread, it is the
-    lead. ``number`` is a tool, an M code, a dwell in seconds, or 40, 41 or 42 of nose compensation. For HOME,
-    the axes that move are not None. ``comment`` is a comment of the source.
+    operator, as in OmniTurn. ``feed`` is in mm/min, or in mm/rev if ``per_rev`` is True; for a thread,
+    ``feed`` is the lead. ``number`` is a tool, an M code, a dwell in seconds, or 40, 41 or 42 of nose
+    compensation. In a HOME step, the coordinates of the axes that move are not None. ``comment`` is a
+    comment of the source.
     """
 
     kind: Kind

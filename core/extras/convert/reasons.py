@@ -1,4 +1,4 @@
-"""All reasons why a source line cannot be converted or is converted differently, with their remedies."""
+"""Error and warning texts with their remedies, for source lines that cannot be converted or are changed."""
 
 from __future__ import annotations
 
@@ -180,7 +180,7 @@ PROOF: Mapping[str, tuple[str, str]] = {
 
 
 def refuse(line: int, column: int, code: str, /, **values: object) -> ProgramError:
-    """Return the error that ends the conversion at this place of the source."""
+    """Return the error that ends the conversion at this position in the source."""
     text, hint = ERRORS.get(code) or PROOF[code]
     return ProgramError(_finding(line, column, Severity.ERROR, code, text, hint, values))
 

@@ -27,7 +27,7 @@ _HAAS = re.compile(
 
 
 def recognized(lines: Sequence[str]) -> Control | None:
-    """Return the control that the words of a program suggest, or None."""
+    """Return the control for which a program was probably written, or None if its words do not show this."""
     text = "\n".join(_COMMENT.sub(" ", each) for each in lines)
     if _LINUXCNC.search(text):
         return Control.LINUXCNC

@@ -1,4 +1,4 @@
-"""Single turning and facing cycles (G90 and G94 of system A), and pecking along Z or X (G74 and G75)."""
+"""Single turning and facing cycles (G90 and G94 of system A), and peck cycles along Z or X (G74 and G75)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SAME = 1e-6  # mm
 
 
 def cycle_target(state: SourceState, statement: Statement, code: Word) -> tuple[float, float]:
-    """Return X and Z of a single cycle; a missing word has its value of the line before.
+    """Return X and Z of a single cycle; a missing word has its value from the previous line.
 
     Raises ProgramError.
     """
@@ -33,7 +33,7 @@ def cycle_target(state: SourceState, statement: Statement, code: Word) -> tuple[
 
 
 def taper_of(state: SourceState, statement: Statement, letters: str = "RI") -> float:
-    """Return the taper of a single cycle in mm, which remains active on further lines of the cycle."""
+    """Return the taper of a single cycle in mm. The taper remains active on further lines of the cycle."""
     word = next((each for letter in letters if (each := statement.word(letter))), None)
     if word is not None:
         state.cycle_taper = state.length(word)
@@ -65,7 +65,7 @@ def facing_box(state: SourceState, statement: Statement, code: Word) -> None:
 
 
 class Peck:
-    """The first line of G74 or G75 of two lines: the retract of a peck in mm."""
+    """Value of the first line of a two-line G74 or G75: the retract of a peck in mm."""
 
     def __init__(self) -> None:
         self.retract: float | None = None
@@ -129,7 +129,7 @@ def _plunge(
     *,
     along_z: bool,
 ) -> None:
-    """Append the pecks from the first to the second coordinate of ``depths``."""
+    """Append the pecks of a plunge from the first to the second coordinate in ``depths``."""
     begin, end = depths
     toward = copysign(1.0, end - begin)
     reached = begin

@@ -1,4 +1,4 @@
-"""Arcs of a source program: G02 and G03 with R, or with I and K."""
+"""Arcs of a source program, programmed by G02 and G03 with R, or with I and K."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SAME = 1e-6  # mm
 
 
 def arc(state: SourceState, statement: Statement, code: Word) -> None:
-    """Append the arc of a line. Raises ProgramError."""
+    """Append the arc that a line programs. Raises ProgramError."""
     if state.feed is None:
         raise refuse(code.line, code.column, "feed-missing")
     start = state.here(code)

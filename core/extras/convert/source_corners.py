@@ -1,4 +1,4 @@
-"""Chamfers and corner radii on straight moves: ``,C`` ``,R`` C R I K."""
+"""Chamfers and corner radii on straight moves, programmed with ``,C``, ``,R``, C, R, I or K."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SLACK = 1e-6  # mm
 
 
 class Corner(NamedTuple):
-    """A corner after the last move: the word, its size in mm, and the start point of the move."""
+    """A corner after the last move: the word, its size in mm, and the start point of this move."""
 
     word: Word
     size: float
@@ -23,7 +23,10 @@ class Corner(NamedTuple):
 
 
 def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
-    """Shorten the last move and append the chamfer or arc toward the next end point. Raises ProgramError."""
+    """Shorten the last move and append the chamfer or arc toward the next end point.
+
+    Raises ProgramError.
+    """
     last = state.steps[-1]
     assert last.x is not None
     assert last.z is not None

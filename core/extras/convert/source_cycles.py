@@ -1,4 +1,4 @@
-"""Cycles of the source, by G code and control."""
+"""Cycles of the source program, selected by G code and control."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _WORDS = {
 
 
 class Cycles:
-    """The cycles of one pass, with the values that their first lines store."""
+    """The cycles of one pass through a source program, with the values that their first lines store."""
 
     def __init__(self, state: SourceState, flow: Flow, execute: Execute) -> None:
         self._state, self._flow, self._execute = state, flow, execute
@@ -54,7 +54,7 @@ class Cycles:
         self._peck = Peck()
 
     def is_modal(self, code: float) -> bool:
-        """Return whether this G code remains active for further lines with axis words."""
+        """Return whether this G code remains active on further lines with axis words."""
         return code in self._boxes() or code in self._holes()
 
     def is_hole(self, code: float) -> bool:
@@ -83,7 +83,7 @@ class Cycles:
             hole_cycle(self._state, statement, code)
 
     def one_shot(self, statement: Statement, code: Word) -> bool:
-        """Execute a cycle that acts only on its line; return whether the code is such a cycle."""
+        """Execute a cycle that is active only on its own line; return whether the code is such a cycle."""
         state, number = self._state, code.value
         if not state.control.is_fanuc:
             if number != 76:
@@ -132,7 +132,7 @@ class Cycles:
         self._flow.at = after
 
     def _trace(self, lines: Sequence[Statement]) -> list[Step]:
-        """Return the moves of a contour without its last rapids, and restore the state."""
+        """Return the moves of a contour without its final rapids, and restore the state."""
         state = self._state
         saved = (state.steps, state.x, state.z, state.feed, state.motion, state.nose, state.comment)
         spindle, warnings = state.spindle, list(state.warnings)

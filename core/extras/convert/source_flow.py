@@ -1,4 +1,4 @@
-"""Order of execution of a source program: subprograms, jumps, loops and O words."""
+"""Execution order of a source program with subprograms, jumps, loops and O words."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class _Return(NamedTuple):
 
 
 class Flow:
-    """The statements of a source program in the order of execution.
+    """The statements of a source program in execution order.
 
     ``at`` is the index of the next line.
     """
@@ -60,7 +60,7 @@ class Flow:
         self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
 
     def statements(self) -> Iterator[Statement]:
-        """Yield the statements in the order of execution. Raises ProgramError."""
+        """Yield the statements in execution order. Raises ProgramError."""
         while self.at < len(self.lines) and not self.ended:
             line = self.lines[self.at]
             self.at += 1
@@ -162,7 +162,8 @@ class Flow:
     def contour(self, first: float, last: float, near: int) -> tuple[list[Statement], int]:
         """Return the statements of the blocks N``first`` to N``last``, and the index after them.
 
-        The blocks are searched from line ``near`` on, then from the start of the file. Raises ProgramError.
+        The search for the blocks starts at line ``near`` and continues from the start of the file. Raises
+        ProgramError.
         """
         order = (*range(near, len(self.lines)), *range(near))
         begin = next((index for index in order if self.lines[index].n == first), None)
@@ -242,7 +243,7 @@ class Flow:
             self.at = self._find(line, ("endwhile",)) + 1
 
     def _if(self, line: SourceLine, reader: Expression) -> None:
-        """Continue after the first true IF or ELSEIF; otherwise after ELSE or ENDIF."""
+        """Continue after the first true IF or ELSEIF, or after ELSE or ENDIF if no condition is true."""
         while not reader.bracket():
             index = self._find(line, ("elseif", "else", "endif"))
             self.at = index + 1
@@ -296,5 +297,8 @@ class Flow:
 
 
 def _is_local(key: str) -> bool:
-    """Return whether a variable belongs to one call: #1 to #33, or a name without an underscore."""
+    """Return whether a variable is local to one call.
+
+    Local variables are #1 to #33 and names without a leading underscore.
+    """
     return (key.isdecimal() and int(key) <= 33) or (key.startswith("<") and not key.startswith("<_"))

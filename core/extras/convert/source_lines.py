@@ -17,10 +17,10 @@ _O_WORD = re.compile(r"\s*O\s*(?P<o>\d+|<[^>]+>)\s*(?P<key>[A-Za-z]+)(?P<rest>.*
 
 
 class SourceLine(NamedTuple):
-    """One line of the source.
+    """One line of the source program.
 
-    ``code`` is the text without comments, with blanks in their place. ``n`` is the block number, or 0. ``o``
-    and ``key`` are the number or name and the keyword of an O word, and ``start`` is the index after them.
+    ``code`` is the text in which blanks replace the comments. ``n`` is the block number, or 0. ``o`` is the
+    number or name of an O word, ``key`` is its keyword, and ``start`` is the index after them.
     """
 
     number: int
@@ -35,7 +35,10 @@ class SourceLine(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A word of a line. ``has_point`` is True unless the value is a number without a decimal point."""
+    """A word of a line.
+
+    ``has_point`` is False only for a number without a decimal point.
+    """
 
     letter: str
     value: float
@@ -47,18 +50,18 @@ class Word(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """The words of a line with their values, in their order."""
+    """The words of a line with their values, in order."""
 
     line: int
     words: tuple[Word, ...]
     comment: str = ""
 
     def word(self, letter: str) -> Word | None:
-        """Return the last word with this letter, or None."""
+        """Return the last word of the line with this letter, or None."""
         return next((each for each in reversed(self.words) if each.letter == letter), None)
 
     def codes(self, letter: str) -> Sequence[Word]:
-        """Return the words with this letter."""
+        """Return all words with this letter."""
         return [each for each in self.words if each.letter == letter]
 
     def has_g(self, *codes: float) -> bool:
@@ -67,7 +70,10 @@ class Statement:
 
 
 def split_lines(texts: Sequence[str], control: Control) -> list[SourceLine]:
-    """Return the lines of a source program. Raises ProgramError for a comment without an end."""
+    """Return the lines of a source program.
+
+    Raises ProgramError for a comment without an end.
+    """
     return [_line(number, text, control) for number, text in enumerate(texts, start=1)]
 
 
@@ -119,7 +125,7 @@ def _without_comments(number: int, text: str) -> tuple[str, str]:
 
 
 def read_words(line: SourceLine, variables: Variables) -> Statement:
-    """Return the words of a line and assign its variables. Raises ProgramError."""
+    """Return the words of a line, and assign the variables that the line sets. Raises ProgramError."""
     reader = Expression(line.number, line.code, variables, line.start)
     assigned: dict[str, float] = {}
     words = tuple(_words(reader, assigned))

@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Control(StrEnum):
-    """Control for which a program was written. The values are those of ``--from``."""
+    """Control for which a program was written. The values are the choices of the option ``--from``."""
 
     FANUC_A = "fanuc-a"
     FANUC_B = "fanuc-b"
@@ -17,23 +17,27 @@ class Control(StrEnum):
 
     @property
     def has_system_a(self) -> bool:
-        """Whether the control uses G-code system A: U and W are increments, and G90 is a cycle."""
+        """Return whether the control uses G-code system A.
+
+        In system A, U and W are increments and G90 is a cycle.
+        """
         return self in {Control.FANUC_A, Control.HAAS}
 
     @property
     def is_fanuc(self) -> bool:
-        """Whether words, cycles and macros are those of Fanuc controls."""
+        """Return whether the words, cycles and macros are those of Fanuc controls."""
         return self not in {Control.LINUXCNC, Control.MACH}
 
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Facts about a source program that its text does not contain.
+    """Options of a conversion, mainly facts that the text of the source program does not contain.
 
-    ``no_point`` is the value of 1 in a length without a decimal point: 0 is not specified, 1 is a whole unit,
-    and 0.001 is the least increment (0.001 mm or 0.0001 in). ``metric`` is the unit of a program that selects
-    none, and ``diameter`` the meaning of X in such a program; None is not specified. ``front`` means that
-    G02 and G03 are seen with X+ toward the operator. ``skipped_m`` are M codes to leave out.
+    ``no_point`` is the value of 1 in a length without a decimal point: 0 means not specified, 1 means a
+    whole unit, and 0.001 means the least increment (0.001 mm or 0.0001 in). ``metric`` is the unit of a
+    program that selects no unit, and ``diameter`` is the meaning of X in a program that does not select
+    one; None means not specified. ``front`` is True if G02 and G03 are seen with X+ toward the operator.
+    ``skipped_m`` are M codes to omit.
     """
 
     control: Control

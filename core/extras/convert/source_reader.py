@@ -1,4 +1,4 @@
-"""Reader of a source program: words to modal state to steps."""
+"""Reader of a source program, which executes words on a modal state and produces steps."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ _C_WORDS = "CHABYV"
 
 
 class Reader:
-    """One pass through a source program. ``state.steps`` and ``state.warnings`` are its results."""
+    """One pass through a source program. ``state.steps`` and ``state.warnings`` are the results."""
 
     def __init__(self, texts: Sequence[str], options: Options) -> None:
         self.flow = Flow(texts, options.control)
@@ -113,7 +113,7 @@ class Reader:
         return replace(statement, words=tuple(each for each in statement.words if each not in idle))
 
     def _numbers_mode(self, word: Word) -> bool:
-        """Execute a code of the unit, of X or of increments; return whether the word is such a code."""
+        """Execute a code for units, X diameter or increments; return whether the word is such a code."""
         state, fanuc, code = self.state, self.state.control.is_fanuc, word.value
         if code in {20, 21} or (code in {70, 71} and not fanuc):
             state.metric = code in {21, 71}
@@ -126,7 +126,7 @@ class Reader:
         return True
 
     def _feed_mode(self, word: Word) -> bool:
-        """Execute a code of the feed mode; return whether the word is such a code."""
+        """Execute a code that selects the feed mode; return whether the word is such a code."""
         state, code = self.state, word.value
         if code in self._feed_codes():
             per_rev = code in {99, 95}
@@ -200,7 +200,7 @@ class Reader:
             state.add(Step(Kind.TOOL, statement.line, number=offset))
 
     def _spindle(self, statement: Statement) -> None:
-        """Execute G96, G97, S, and M03 and M04. Raises ProgramError."""
+        """Execute G96, G97, S, M03 and M04. Raises ProgramError."""
         state = self.state
         spindle = state.spindle
         limit = statement.has_g(50) or (statement.has_g(92) and state.control is not Control.LINUXCNC)
@@ -345,7 +345,7 @@ class Reader:
         )
 
     def _check_letters(self, statement: Statement) -> None:
-        """Refuse words that this reader does not use. Raises ProgramError."""
+        """Reject words that this reader does not use. Raises ProgramError."""
         allowed = "GMXZFSTNUW" if self.state.control.is_fanuc else "GMXZFSTN"
         if self.state.motion in {2, 3}:
             allowed += "RIK"
@@ -442,7 +442,7 @@ class Reader:
         state.x, state.z = None if x else state.x, None if z else state.z
 
     def _preset(self, statement: Statement) -> None:
-        """Execute G50 or G92: a maximum speed, a preset of the position, or both."""
+        """Execute G50 or G92, which set a maximum speed, a position preset or both."""
         state = self.state
         self._only(statement, "GMSTXZ" + ("UW" if state.control.is_fanuc else ""))
         if statement.word("X") is None and statement.word("Z") is None:
@@ -454,7 +454,7 @@ class Reader:
 
 
 def read_source(texts: Sequence[str], options: Options) -> tuple[SourceState, list[Diagnostic]]:
-    """Return the state after a pass through the source, and its findings; an error is the last one."""
+    """Return the state after a pass through the source, and the findings; an error is the last finding."""
     try:
         reader = Reader(texts, options)
     except ProgramError as error:

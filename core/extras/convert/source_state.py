@@ -1,4 +1,4 @@
-"""Modal state of a source program, and the meaning of its numbers."""
+"""Modal state of a source program, and conversion of its numbers to mm."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _SAME = 1e-9  # mm
 class SourceState:
     """Modal state, position and steps of a pass through a source program.
 
-    ``x z`` is the position in mm with X as a radius, or None if it is unknown. ``feed`` is in mm/min or
-    mm/rev.
+    ``x z`` is the position in mm with X as a radius; an unknown coordinate is None. ``feed`` is in mm/min
+    or mm/rev.
     """
 
     options: Options
@@ -49,17 +49,20 @@ class SourceState:
 
     @property
     def control(self) -> Control:
-        """Control of the source."""
+        """Return the control for which the source program was written."""
         return self.options.control
 
     def unit(self, word: Word) -> float:
-        """Return the millimeters in a unit of the program. Raises ProgramError if it is unknown."""
+        """Return the size of the program's length unit in mm. Raises ProgramError if the unit is unknown."""
         if self.metric is None:
             raise refuse(word.line, word.column, "unit")
         return 1.0 if self.metric else MM_PER_INCH
 
     def length(self, word: Word) -> float:
-        """Return a length or coordinate in mm, never halved. Raises ProgramError."""
+        """Return the length or coordinate of a word in mm, without halving a diameter.
+
+        Raises ProgramError.
+        """
         if not word.value:
             return 0.0
         unit = self.unit(word)
@@ -70,17 +73,23 @@ class SourceState:
         return word.value * unit * _LEAST[bool(self.metric)]
 
     def across(self, word: Word) -> float:
-        """Return an X or U word in mm as a radius. Raises ProgramError."""
+        """Return the value of an X or U word in mm as a radius. Raises ProgramError."""
         return self.length(word) / (2.0 if self.diameter else 1.0)
 
     def increment(self, word: Word) -> float:
-        """Return P or Q of a Fanuc cycle in mm: least increments unless the word has a decimal point."""
+        """Return the P or Q word of a Fanuc cycle in mm.
+
+        The value is in least increments unless the word has a decimal point.
+        """
         if word.has_point or not self.control.is_fanuc:
             return word.value * self.unit(word)
         return word.value * self.unit(word) * _LEAST[bool(self.metric)]
 
     def target(self, statement: Statement) -> tuple[float | None, float | None]:
-        """Return the end point of a move. Raises ProgramError for an increment from an unknown position."""
+        """Return the end point of a move as X and Z; an unknown coordinate is None.
+
+        Raises ProgramError for an increment from an unknown position.
+        """
         return (
             self._axis(statement, "X", "U", self.x),
             self._axis(statement, "Z", "W", self.z),
@@ -104,14 +113,14 @@ class SourceState:
         return now + value
 
     def here(self, word: Word) -> tuple[float, float]:
-        """Return the position. Raises ProgramError if it is unknown."""
+        """Return the present position as X and Z. Raises ProgramError if the position is unknown."""
         if self.x is None or self.z is None:
             axis = "X" if self.x is None else "Z"
             raise refuse(word.line, word.column, "position", axis=axis)
         return self.x, self.z
 
     def warn(self, word: Word, code: str, /, **values: object) -> None:
-        """Record a warning once for each text."""
+        """Record a warning, unless a warning with the same code and text is already recorded."""
         found = warn(word.line, word.column, code, **values)
         if all((each.code, each.message) != (found.code, found.message) for each in self.warnings):
             self.warnings.append(found)
@@ -119,14 +128,14 @@ class SourceState:
     # --- steps
 
     def add(self, step: Step) -> None:
-        """Append a step with the comment that precedes it."""
+        """Append a step, and attach the preceding comment to it."""
         if self.comment:
             object.__setattr__(step, "comment", self.comment)
             self.comment = ""
         self.steps.append(step)
 
     def go(self, kind: Kind, line: int, x: float | None, z: float | None, **values: float | bool) -> None:
-        """Append a move to this point, unless it does not move."""
+        """Append a move to this point, unless it has no length."""
         moves = not (
             self.x is not None
             and self.z is not None
@@ -140,11 +149,11 @@ class SourceState:
         self.x, self.z = x, z
 
     def rapid(self, line: int, x: float | None, z: float | None) -> None:
-        """Append a rapid."""
+        """Append a rapid move to this point."""
         self.go(Kind.RAPID, line, x, z)
 
     def cut(self, word: Word, x: float | None, z: float | None) -> None:
-        """Append a straight cut at the active feed. Raises ProgramError without a feed."""
+        """Append a straight cut at the active feed. Raises ProgramError if no feed is active."""
         if self.feed is None:
             raise refuse(word.line, word.column, "feed-missing")
         self.go(Kind.FEED, word.line, x, z, feed=self.feed, per_rev=self.per_rev)

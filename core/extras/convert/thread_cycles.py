@@ -1,4 +1,4 @@
-"""Threads of a source program: single passes, and thread cycles that are expanded to passes."""
+"""Threads of a source program: single passes, and thread cycles that are expanded into passes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _MOST_PASSES = 1000
 
 
 def single_pass(state: SourceState, statement: Statement, code: Word) -> None:
-    """Append the pass of G32 or G33. Raises ProgramError."""
+    """Append the thread pass of G32 or G33. Raises ProgramError."""
     state.here(code)
     lead = lead_of(state, statement, code)
     x, z = state.target(statement)
@@ -23,7 +23,10 @@ def single_pass(state: SourceState, statement: Statement, code: Word) -> None:
 
 
 def lead_of(state: SourceState, statement: Statement, code: Word) -> float:
-    """Return the lead in mm/rev, which remains active for more passes. Raises ProgramError without one."""
+    """Return the lead in mm/rev, which remains active for further passes.
+
+    Raises ProgramError if there is no lead.
+    """
     letters = "FE" if state.control.is_fanuc else "KP"
     word = next((each for letter in letters if (each := statement.word(letter))), None)
     if word is not None:
@@ -49,14 +52,17 @@ def thread_box(state: SourceState, statement: Statement, code: Word) -> None:
 
 
 class FanucThread:
-    """The first line of a G76 cycle of two lines: finishing passes, angle, least and finishing depth."""
+    """Values of the first line of a two-line G76 cycle.
+
+    The values are the number of finishing passes, the angle, the minimum depth and the finishing depth.
+    """
 
     def __init__(self) -> None:
         self.finishing, self.chamfer, self.angle = 1, 0, 60.0
         self.least, self.allowance = 0.0, 0.0
 
     def set(self, state: SourceState, statement: Statement) -> None:
-        """Store the words of the first line."""
+        """Store the words of the first line of the cycle."""
         p, q, r = (statement.word(letter) for letter in "PQR")
         if p is not None:
             passes, rest = divmod(round(p.value), 10000)
@@ -67,7 +73,7 @@ class FanucThread:
 
 
 def is_first_line(statement: Statement) -> bool:
-    """Return whether a G76 line has no end point, so that it is the first line of two."""
+    """Return whether a G76 line is the first of two lines, which has no end point."""
     return not any(each.letter in "XZUW" for each in statement.words)
 
 
@@ -106,7 +112,10 @@ def thread_cycle(state: SourceState, statement: Statement, code: Word, set_up: F
 def _depths(
     state: SourceState, statement: Statement, code: Word, set_up: FanucThread
 ) -> tuple[float, float, float, float, int, float]:
-    """Return depth, first and least depth, and finishing allowance in mm, finishing passes, and angle."""
+    """Return the depths of a G76 cycle in mm, the number of finishing passes, and the angle.
+
+    The depths are the total depth, the first depth, the minimum depth and the finishing allowance.
+    """
     p, q, k, d, a = (statement.word(letter) for letter in "PQKDA")
     if k is not None and d is not None:  # the form of one line
         angle = a.value if a is not None else 0.0
@@ -123,7 +132,10 @@ def _taper_of_cycle(state: SourceState, statement: Statement) -> float:
 
 
 def _cut_depths(depth: float, first: float, least: float) -> list[float]:
-    """Return the depths of the passes: first·√n, but at least ``least`` deeper than the pass before."""
+    """Return the depths of the passes, which are first·√n.
+
+    Each pass is at least ``least`` deeper than the previous pass.
+    """
     cuts = [min(first, depth)]
     count = 1
     while cuts[-1] < depth - _LEAST_INFEED and count < _MOST_PASSES:
@@ -133,7 +145,7 @@ def _cut_depths(depth: float, first: float, least: float) -> list[float]:
 
 
 def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) -> None:
-    """Append the passes of G76 of LinuxCNC. Raises ProgramError."""
+    """Append the passes of the LinuxCNC cycle G76. Raises ProgramError."""
     x0, z0 = state.here(code)
     words = {letter: statement.word(letter) for letter in "PZIJKRQHEL"}
     for letter in "PZIJK":

@@ -1,6 +1,6 @@
-"""Extraction of a contour from a drawing: joining of ends, and tracing of the outer or inner side.
+"""Extraction of a contour from a drawing: element ends are joined, and the outer or inner side is traced.
 
-All points are (r, z) in mm, from the spindle axis and Z zero of the lathe.
+All points are (r, z) in mm, measured from the spindle axis and from the Z zero of the lathe.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _AHEAD = 0.05
 
 
 def _above_axis(drawn: Iterable[tuple[Element, BoundingBox]], gap: float) -> Iterator[Element]:
-    """Yield the parts of elements at r > 0, cut at the axis; lines on the axis are omitted."""
+    """Yield the sections of elements at r > 0, cut at the axis. Lines on the axis are omitted."""
     for each, box in drawn:
         if isinstance(each, Line) and abs(each.start[0]) <= gap and abs(each.end[0]) <= gap:
             continue
@@ -50,7 +50,10 @@ def _cut_at_axis(each: Element, box: BoundingBox) -> list[Element]:
 
 
 def _crossings(drawn: Iterable[tuple[Element, BoundingBox]]) -> Iterator[float]:
-    """Yield the Z positions at which elements cross the axis, except faces that cross it at a right angle."""
+    """Yield the Z positions at which elements cross the axis.
+
+    Faces that cross the axis at a right angle are omitted.
+    """
     for each, box in drawn:
         for part in _cut_at_axis(each, box)[:-1]:
             if abs(part.end_direction[1]) > _SQUARE:
@@ -58,7 +61,7 @@ def _crossings(drawn: Iterable[tuple[Element, BoundingBox]]) -> Iterator[float]:
 
 
 def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
-    """Return the parts of an element between these points on it."""
+    """Return the sections of an element between the given points on the element."""
     within = (p for p in points if _AXIS < element.distance_from_start(p) < element.length - _AXIS)
     places = [element.start, *sorted(within, key=element.distance_from_start), element.end]
     return [element.section_between(a, b) for a, b in pairwise(places)]
@@ -66,7 +69,7 @@ def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
 
 @dataclass(slots=True)
 class _Nodes:
-    """Points at which ends meet. Points within the gap share one node."""
+    """Points at which element ends meet. Points within the gap share one node."""
 
     gap: float
     points: list[Point] = field(default_factory=list)
@@ -74,7 +77,7 @@ class _Nodes:
     _known: dict[Point, int] = field(default_factory=dict)  # found since the last new node
 
     def find_node(self, point: Point) -> int:
-        """Return the node of a point; create a node if none is near."""
+        """Return the number of the node at a point; create a node if no node is near."""
         if (known := self._known.get(point)) is None:
             known = self._known[point] = self._found(point)
         return known
@@ -94,9 +97,10 @@ class _Nodes:
 
 @dataclass(frozen=True, slots=True)
 class ElementGroup:
-    """Connected elements.
+    """A group of connected elements.
 
-    ``ends`` are the node numbers of each element, and ``nodes`` the points of the nodes.
+    ``element_end_nodes`` contains the two node numbers of each element, and ``node_points`` the positions
+    of the nodes.
     """
 
     elements: tuple[Element, ...]
@@ -108,15 +112,16 @@ class ElementGroup:
 
     @property
     def extent(self) -> tuple[float, float, float]:
-        """Smallest and largest Z, and largest r, in mm."""
+        """Return the smallest Z, the largest Z and the largest r of the group, in mm."""
         boxes = [each.bounding_box for each in self.elements]
         return min(b[2] for b in boxes), max(b[3] for b in boxes), max(b[1] for b in boxes)
 
 
 def find_element_groups(elements: Iterable[Element], gap: float = DEFAULT_GAP_MM) -> list[ElementGroup]:
-    """Return the groups of connected elements: those that touch the axis first, then the largest first.
+    """Return the groups of connected elements.
 
-    Duplicate lines count once.
+    Groups that touch the axis are first, followed by the others in order of size. Duplicate lines count
+    once.
     """
     drawn = [(each, each.bounding_box) for each in elements]
     parts = _split_at_touching_ends(list(_above_axis(drawn, gap)), gap)
@@ -150,14 +155,14 @@ def _on_axis(net: ElementGroup, gap: float) -> bool:
 
 
 def _moved(element: Element, a: Point, b: Point) -> Element:
-    """Return the element with its ends moved to the nodes."""
+    """Return the element with its ends moved to the positions of the nodes."""
     if isinstance(element, Line):
         return Line(a, b)
     return make_arc(a, b, element.center, clockwise=element.clockwise)
 
 
 def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
-    """Return for each node the representative of its connected group."""
+    """Return the number of the connected group for each node, as the number of one of its nodes."""
     owner = list(range(count))
 
     def root(n: int) -> int:
@@ -199,7 +204,7 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
 
 
 def _touch(element: Element, point: Point, gap: float) -> Point | None:
-    """Return the position at which a point touches an element between its ends, or None."""
+    """Return the point at which a point touches an element between its ends, or None."""
     along = element.distance_from_start(point)
     if not gap < along < element.length - gap:
         return None
@@ -211,18 +216,18 @@ def _touch(element: Element, point: Point, gap: float) -> Point | None:
 
 
 def trace_outer_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[Element]:
-    """Return the elements from the foremost point along the outside to the chuck end.
+    """Return the elements from the foremost point along the outside to the end at the chuck.
 
-    Raises DrawingError if the contour crosses itself or the axis, or has no end at its front.
+    Raises DrawingError if the contour crosses itself or the axis, or if no element ends at its front.
     """
     walked = _walk(group, _foremost(group, gap), math.radians(270.0), 1.0, gap)
     return _checked(group, walked, gap)
 
 
 def trace_inner_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[Element]:
-    """Return the elements of a bore from its mouth along its wall to its end.
+    """Return the elements of a bore, from its mouth along its wall to its end.
 
-    Raises DrawingError if the contour has no bore, or crosses itself or the axis.
+    Raises DrawingError if the contour has no bore, or if it crosses itself or the axis.
     """
     inside = [
         n for n in _at_front(group, gap) if group.node_points[n][0] > gap and _leads_to_chuck(group, n, gap)
@@ -241,7 +246,10 @@ def trace_inner_side(group: ElementGroup, gap: float = DEFAULT_GAP_MM) -> list[E
 
 
 def _foremost(group: ElementGroup, gap: float) -> int:
-    """Return the frontmost end of an element that is nearest to the axis. Raises DrawingError."""
+    """Return the node number of the frontmost element end that is nearest to the axis.
+
+    Raises DrawingError.
+    """
     front = _at_front(group, gap)
     if not front:
         raise DrawingError(
@@ -281,7 +289,7 @@ def _walk(
 ) -> list[Element]:
     """Return the elements along one side of the contour.
 
-    At each node the path takes the first element next to the empty side, and leaves dead ends again.
+    At each node the path follows the first element next to the empty side. It leaves dead ends again.
     """
     at_node: dict[int, list[int]] = {}
     for number, ends in enumerate(group.element_end_nodes):
@@ -323,7 +331,10 @@ def _next(
     back: float,
     hand: float,
 ) -> int | None:
-    """Return the next element at a node, the first from the incoming direction when turning to ``hand``."""
+    """Return the number of the next element at a node, or None.
+
+    This is the first element found when turning in the direction ``hand`` from the incoming direction.
+    """
     if way:
         last = way[-1][0]
         back = _angle(_from(group.elements[last], group.element_end_nodes[last], node))
@@ -381,7 +392,10 @@ def _no_crossing(walked: Sequence[Element]) -> None:
 
 
 def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
-    """Yield the numbers of two elements whose bounding boxes overlap, the smaller first; swept along Z."""
+    """Yield the numbers of every two elements whose bounding boxes overlap, the smaller number first.
+
+    The elements are compared in a sweep along Z.
+    """
     boxes = [each.bounding_box for each in walked]
     order = sorted(range(len(walked)), key=lambda n: boxes[n][2])
     lows = [boxes[n][2] for n in order]

@@ -1,4 +1,4 @@
-"""A drawing as lines and arcs by layer, its errors and work limit, and its encoding as bytes."""
+"""Drawing as lines and arcs by layer, with its errors, its work limit and its encoding as bytes."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ _NONE = 1e-9
 
 
 class DrawingError(CodedError, ValueError):
-    """A drawing from which no contour can be extracted. The text has the cause and a remedy."""
+    """An error raised if no contour can be extracted from a drawing.
+
+    The text states the cause and a remedy.
+    """
 
 
 @dataclass(frozen=True, slots=True)
 class DrawnElement:
-    """An element of a drawing with its layer; points are (y, x), with x along Z.
-
-    ``centre`` means that the element is a center line.
-    """
+    """An element of a drawing with its layer; points are (y, x), and x is along Z."""
 
     element: Element
     layer: str = ""
@@ -44,8 +44,8 @@ class DrawnElement:
 class Drawing:
     """A drawing as lines and arcs.
 
-    ``unit`` is the size of one drawing unit in mm, or 0 if the file does not specify it. ``omitted_counts``
-    counts the omitted objects by kind, such as texts and dimensions.
+    ``unit_mm`` is the size of one drawing unit in mm, or 0 if the file does not specify it.
+    ``omitted_counts`` is the number of omitted objects by kind, such as texts and dimensions.
     """
 
     name: str
@@ -55,7 +55,7 @@ class Drawing:
 
     @property
     def layers(self) -> tuple[str, ...]:
-        """Layers with elements, those with the most elements first."""
+        """Return the names of the layers with elements, in descending order of the number of elements."""
         count: dict[str, int] = {}
         for each in self.elements:
             count[each.layer] = count.get(each.layer, 0) + 1
@@ -67,12 +67,14 @@ class Drawing:
 
 
 def calculate_arc_tolerance(unit: float) -> float:
-    """Return the largest distance between a curve and its arcs, in drawing units."""
+    """Return the largest permitted distance between a curve and the arcs that replace it, in
+    drawing units.
+    """
     return _NEAREST / unit if unit else _OF_UNKNOWN
 
 
 def make_line(start: Point, end: Point) -> Iterator[Element]:
-    """Yield the line from (x, y) to (x, y) of the drawing, unless its length is zero.
+    """Yield the line between two points (x, y) of the drawing, unless its length is zero.
 
     A line with a coordinate that is not a number is also yielded; ``check_elements`` rejects it.
     """
@@ -81,7 +83,7 @@ def make_line(start: Point, end: Point) -> Iterator[Element]:
 
 
 def make_arc(center: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
-    """Yield an arc around (x, y) in pieces of less than half a revolution.
+    """Yield an arc around ``center`` (x, y) in pieces of less than half a revolution.
 
     Angles are in radians, counterclockwise from x.
     """
@@ -114,7 +116,10 @@ def make_bulged_segment(start: Point, end: Point, bulge: float) -> Iterator[Elem
 
 
 def check_elements(elements: Iterable[DrawnElement], name: str) -> Iterator[DrawnElement]:
-    """Yield the elements. Raises DrawingError if there are too many, or if a coordinate is invalid."""
+    """Yield the elements unchanged.
+
+    Raises DrawingError if there are too many elements or if a coordinate is invalid.
+    """
     for count, each in enumerate(elements):
         if count >= MAX_ELEMENTS:
             raise DrawingError(
@@ -166,7 +171,7 @@ def encode_drawing(drawing: Drawing) -> bytes:
 
 
 def encode_error(error: DrawingError) -> bytes:
-    """Return an error encoded as bytes, in place of a drawing."""
+    """Return an error encoded as bytes, for output in place of a drawing."""
     return _with_head({"error": str(error), "code": error.code})
 
 
@@ -186,8 +191,8 @@ def _row(each: DrawnElement, layer: int) -> bytes:
 def decode_drawing(data: bytes) -> Drawing:
     """Return the drawing that is encoded in these bytes.
 
-    Raises DrawingError if they contain an error, and ValueError, LookupError, TypeError or struct.error if
-    they are incomplete.
+    Raises DrawingError if the bytes contain an error, and ValueError, LookupError, TypeError or
+    struct.error if they are incomplete.
     """
     (length,) = _HEAD.unpack_from(data)
     head = json.loads(data[_HEAD.size : _HEAD.size + length])
@@ -221,7 +226,10 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 
 @contextmanager
 def limit_work(watch: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
-    """Limit the processor time of this thread in the block; ``watch`` is called with the seconds spent."""
+    """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
+
+    ``watch`` is called with the processor time used so far in seconds.
+    """
     token = _limit.set(_Limit(time.thread_time(), limit_s, watch))
     try:
         yield

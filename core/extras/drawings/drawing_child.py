@@ -1,8 +1,8 @@
 """Child process that reads one drawing.
 
-The command is ``python -m core.extras.drawings.drawing_child FILE MEMORY SECONDS``. ``drawing_process``
-starts it. The process writes the drawing to stdout in the format of ``encode_drawing``, or the error. Output,
-logs and warnings of the drawing libraries are discarded.
+``drawing_process`` starts it with the command ``python -m core.extras.drawings.drawing_child FILE MEMORY
+SECONDS``. The process writes the drawing, or the error, to stdout in the format of ``encode_drawing``.
+Output, logs and warnings of the drawing libraries are discarded.
 """
 
 from __future__ import annotations
@@ -19,7 +19,10 @@ from core.extras.drawings.drawing_file import read_drawing
 
 
 def limit_process(memory: int, seconds: int) -> None:
-    """Limit this process to ``memory`` bytes of address space and ``seconds`` of processor time, on Linux."""
+    """Limit this process to ``memory`` bytes of address space and ``seconds`` of processor time.
+
+    The limits apply only on Linux.
+    """
     if sys.platform != "linux":
         return
     import resource  # noqa: PLC0415  Windows has none
@@ -33,7 +36,7 @@ def limit_process(memory: int, seconds: int) -> None:
 
 
 def read_and_encode(path: Path) -> bytes:
-    """Return the encoded drawing, or the encoded error."""
+    """Read a drawing; return it encoded, or return the encoded error."""
     try:
         return encode_drawing(read_drawing(path))
     except DrawingError as error:

@@ -1,4 +1,7 @@
-"""Reading of a drawing file, DXF or SVG by its suffix; empty and oversized files are rejected unread."""
+"""Reader of a drawing file, which is DXF or SVG according to its suffix.
+
+Empty and oversized files are rejected without being read.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,10 @@ def has_drawing_suffix(name: str) -> bool:
 
 
 def read_drawing(path: Path) -> Drawing:
-    """Return the lines and arcs of a drawing. Raises only DrawingError, never with a library's message."""
+    """Return the lines and arcs of a drawing.
+
+    Raises only DrawingError. The text of the error is never the message of a library.
+    """
     if not has_drawing_suffix(path.name):
         raise DrawingError(
             Message("{path} is not a supported drawing: use a DXF or SVG file.", path=path.name),

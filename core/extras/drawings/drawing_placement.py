@@ -1,4 +1,4 @@
-"""Placement of a drawing on the lathe: axis, face end and Z zero."""
+"""Placement of a drawing on the lathe by its axis, face end and Z zero."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ _MEETS = 1e-3  # fraction of the drawing's width within which ends meet
 
 
 class FaceEnd(StrEnum):
-    """End of the drawn axis at which the face is."""
+    """End of the drawn axis at which the face of the part is."""
 
     RIGHT = "RIGHT"
     LEFT = "LEFT"
 
 
 class ZeroPosition(StrEnum):
-    """Position of Z zero."""
+    """Position of the Z zero on the drawn part."""
 
     FACE = "FACE"
     BACK = "BACK"
@@ -41,14 +41,14 @@ class ZeroPosition(StrEnum):
 
 
 class ContourSide(StrEnum):
-    """Side of the material that is the contour."""
+    """Side of the material whose contour is extracted."""
 
     OUTSIDE = "OUTSIDE"
     INSIDE = "BORE"
 
 
 class DrawingAxis(NamedTuple):
-    """An axis in the drawing: its name, one point and the direction, as (y, x)."""
+    """An axis in the drawing: its name, one point and its direction, the latter two as (y, x)."""
 
     name: str
     point: Point
@@ -59,8 +59,8 @@ class DrawingAxis(NamedTuple):
 class DrawingPlacement:
     """Placement of a drawing on the lathe.
 
-    ``unit`` is mm per drawing unit, ``shift`` the Z of the point named by ``zero`` in mm, and ``gap`` the
-    widest gap between ends that are joined, in mm.
+    ``unit`` is the size of a drawing unit in mm. ``shift`` is the Z in mm of the point that ``zero`` names.
+    ``gap`` is the widest gap in mm between element ends that are joined.
     """
 
     axis: DrawingAxis
@@ -75,7 +75,7 @@ class DrawingPlacement:
 
 
 def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
-    """Return the lines that may be the axis, the most likely first."""
+    """Return the lines that may be the spindle axis, the most likely first."""
     there = _contour_lines(drawing, layer)
     if not there:
         return []
@@ -103,13 +103,16 @@ def find_axes(drawing: Drawing, layer: str = "") -> list[DrawingAxis]:
 
 
 def _contour_lines(drawing: Drawing, layer: str) -> list[DrawnElement]:
-    """Return the elements on a layer without the center lines; all of them if there are no others."""
+    """Return the elements on a layer without the center lines, or all elements if only center lines exist."""
     there = drawing.select_layer(layer)
     return [each for each in there if not each.is_center_line] or list(there)
 
 
 def _centre_lines(drawing: Drawing) -> list[DrawingAxis]:
-    """Return the center lines by line type or layer, the longest first and horizontal before vertical."""
+    """Return the center lines, identified by line type or layer.
+
+    Horizontal lines are before vertical lines, and longer lines before shorter ones.
+    """
     lines = [
         each.element for each in drawing.elements if each.is_center_line and isinstance(each.element, Line)
     ]
@@ -136,7 +139,10 @@ def _same(a: DrawingAxis, b: DrawingAxis) -> bool:
 
 
 def _lowest(there: Sequence[DrawnElement], low: float, width: float) -> float | None:
-    """Return y of the lowest line if it closes most of the drawing and other lines meet both its ends."""
+    """Return the y of the lowest line if it may be the axis, or None.
+
+    The line must close most of the drawing, and other lines must meet both its ends.
+    """
     for each in there:
         e = each.element
         if (
@@ -155,7 +161,7 @@ def _met(end: Point, others: Iterable[Element], wide: float) -> bool:
 
 
 def make_axis_from_line(drawing: Drawing, number: int) -> DrawingAxis:
-    """Return the line with this number, counted from 1, as an axis. Raises DrawingError."""
+    """Return the line with this number as an axis. Numbers start at 1. Raises DrawingError."""
     if not 1 <= number <= len(drawing.elements):
         raise DrawingError(
             Message(
@@ -181,7 +187,7 @@ def make_axis_from_line(drawing: Drawing, number: int) -> DrawingAxis:
 
 
 def select_axis(drawing: Drawing, name: str, layer: str = "") -> DrawingAxis:
-    """Return the axis of this name, or the most likely axis if the name is empty.
+    """Return the axis with this name, or the most likely axis if the name is empty.
 
     Raises DrawingError with the available axes if the name is unknown.
     """
@@ -209,7 +215,7 @@ def select_axis(drawing: Drawing, name: str, layer: str = "") -> DrawingAxis:
 
 
 def place_elements(elements: Iterable[Element], placement: DrawingPlacement) -> Iterator[Element]:
-    """Yield the elements of the drawing as (r, z) in mm.
+    """Yield the elements of the drawing in lathe coordinates (r, z), in mm.
 
     Z is measured from the drawing origin, projected onto the axis.
     """
@@ -235,7 +241,7 @@ def place_elements(elements: Iterable[Element], placement: DrawingPlacement) -> 
 def find_contours(drawing: Drawing, placement: DrawingPlacement, layer: str = "") -> list[ElementGroup]:
     """Return the groups of connected elements on the side of the axis where the part is drawn.
 
-    Z is as in ``place_elements``. Raises DrawingError if the work limit is exceeded.
+    Z is measured as in ``place_elements``. Raises DrawingError if the work limit is exceeded.
     """
     there = _contour_lines(drawing, layer)
     placed = list(place_elements((each.element for each in there), placement))
@@ -262,8 +268,8 @@ def _touches(net: ElementGroup, gap: float) -> bool:
 class ContourProfile:
     """One side of the contour from the face to the chuck, as (r, z) in mm.
 
-    ``widest_closed_gap_mm`` is the widest gap that was closed. ``front`` and ``back_z_mm`` are the ends of
-    the part along Z.
+    ``widest_closed_gap_mm`` is the widest gap that was closed. ``front_z_mm`` and ``back_z_mm`` are the
+    ends of the part along Z.
     """
 
     elements: tuple[Element, ...]
@@ -279,7 +285,7 @@ def extract_profile(
     group: ElementGroup,
     side: ContourSide = ContourSide.OUTSIDE,
 ) -> ContourProfile:
-    """Return the chosen side of a contour with Z zero as in the view. Raises DrawingError."""
+    """Return the chosen side of a contour, with Z zero as selected in the placement. Raises DrawingError."""
     try:
         walked = (
             trace_inner_side(group, placement.gap)

@@ -1,4 +1,4 @@
-"""Reading of a drawing in a separate process with limited time and memory, for safety."""
+"""Reader that reads a drawing in a separate process with limited time and memory, for safety."""
 
 from __future__ import annotations
 
@@ -26,8 +26,9 @@ CancelCheck = Callable[[float], None]
 class ReadingLimits:
     """Limits for reading one drawing.
 
-    ``memory_bytes`` is in bytes of address space; ``processor_time_s`` and ``timeout_s`` are in seconds.
-    Only Linux limits memory and processor time. The largest DXF of 16 MB takes 4 s and 240 MB.
+    ``memory_bytes`` is the size of the address space in bytes; ``processor_time_s`` and ``timeout_s`` are
+    in seconds. Memory and processor time are limited only on Linux. The largest DXF, of 16 MB, takes 4 s
+    and 240 MB.
     """
 
     memory_bytes: int = 1024**3
@@ -41,8 +42,10 @@ DEFAULT_LIMITS = ReadingLimits()
 def read_in_process(
     path: Path, check_canceled: CancelCheck = lambda _seconds: None, limits: ReadingLimits = DEFAULT_LIMITS
 ) -> Drawing:
-    """Return the lines and arcs of a drawing. Raises DrawingError, or the exception that ``check_canceled``
-    raises.
+    """Return the lines and arcs of a drawing, read in a separate process.
+
+    ``check_canceled`` is called repeatedly with the elapsed seconds. Raises DrawingError, or the exception
+    that ``check_canceled`` raises.
     """
     begun = time.monotonic()
     words = [str(path.absolute()), str(limits.memory_bytes), str(limits.processor_time_s)]
@@ -79,7 +82,7 @@ def read_in_process(
 
 
 def _read_output(process: subprocess.Popen[bytes]) -> bytes | None:
-    """Return the output of the process when it has ended; None while it is running."""
+    """Return the output of the process if it has ended, or None while it is running."""
     try:
         return process.communicate(timeout=_LOOK)[0]
     except subprocess.TimeoutExpired:

@@ -1,4 +1,4 @@
-"""Reader of DXF drawings: lines, arcs, polylines, splines and ellipses of model space and of blocks."""
+"""Reader of DXF drawings: lines, arcs, polylines, splines and ellipses of the model space and of blocks."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ ElementReader = Callable[[Any, float], Iterator[Element]]
 
 
 def read_dxf(path: Path, data: bytes) -> Drawing:
-    """Return the drawing of a DXF file with this ``data``. Raises DrawingError and errors of ezdxf."""
+    """Return the drawing of a DXF file with these contents. Raises DrawingError and errors of ezdxf."""
     document = _document(path, data)
     unit = _UNITS.get(int(document.header.get("$INSUNITS", 0)), 0.0)
     left_out: Counter[str] = Counter()
@@ -62,7 +62,7 @@ def _document(path: Path, data: bytes) -> Document:
 
 
 class _NotFlatError(ValueError):
-    """An entity that is not in the plane of the drawing."""
+    """An error raised for an entity that is not in the plane of the drawing."""
 
 
 def _three_dimensional(name: str) -> DrawingError:
@@ -85,7 +85,10 @@ def _nothing(name: str, left_out: Counter[str]) -> DrawingError:
 
 
 def _content(document: Document, block: str) -> BlockContent:
-    """Return the content of a block, or of model space for ""; own entities count only for blocks."""
+    """Return the content of a block, or of the model space if ``block`` is empty.
+
+    The entities of the model space itself are not counted.
+    """
     entities: list[Any] = list(document.blocks.get(block) or ()) if block else list(document.modelspace())
     own = 1 + len(entities) if block else 0
     inserts = [each for each in entities if each.dxftype() == "INSERT"]
@@ -130,14 +133,14 @@ def _read(read: ElementReader, entity: Any, near: float, name: str) -> Iterator[
 
 
 def _centre(layer: str, linetype: str) -> bool:
-    """Return whether the name of a layer or line type means a center line."""
+    """Return whether the name of a layer or line type identifies a center line."""
     return any(word in linetype.upper() or word in layer.upper() for word in _CENTRE)
 
 
 def _expand_blocks(entities: Iterable[Any], name: str, depth: int) -> Iterator[Any]:
     """Yield the entities, with block references replaced by their entities.
 
-    Dimensions and texts remain whole. Raises DrawingError if blocks are nested too deeply.
+    Dimensions and texts are not expanded. Raises DrawingError if blocks are nested too deeply.
     """
     if depth > _DEEPEST:
         raise DrawingError(
@@ -161,7 +164,7 @@ def _expand_blocks(entities: Iterable[Any], name: str, depth: int) -> Iterator[A
 
 
 def _facing(entity: Any) -> float:
-    """Return 1 if an entity is drawn as seen, or -1 if it is mirrored.
+    """Return 1 if an entity is drawn as seen from the front, or -1 if it is mirrored.
 
     Raises _NotFlatError if the entity is not in the plane of the drawing.
     """

@@ -1,4 +1,7 @@
-"""Comparison of the proved part with its drawing: material that remains and cuts that are too deep."""
+"""Comparison of the proved part with its drawing.
+
+The comparison finds remaining material and cuts that are too deep.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ FloatArray = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Deviation:
-    """A deviation between two Z positions in mm.
+    """A deviation of the part from the drawing between two Z positions in mm.
 
     ``max_deviation_mm`` is the largest difference of the radius in mm, positive if material remains.
     """
@@ -35,10 +38,10 @@ class Deviation:
 
 @dataclass(frozen=True, slots=True)
 class DrawingComparison:
-    """Result of a comparison.
+    """Result of a comparison of a part with its drawing.
 
-    ``worst_deviation_mm`` is the largest difference within the tolerance in mm. ``deviations`` has the
-    deviations from the face on.
+    ``worst_deviation_mm`` is the largest difference within the tolerance in mm. ``deviations`` contains the
+    deviations in order from the face.
     """
 
     worst_deviation_mm: float
@@ -48,7 +51,10 @@ class DrawingComparison:
 def compare_part(
     profile: ContourProfile, part: Sequence[tuple[float, float]], tolerance: float = DEFAULT_TOLERANCE_MM
 ) -> DrawingComparison:
-    """Compare one side of the part, points (z, r) from the face on, with the profile of the drawing."""
+    """Compare one side of the part with the profile of the drawing.
+
+    ``part`` contains points (z, r) in order from the face. ``tolerance`` is in mm.
+    """
     count = max(2, math.ceil((profile.front_z_mm - profile.back_z_mm) / _STEP))
     z = np.linspace(profile.back_z_mm + _WALL, profile.front_z_mm - _WALL, count)
     side = -1.0 if profile.side is ContourSide.INSIDE else 1.0
@@ -64,7 +70,7 @@ def compare_part(
 def _find_drawing_radii(
     elements: Iterable[Element], z: FloatArray, side: float
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the smallest and largest radius of the outermost line around each Z.
+    """Return the smallest and the largest radius of the outermost line near each Z.
 
     At a shoulder these two radii differ.
     """
@@ -86,7 +92,7 @@ def _find_drawing_radii(
 
 
 def convert_to_points(element: Element) -> list[tuple[float, float]]:
-    """Return an element as a polyline of (r, z) with a chord error of at most 0.0005 mm."""
+    """Convert an element to a polyline of points (r, z) with a chord error of at most 0.0005 mm."""
     if not isinstance(element, Arc):
         return [element.start, element.end]
     most = (
@@ -107,7 +113,7 @@ def _find_part_radii(part: Sequence[tuple[float, float]], z: FloatArray, side: f
 
 
 def _spans(z: FloatArray, off: FloatArray, tolerance: float) -> Iterable[Deviation]:
-    """Yield the adjacent deviations of the same sign, joined, from the face on."""
+    """Yield the deviations in order from the face, with adjacent deviations of the same sign joined."""
     kind = np.where(off > tolerance, 1, np.where(off < -tolerance, -1, 0))
     edges = np.flatnonzero(np.diff(kind)) + 1
     for part in reversed(np.split(np.arange(len(z)), edges)):

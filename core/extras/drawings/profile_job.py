@@ -1,4 +1,4 @@
-"""A program made from a drawing: proposed fields, remaining material and required offsets."""
+"""Functions for a program made from a drawing: proposed fields, remaining material and required offsets."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def is_nose_fillet(deviation: Deviation, nose_radius: float) -> bool:
 def convert_to_json(
     program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile
 ) -> dict[str, Any]:
-    """Return the description of the program and its deviations for JSON, in mm."""
+    """Return a JSON object that describes the program and its deviations, in mm."""
     return {
         "side": str(profile.side),
         "closed_gap_mm": round(profile.widest_closed_gap_mm, 5),
@@ -136,7 +136,10 @@ def convert_to_json(
 
 
 def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
-    """Return the offset that G41 requires, as a secondary offset or a cutting edge."""
+    """Return a JSON object with the offset that G41 requires.
+
+    The offset is a secondary offset or a cutting edge.
+    """
     nose = program.nose_offset
     if nose is not None and nose.quadrant:
         edge = {"tool": int(program.tool_number), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
@@ -160,7 +163,9 @@ def propose_fields(
     metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, FieldValue]:
-    """Return the fields for ``profile_program``: the given values, with proposals for the others."""
+    """Return the fields for ``make_profile_program``: the given values, and proposals for the
+    other fields.
+    """
     inside = profile.side is ContourSide.INSIDE
     fields: dict[str, FieldValue] = {"UNIT": "METRIC" if metric else "INCH", **given_values}
     bar = fields.setdefault("BAR", propose_bar_diameter(profile, metric=metric))
@@ -187,6 +192,6 @@ def propose_bar_diameter(profile: ContourProfile, *, metric: bool) -> float:
 
 
 def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:
-    """Return the first tool of a kind according to the tool data, or 0."""
+    """Return the number of the first tool of a kind in the tool data, or 0."""
     fits = (n for n, each in sorted(shapes.items()) if each.kind is kind and each.internal is is_inside)
     return next((n for n in fits if not shapes[n].behind), 0)

@@ -35,7 +35,7 @@ _ROOM = 0.05  # mm, least finishing allowance at the deepest point of a falling 
 
 @dataclass(frozen=True, slots=True)
 class UncutRange:
-    """A range that no tool of the program cuts: from Z to Z in mm, and the reason."""
+    """A range along Z in mm that no tool of the program cuts, with the reason."""
 
     back_z_mm: float
     front_z_mm: float
@@ -43,9 +43,9 @@ class UncutRange:
 
 
 class NoseOffset(NamedTuple):
-    """Offset that G41 and G42 of the program use, in mm, X as a radius.
+    """Offset that G41 and G42 of the program use, in mm with X as a radius.
 
-    ``number`` is a secondary offset, or a cutting edge if ``quadrant`` is set.
+    ``number`` is the number of a secondary offset, or of a cutting edge if ``quadrant`` is set.
     """
 
     number: int
@@ -57,7 +57,10 @@ class NoseOffset(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ProfileProgram:
-    """The shapes of a program with the settings in force before each, its lines, and the uncut ranges."""
+    """A program for a profile, with its shapes, its lines and its uncut ranges.
+
+    Each shape has the settings that are active before it.
+    """
 
     shapes: tuple[tuple[FilledShape, ProgramSettings], ...]
     lines: tuple[str, ...]
@@ -72,11 +75,11 @@ class ProfileProgram:
 def make_profile_program(
     profile: ContourProfile, entered_values: FieldValues, lines: Sequence[str], settings: ProgramSettings
 ) -> ProfileProgram:
-    """Make the shapes for a profile, to follow ``lines``; without lines the program begins with a head.
+    """Make the shapes for a profile, to be appended to ``lines``.
 
-    ``typed`` has fields of HEAD, FACE, TURN and GROOVE by name: T and BLADE (the tools), STOCK, FROM, HOLE,
-    ROUGH, LEAVE, FEED, RFEED, RPM, SURF, COMP, WIDE, MATERIAL. ``setting`` specifies the program language.
-    Raises DrawingError.
+    If ``lines`` is empty, the program begins with a head. ``entered_values`` contains fields of HEAD, FACE,
+    TURN and GROOVE by name: T and BLADE (the tools), STOCK, FROM, HOLE, ROUGH, LEAVE, FEED, RFEED, RPM,
+    SURF, COMP, WIDE, MATERIAL. ``settings`` specifies the program language. Raises DrawingError.
     """
     writer = _Writer(list(lines), settings)
     if not lines:
@@ -123,7 +126,7 @@ def make_profile_program(
 
 
 class _Writer:
-    """Writer of consecutive shapes, each with the settings in force after the previous lines."""
+    """Writer of consecutive shapes, each with the settings that are active after the previous lines."""
 
     def __init__(self, lines: list[str], settings: ProgramSettings) -> None:
         self.lines, self.shapes = lines, list[tuple[FilledShape, ProgramSettings]]()
@@ -132,14 +135,14 @@ class _Writer:
 
     @property
     def current_settings(self) -> ProgramSettings:
-        """Settings in force after the lines written so far."""
+        """Return the settings that are active after the lines written so far."""
         return find_settings(self.lines, len(self.lines), self._new.shop, self._new)
 
     def _shape(self, key: str) -> Shape:
         return SHAPES_BY_DIALECT[self._new.dialect][key]
 
     def add(self, key: str, typed: FieldValues, rows: tuple[ContourPoint, ...] = ()) -> None:
-        """Add a shape by the key of its form. A shape with errors is not written."""
+        """Add a shape by the key of its form, unless the shape has errors."""
         now = self.current_settings
         one = fill_shape(self._shape(key), typed, now, rows)
         refused = one.find_errors(now)
@@ -152,7 +155,7 @@ class _Writer:
         self.lines += one.make_lines(now)
 
     def groove(self, typed: FieldValues | str, groove: OmittedGroove) -> Iterator[UncutRange]:
-        """Add a groove, or yield the range with the reason why it cannot be cut."""
+        """Add a groove, or yield its range with the reason if the groove cannot be cut."""
         span = groove.back_edge[1], groove.front_edge[1]
         if isinstance(typed, str):
             yield UncutRange(*span, typed)
@@ -194,9 +197,10 @@ def _turn(
 def _calculate_allowance(
     contour: TurningContour, typed: FieldValues, settings: ProgramSettings
 ) -> dict[str, FieldValue]:
-    """Return the finishing allowance that the nose radius requires, if it is more than the usual one.
+    """Return the finishing allowance that the nose radius requires.
 
-    G75 has no nose compensation. In a fall of angle a, the nose R cuts R (1 + sin a - cos a) too deep.
+    The result is empty unless it is larger than the usual allowance. G75 has no nose compensation. On a
+    falling contour of angle a, the nose radius R cuts R (1 + sin a - cos a) too deep.
     """
     if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
@@ -213,8 +217,8 @@ def _calculate_allowance(
 def _check_tip(tool: ToolShape | None, number: float, settings: ProgramSettings) -> None:
     """Raise DrawingError if the tool has a nose radius but no tip quadrant.
 
-    The nose would be assumed to be centered on the control point, and the part would be too small by its
-    radius.
+    Otherwise the nose would be assumed to be centered on the control point, and the part would be too small
+    by the nose radius.
     """
     if tool is not None and not tool.tip and (nose := find_nose_radius(tool)):
         raise DrawingError(
@@ -229,14 +233,17 @@ def _check_tip(tool: ToolShape | None, number: float, settings: ProgramSettings)
 
 
 def find_nose_radius(tool: ToolShape | None) -> float:
-    """Return the nose radius in mm from the tool data, stated directly or by the insert code."""
+    """Return the nose radius in mm from the tool data.
+
+    If it is not specified there, the radius of the insert code is returned.
+    """
     if tool is None or tool.nose_radius or not tool.insert:
         return tool.nose_radius if tool is not None else 0.0
     return decode_insert_code(tool.insert).nose_radius
 
 
 def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> NoseOffset | None:
-    """Return the offset with which a touched-off tip cuts to size; None if no compensation is used.
+    """Return the offset with which a touched-off tip cuts to size, or None if no compensation is used.
 
     In SINUMERIK the cutting edge also contains the nose radius and the tip quadrant.
     """
@@ -250,14 +257,17 @@ def make_nose_offset(tool: ToolShape | None, number: int, dialect: Dialect) -> N
 
 
 def calculate_end_extension(tool: ToolShape | None) -> float:
-    """Return how far the contour must extend past the part in mm, because the nose leaves a fillet there."""
+    """Return the distance in mm by which the contour must extend past the part.
+
+    The extension is necessary because the nose leaves a fillet at the end of the contour.
+    """
     return math.ceil(10.0 * (find_nose_radius(tool) + _ROOM)) / 10.0
 
 
 def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterator[Element]:
-    """Yield the contour, starting with a move up the face if the contour falls from the face.
+    """Yield the contour, preceded by a move up the face if the contour falls from the face.
 
-    Roughing rejects a contour that falls at once, because its return path would cross the contour.
+    Roughing rejects a contour that falls at its start, because the return path would cross the contour.
     """
     side = 1.0 if outside else -1.0
     r, z = elements[0].start
@@ -270,8 +280,8 @@ def _add_face_approach(elements: Sequence[Element], *, outside: bool) -> Iterato
 def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> Iterator[Element]:
     """Yield the contour, extended along Z by ``distance`` unless it ends in a wall.
 
-    After a fall of angle a, the nose R leaves it later by R tan (a / 2), and the compensation needs this
-    travel.
+    After a fall of angle a, the nose radius R leaves the contour later by R tan (a / 2), and the
+    compensation needs this travel.
     """
     yield from elements
     (r, z), (dr, dz) = elements[-1].end, elements[-1].end_direction
@@ -284,7 +294,7 @@ def _past(elements: Sequence[Element], distance: float, nose_radius: float) -> I
 
 
 def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
-    """Yield the wall of a bore as far as it is wider than the drilled hole."""
+    """Yield the wall of a bore where it is wider than the drilled hole."""
     for each in elements:
         if each.end[0] >= r - _SAME:
             yield each
@@ -300,7 +310,10 @@ def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
 
 
 def make_contour_rows(elements: Iterable[Element], mm_per_unit: float) -> Iterator[ContourPoint]:
-    """Yield the rows of a contour's point table; ``mm`` is the size of the program's unit."""
+    """Yield the rows of a contour's point table.
+
+    ``mm_per_unit`` is the size of the program's length unit in mm.
+    """
     first = True
     for each in elements:
         if first:
@@ -320,7 +333,7 @@ def _row(point: tuple[float, float], mm: float, arc: float) -> ContourPoint:
 
 
 def _find_blade_clearance(elements: Iterable[Element], groove: OmittedGroove, side: float) -> float:
-    """Return the radius that the blade must clear on its path from the face, in mm, or 0."""
+    """Return the radius in mm that the blade must clear on its path from the face, or 0."""
     before = [
         p[0] for each in elements for p in (each.start, each.end) if p[1] > groove.front_edge[1] - _SAME
     ]
@@ -333,7 +346,7 @@ def _groove(
 ) -> dict[str, FieldValue] | str:
     """Return the fields of a groove shape, or the reason why the groove cannot be cut.
 
-    For curved walls, the groove is the widest square groove inside them.
+    If the walls are curved, the widest square groove between them is used.
     """
     mm, blade = settings.mm, _blade(typed, settings)
     if blade is None:
@@ -371,7 +384,7 @@ def _groove(
 class _SlopedGroove(NamedTuple):
     """A groove with two straight sloped walls.
 
-    Z of both edges and r of the bottom are in mm, and the slopes in degrees.
+    The Z of both edges and the r of the bottom are in mm, and the slopes are in degrees.
     """
 
     front: float
@@ -383,7 +396,7 @@ class _SlopedGroove(NamedTuple):
 
 
 def _leaning(groove: OmittedGroove, width: float) -> _SlopedGroove | None:
-    """Return a groove with sloped walls, or None.
+    """Return a groove with sloped walls, or None if this groove has another form.
 
     The result is None if the walls are square or curved, or if the bottom is narrower than the blade.
     """
@@ -409,7 +422,10 @@ def _blade(typed: FieldValues, settings: ProgramSettings) -> float | None:
 
 
 def _square(groove: OmittedGroove, width: float, side: float) -> tuple[float, float, float, float] | None:
-    """Return Z of both walls, r of the bottom and the edge chamfer; None if the blade does not fit."""
+    """Return the Z of both walls, the r of the bottom and the edge chamfer.
+
+    The result is None if the blade does not fit.
+    """
     inner = list(groove.elements)
     edge = _chamfer(inner, side)
     if edge:
@@ -443,7 +459,10 @@ def _flat(each: Element) -> bool:
 
 
 def _one_plunge(groove: OmittedGroove, width: float, side: float) -> tuple[float, float, float, float] | None:
-    """Return one plunge at the deepest point, as deep as the corners of the blade allow; or None."""
+    """Return a single plunge at the deepest point, or None if the blade does not fit.
+
+    The plunge is as deep as the corners of the blade permit.
+    """
     front, back = groove.front_edge[1], groove.back_edge[1]
     if front - back < width - _SAME:
         return None
@@ -457,7 +476,7 @@ def _one_plunge(groove: OmittedGroove, width: float, side: float) -> tuple[float
 
 
 def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[float]:
-    """Yield the radii of a contour at the ends of a range and at its points inside."""
+    """Yield the radii of a contour at both ends of a range and at the points within it."""
     for each in elements:
         walls = (Line((-1e5, z), (1e5, z)) for z in (low, high))
         for point in (p for wall in walls for p in intersections(wall, each)):

@@ -1,4 +1,4 @@
-"""Functions shared by the drawing readers: expansion limits, and conversion of curves to arcs."""
+"""Functions shared by the drawing readers, which limit expansion and convert curves to arcs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STRAIGHT_TOLERANCE = 1e-6
 
 
 class CurvePoint(NamedTuple):
-    """A point of a curve and the tangent direction there, of any length."""
+    """A point of a curve with the direction of its tangent, which may have any length."""
 
     point: Point
     tangent: Point
@@ -66,7 +66,7 @@ def _between(begin: float, end: float) -> Iterator[float]:
 
 
 def _is_point(curve: CurveFunction, begin: float, end: float, at: Point, tolerance: float) -> bool:
-    """Return whether a piece remains within the tolerance of its start, so that halving is useless.
+    """Return whether a piece remains within the tolerance of its start, so that halving it is useless.
 
     CAD programs write splines with coincident control points, whose spans have no length and no direction.
     """
@@ -79,7 +79,10 @@ def _unit(v: Point) -> Point | None:
 
 
 def _joint(a: CurvePoint, b: CurvePoint) -> Point | None:
-    """Return the meeting point of a biarc's arcs, with equal tangent lengths at both ends; or None."""
+    """Return the point where the two arcs of a biarc meet, or None.
+
+    The tangent lengths at both ends are equal.
+    """
     one, other = _unit(a.tangent), _unit(b.tangent)
     if one is None or other is None:
         return None
@@ -106,7 +109,7 @@ def _joint(a: CurvePoint, b: CurvePoint) -> Point | None:
 
 
 def _bulge(at: Point, way: Point, to: Point) -> float:
-    """Return the bulge of an arc from its start, its direction there and its end."""
+    """Return the bulge of an arc from its start point, the direction at its start, and its end point."""
     dx, dy = to[0] - at[0], to[1] - at[1]
     half = math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
     return 0.0 if abs(half) < STRAIGHT_TOLERANCE else math.tan(half / 2.0)
@@ -125,7 +128,11 @@ def _find_max_deviation(
 
 
 def _apart(p: Point, a: Point, b: Point, bulge: float) -> float:
-    """Return the distance of a point from an arc or line, or from its ends if the foot is outside."""
+    """Return the distance of a point from an arc or line.
+
+    If the foot of the perpendicular is outside the arc or line, the distance from the nearer end is
+    returned.
+    """
     chord = math.dist(a, b)
     if chord < 1e-12:
         return math.dist(p, a)
@@ -148,7 +155,11 @@ BlockKey = TypeVar("BlockKey", bound=Hashable)
 
 
 class BlockContent(NamedTuple):
-    """Content of a block or group: its own entities, and references to others with their counts."""
+    """Content of a block or group.
+
+    ``entity_count`` is the number of its own entities, and ``references`` are references to other blocks
+    with their counts.
+    """
 
     entity_count: int
     references: Sequence[tuple[int, Hashable]]
@@ -157,7 +168,7 @@ class BlockContent(NamedTuple):
 def check_expansion(
     name: str, root: BlockKey, content: Callable[[BlockKey], BlockContent], remaining_count: int = 0
 ) -> None:
-    """Reject a file whose blocks expand to more than ``MAX_ELEMENTS`` entities or contain themselves.
+    """Reject a file whose blocks contain themselves or expand to more than ``MAX_ELEMENTS`` entities.
 
     ``remaining_count`` is an additional allowance for entities in the file itself. Raises DrawingError.
     """

@@ -1,7 +1,7 @@
-"""Spans of a spline between its knots, and the fit of two arcs to all spans at once.
+"""Spans of a spline between its knots, and a fit of two arcs to all spans at once.
 
-A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all are so short that two arcs fit them.
-The fit is that of ``reader_tools.fit_arcs``, which halves the other spans.
+A spline in a drawing of 2 MB has tens of thousands of spans. Nearly all are so short that two arcs fit
+them. The fit is the same as in ``reader_tools.fit_arcs``, which halves the other spans.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _AT_ONCE = 4096  # spans calculated together, which limits the memory
 class SplineSpans(NamedTuple):
     """The spans of a spline as homogeneous Bézier points and parameter lengths.
 
-    ``control`` (n, degree+1, 3) contains x·w, y·w and w. ``parameter_lengths`` has the shape (n,).
+    ``control_points`` (n, degree+1, 3) contains x·w, y·w and w. ``parameter_lengths`` has the shape (n,).
     """
 
     control_points: Floats
@@ -36,9 +36,9 @@ class SplineSpans(NamedTuple):
 
 
 class Biarc(NamedTuple):
-    """Two arcs from ``start`` through ``joint`` to ``end``.
+    """Two tangent arcs from ``start`` through ``joint`` to ``end``.
 
-    ``bulges`` are the tangents of a quarter of their angles.
+    ``bulges`` contains the tangents of a quarter of their angles.
     """
 
     start: Point
@@ -50,10 +50,10 @@ class Biarc(NamedTuple):
 def make_spans(
     points: Iterable[Sequence[float]], weights: Iterable[float], knots: Iterable[float], degree: int
 ) -> SplineSpans:
-    """Return the spans of a spline with these control points; empty ``weights`` means that all are 1.
+    """Return the spans of a spline with these control points.
 
-    Each Bézier point is the polar form of the spline at the knots at both ends of its span. Raises ValueError
-    if the knots interrupt the spline.
+    If ``weights`` is empty, all weights are 1. Each Bézier point is the polar form of the spline at the
+    knots at both ends of its span. Raises ValueError if the knots interrupt the spline.
     """
     control, knot = _homogeneous(points, weights), np.sort(np.array(list(knots), dtype=np.float64))
     at = np.arange(degree, len(control))
@@ -111,7 +111,7 @@ def make_span_curve(spans: SplineSpans, number: int) -> CurveFunction:
 
 
 def fit_biarcs(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
-    """Yield for each span the two arcs that deviate from it by at most ``tolerance``, or None."""
+    """Yield two arcs for each span, or None if no two arcs are within ``tolerance`` of the span."""
     for first in range(0, len(spans.parameter_lengths), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         with np.errstate(all="ignore"):
@@ -148,7 +148,7 @@ def _points(control: Floats, u: float) -> Floats:
 
 
 def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
-    """Return the points at ``u`` and the directions just inside the span."""
+    """Return the points of the spans at ``u``, and the directions there, measured just inside the spans."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control_points, held, 2)
     p, q = pair[:, 0], pair[:, 1]
@@ -158,7 +158,7 @@ def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
 
 
 def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats, Bools]:
-    """Return the points at which both arcs meet, and whether such a point exists (see ``reader_tools``)."""
+    """Return the points at which both arcs meet, and whether each point exists (see ``reader_tools``)."""
     sizes = np.array([np.hypot(*way.T), np.hypot(*end_way.T)])
     one, other, v = way / sizes[0][:, None], end_way / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)
@@ -172,16 +172,17 @@ def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats,
 
 
 def _bulges(at: Floats, way: Floats, to: Floats) -> Floats:
-    """Return the bulges of arcs from their starts, their directions there and their ends."""
+    """Return the bulges of arcs from their starts, their start directions and their ends."""
     d = to - at
     half = np.arctan2(way[:, 0] * d[:, 1] - way[:, 1] * d[:, 0], (way * d).sum(axis=1))
     return np.where(np.abs(half) < STRAIGHT_TOLERANCE, 0.0, np.tan(0.5 * half))
 
 
 def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:
-    """Return the distance (n,) of each point from its arc or line, or from its ends.
+    """Return the distance (n,) of each point from its arc or line.
 
-    The distance from the ends is used if the foot of the point is outside the arc or line.
+    If the foot of the perpendicular is outside the arc or line, the distance from the nearer end is
+    returned.
     """
     d = b - a
     chord = np.hypot(*d.T)

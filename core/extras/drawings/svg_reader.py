@@ -1,4 +1,7 @@
-"""Reader of SVG drawings: paths, lines, polylines, rectangles and circles, with transforms and Y upward."""
+"""Reader of SVG drawings with paths, lines, polylines, rectangles, circles and transforms.
+
+Y is upward.
+"""
 
 from __future__ import annotations
 
@@ -54,9 +57,10 @@ _INKSCAPE = "{http://www.inkscape.org/namespaces/inkscape}label"
 
 
 def read_svg(name: str, data: bytes) -> Drawing:
-    """Return the drawing of an SVG text. Its unit is known if the width has a unit.
+    """Return the drawing of an SVG text.
 
-    Raises DrawingError and errors of svgelements.
+    The size of the drawing unit is known only if the width in the file has a unit. Raises DrawingError and
+    errors of svgelements.
     """
     left_out: Counter[str] = Counter()
     shapes = _shapes(name, data)
@@ -122,7 +126,7 @@ def _check_elements(name: str, text: bytes) -> None:
 
 
 def _check_numbers(name: str, element: Element_) -> None:
-    """Raise DrawingError for a dimension that is not a number; svgelements would omit the element."""
+    """Raise DrawingError for a dimension that is not a number, because svgelements would omit the element."""
     for dimension in _DIMENSIONS.intersection(element.keys()):
         if _NO_NUMBER.search(element.get(dimension, "")):
             kind = str(element.tag).rpartition("}")[2]
@@ -182,9 +186,9 @@ def _up(point: Any) -> Point:
 
 
 def _make_ellipse_curve(element: Any) -> Any:
-    """Return an elliptic arc as a curve, with directions from differences.
+    """Return an elliptic arc as a curve, with directions calculated from differences.
 
-    The differences are exact enough for the joint of two arcs.
+    The differences are accurate enough for the joint of two arcs.
     """
     begin, step = element.get_start_t(), 1e-6
 
@@ -215,5 +219,5 @@ def _bezier(points: list[Point], u: float) -> Point:
 
 
 def _slope(points: list[Point], u: float) -> Point:
-    """Return the direction of a Bézier curve, which is the curve of its point differences."""
+    """Return the direction of a Bézier curve at ``u``, calculated from the differences of its points."""
     return _bezier([(b[0] - a[0], b[1] - a[1]) for a, b in itertools.pairwise(points)], u)

@@ -1,6 +1,7 @@
-"""The contour that a turning tool can follow with its nose: grooves bridged, faces omitted.
+"""Contour that a turning tool can follow with its nose, without grooves and faces.
 
-The calculation is for the outside. The wall of a bore is mirrored about the axis before and after it.
+The calculation is for the outside. The wall of a bore is mirrored about the axis before and after the
+calculation.
 """
 
 from __future__ import annotations
@@ -30,26 +31,29 @@ _MOST = math.radians(179.0)  # largest angle of an arc that R can specify
 
 @dataclass(frozen=True, slots=True)
 class OmittedGroove:
-    """A range that a turning tool omits: its elements from the edge at the face to the edge at the chuck."""
+    """A range that a turning tool omits.
+
+    ``elements`` are in order from the edge at the face to the edge at the chuck.
+    """
 
     elements: tuple[Element, ...]
 
     @property
     def front_edge(self) -> Point:
-        """The edge at the face, as (r, z)."""
+        """Return the edge at the face as (r, z)."""
         return self.elements[0].start
 
     @property
     def back_edge(self) -> Point:
-        """The edge at the chuck, as (r, z)."""
+        """Return the edge at the chuck as (r, z)."""
         return self.elements[-1].end
 
 
 @dataclass(frozen=True, slots=True)
 class TurningContour:
-    """Result for a turning tool: its contour, the grooves for a blade, and ranges that neither can reach.
+    """Contour for a turning tool, with the grooves for a blade and the ranges that neither tool can reach.
 
-    ``left`` has (z, z, reason) for each of these ranges.
+    ``unreachable_ranges`` contains (z, z, reason) for each of these ranges.
     """
 
     elements: tuple[Element, ...]
@@ -60,9 +64,10 @@ class TurningContour:
 
 @dataclass(frozen=True, slots=True)
 class ToolReach:
-    """Contour angles that the edges of a tool allow, in radians.
+    """Contour angles that the edges of a tool permit, in radians.
 
-    ``fall`` is the steepest fall toward the chuck, and ``max_rising_angle_rad`` the steepest rise.
+    ``max_falling_angle_rad`` is the steepest fall toward the chuck, and ``max_rising_angle_rad`` the
+    steepest rise.
     """
 
     max_falling_angle_rad: float = 0.0
@@ -70,7 +75,7 @@ class ToolReach:
 
 
 def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReach:
-    """Return the reach of a tool from its outline.
+    """Return the reach of a tool, calculated from its outline.
 
     A tool without tool data can turn only cylinders, faces and shoulders.
     """
@@ -85,7 +90,7 @@ def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReac
 
 
 def _straight(points: Sequence[Point]) -> float | None:
-    """Return the angle to the axis of an edge's first straight piece after the nose; or None."""
+    """Return the angle between the axis and the first straight piece of an edge after the nose, or None."""
     for (z0, r0), (z1, r1) in pairwise(points):
         if math.hypot(z1 - z0, r1 - r0) > _CHORD:
             return math.atan2(abs(r1 - r0), abs(z1 - z0))
@@ -93,7 +98,7 @@ def _straight(points: Sequence[Point]) -> float | None:
 
 
 def make_turning_contour(profile: ContourProfile, reach: ToolReach) -> TurningContour:
-    """Return the part of a profile that a tool with this reach turns.
+    """Return the part of a profile that a tool with this reach can turn.
 
     Raises DrawingError if nothing remains to be turned.
     """
@@ -138,7 +143,10 @@ def _monotone(elements: Iterable[Element]) -> list[Element]:
 
 
 def _remove_undercuts(elements: list[Element], left: list[tuple[float, float, str]]) -> list[Element]:
-    """Return the contour with each undercut, which no tool can reach from outside, replaced by a wall."""
+    """Return the contour with each undercut replaced by a wall.
+
+    No tool can reach an undercut from outside.
+    """
     found: list[Element] = []
     at = 0
     while at < len(elements):
@@ -161,7 +169,7 @@ def _remove_undercuts(elements: list[Element], left: list[tuple[float, float, st
 
 
 def _replace_under_lip(contour: list[Element], lip: Point) -> None:
-    """Replace the elements under a lip by a wall."""
+    """Replace the elements under a lip with a wall."""
     while contour and contour[-1].start[1] < lip[1]:
         contour.pop()
     if contour and contour[-1].end[1] < lip[1]:
@@ -174,7 +182,10 @@ def _replace_under_lip(contour: list[Element], lip: Point) -> None:
 
 
 def _add_wall_under_edge(contour: list[Element], elements: Sequence[Element], at: int, edge: Point) -> int:
-    """Add a wall from an edge to the point where the contour reappears; return the next element's number."""
+    """Add a wall from an edge to the point where the contour reappears.
+
+    Return the number of the next element.
+    """
     while at < len(elements) and elements[at].end[1] >= edge[1] - _SAME:
         at += 1
     if at < len(elements):
@@ -214,7 +225,9 @@ def _without_face(elements: list[Element]) -> list[Element]:
 
 
 def _fall(element: Element) -> float:
-    """Return how steeply an element falls toward the chuck, in radians; negative if it rises."""
+    """Return the steepness of an element's fall toward the chuck in radians, negative if the
+    element rises.
+    """
     ways = (element.start_direction, element.end_direction)
     found = (math.atan2(-way[0], max(-way[1], 0.0)) for way in ways)
     return max(found) if element.end[0] < element.start[0] - _SAME else -max(-f for f in found)
@@ -246,7 +259,10 @@ def _not_too_steep(kept: Iterable[Element], reach: ToolReach) -> None:
 def _bridged(
     elements: list[Element], fall: float, left: list[tuple[float, float, str]]
 ) -> tuple[list[Element], list[OmittedGroove]]:
-    """Return the contour without ranges that fall more steeply than the tool's edge, and the grooves."""
+    """Return the contour without ranges that are too steep for the tool, and these ranges as grooves.
+
+    A range is too steep if it falls more steeply than the edge of the tool.
+    """
     most = fall - _SPARE if fall > _LEVEL else 0.0
     kept: list[Element] = []
     grooves: list[OmittedGroove] = []
@@ -287,7 +303,7 @@ def _level(a: Point, b: Point) -> list[Element]:
 
 
 def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
-    """Return where a fall ends: the element that returns to the height of its edge, and the point.
+    """Return the element and the point at which a falling contour returns to the height of its edge.
 
     If the contour does not return, the result is the number of elements and None.
     """
@@ -303,7 +319,7 @@ def _recess(elements: Sequence[Element], at: int) -> tuple[int, Point | None]:
 
 
 def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add the elements that the tool can follow after a fall begins; return the next element's number."""
+    """Add the elements of a fall that the tool can follow; return the number of the next element."""
     while _fall(elements[at]) <= most:
         kept.append(elements[at])
         at += 1
@@ -318,7 +334,10 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) -> int:
-    """Add a line from an edge along the steepest slope of the tool to the contour; return the next number."""
+    """Add a line from an edge to the contour along the steepest slope of the tool.
+
+    Return the number of the next element.
+    """
     edge = elements[at].start
     far = max(edge[1] - elements[-1].end[1], _SAME)
     drop = far * math.tan(most)
@@ -340,7 +359,9 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def join_elements(elements: Iterable[Element]) -> list[Element]:
-    """Return the elements with collinear lines and concentric arcs joined and very short elements omitted."""
+    """Return the elements with collinear lines and concentric arcs joined, and without very
+    short elements.
+    """
     found: list[Element] = []
     for each in elements:
         one = _one(found[-1], each) if found else None
@@ -373,10 +394,10 @@ _STRAIGHT = 0.1  # rad; the error of omitting such an arc is at most 0.0015 mm
 def add_nose_fillets(
     elements: Sequence[Element], nose_radius: float, *, is_inside: bool
 ) -> tuple[Element, ...]:
-    """Return the contour, with fillets where a nose of this radius in mm would not fit.
+    """Return the contour with fillets where a nose of this radius in mm would not fit.
 
-    If no continuous path remains, the contour is returned unchanged, and the proof of the program reports the
-    location.
+    If no continuous path remains, the contour is returned unchanged, and the proof of the program reports
+    the location.
     """
     contour = tuple(mirror_elements(elements)) if is_inside else tuple(elements)
     if not nose_radius or _follows(contour, nose_radius):
@@ -391,7 +412,7 @@ def add_nose_fillets(
 
 
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
-    """Yield the contour without arcs that are too short for rounded words."""
+    """Yield the contour without arcs that are too short to be programmed with rounded coordinates."""
     for number, each in enumerate(contour):
         short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep) < _STRAIGHT
         if not short or number in {0, len(contour) - 1}:
@@ -403,7 +424,7 @@ def _reversed(elements: Sequence[Element]) -> list[Element]:
 
 
 def _follows(contour: Sequence[Element], nose_radius: float) -> bool:
-    """Return whether nose compensation can follow the contour, with the control's own offset calculation."""
+    """Return whether nose compensation can follow the contour, using the control's own offset calculation."""
     try:
         offset_known_contour(contour, nose_radius)
     except GougeError:

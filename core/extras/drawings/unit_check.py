@@ -1,4 +1,4 @@
-"""Detection of drawings in a wrong unit: larger than the travel, but small enough in another unit."""
+"""Check for drawings in a wrong unit, which are larger than the travel but would fit in another unit."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
 def detect_wrong_unit(
     group: ElementGroup, unit: float, travel: tuple[float, float]
 ) -> tuple[str, str] | None:
-    """Return the size that is too large, and the name of the unit in which the contour would fit.
+    """Return the excessive size and the name of a smaller unit in which the contour would fit, or None.
 
-    ``unit`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in mm,
-    or 0 if unknown. The result is None if the contour fits, or does not fit in a smaller unit either.
+    ``unit`` is the size of the drawing's unit in mm. ``travel`` is the travel of X (as a radius) and Z in
+    mm, or 0 if unknown. The result is None if the contour fits, or if it does not fit in a smaller unit
+    either.
     """
     low, high, radius = group.extent
     if not all(travel) or _fits(high - low, radius, travel):

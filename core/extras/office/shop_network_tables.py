@@ -1,4 +1,4 @@
-"""Tables [status_page] and [announce] of the machine file: office page, MQTT broker and web hook."""
+"""Tables [status_page] and [announce] of the machine file, for the office page, MQTT broker and web hook."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _WEB = ("http://", "https://")
 
 @make_key_table
 class StatusPageTable:
-    """Settings of the office page, including other machines that it shows.
+    """Settings of the office page, including the other machines that it shows.
 
-    These are the office pages of other TurnDesks and the devices of MTConnect agents. ``token`` is the
+    The other machines are office pages of other TurnDesks and devices of MTConnect agents. ``token`` is the
     password for browsers. It may be empty only if no other computer can connect.
     """
 
@@ -57,20 +57,21 @@ class StatusPageTable:
 
     @property
     def other_page_addresses(self) -> tuple[str, ...]:
-        """Addresses of the office pages of other machines."""
+        """Return the addresses of the office pages of other machines."""
         return tuple(self.desks.split())
 
     @property
     def agent_addresses(self) -> tuple[str, ...]:
-        """Addresses of devices at their MTConnect agents."""
+        """Return the addresses of the devices at their MTConnect agents."""
         return tuple(self.agents.split())
 
 
 @make_key_table
 class AnnounceTable:
-    """Settings of the MQTT broker (``host:port``) and the web hook; an empty address disables one.
+    """Settings of the MQTT broker (``host:port``) and of the web hook.
 
-    ``again`` is the time in seconds after which a broker or host that did not respond is tried again.
+    An empty address disables the broker or the web hook. ``again`` is the time in seconds after which
+    TurnDesk tries again to reach a broker or host that did not respond.
     """
 
     mqtt: str = declare_key(
@@ -91,7 +92,7 @@ class AnnounceTable:
 
 
 def is_loopback(address: str) -> bool:
-    """Return whether only this computer can connect to the address."""
+    """Return whether the address accepts connections from this computer only."""
     try:
         return ip_address(address).is_loopback
     except ValueError:
@@ -108,7 +109,10 @@ def is_web_address(text: str) -> bool:
 
 
 def parse_broker_address(text: str) -> tuple[str, int]:
-    """Return host and port of ``host`` or ``host:port``. Raises ValueError if the text is invalid."""
+    """Return the host and the port of an address in the form ``host`` or ``host:port``.
+
+    Raises ValueError if the text is invalid.
+    """
     host, colon, port = text.rpartition(":")
     if not colon:
         host, port = text, "1883"

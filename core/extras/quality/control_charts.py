@@ -1,8 +1,8 @@
 """Shewhart control charts (X-bar/R, I-MR) and process capability (ISO 22514-2).
 
-The limits are three standard deviations within the samples, with the constants of ISO 7870-2 and ASTM E2587
-for normally distributed values. Lengths may have any unit. The rules that detect drift are those of Western
-Electric (1956) and Nelson (1984), with Nelson's numbers.
+The limits are at three standard deviations within the samples, with the constants of ISO 7870-2 and ASTM
+E2587 for normally distributed values. Lengths may have any unit. The rules that detect drift are those of
+Western Electric (1956) and Nelson (1984), with Nelson's numbers.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ _ONE_SIDED_95 = 1.645  # quantile of the normal distribution
 class Capability:
     """Process capability of a feature.
 
-    ``cp`` and ``pp`` are None if one limit is missing. All indices are None if the values do not vary.
+    ``cp`` and ``pp`` are None if one of the limits is missing. All indices are None if the values do not
+    vary.
     """
 
     count: int
@@ -38,7 +39,10 @@ class Capability:
 
     @property
     def cpk_lower_bound(self) -> float | None:
-        """Lower 95 % confidence limit of Cpk (Bissell 1990), which is low for few readings."""
+        """Return the lower 95 % confidence limit of Cpk (Bissell 1990), or None.
+
+        The limit is low if there are few readings.
+        """
         if self.cpk is None:
             return None
         n = self.count
@@ -48,9 +52,10 @@ class Capability:
 def calculate_capability(
     values: Sequence[float], lower: float | None, upper: float | None, size: int = 1
 ) -> Capability:
-    """Calculate the capability of values in the order of the parts, in samples of ``size``.
+    """Calculate the capability from values in the order of the parts, in samples of ``size``.
 
-    Raises QualityError for fewer than 10 values, no limits, or limits in the wrong order.
+    Raises QualityError if there are fewer than 10 values, if there are no limits, or if the limits are in
+    the wrong order.
     """
     if lower is None and upper is None:
         raise QualityError(
@@ -80,10 +85,10 @@ def calculate_capability(
 def _indices(
     mean: float, sigma: float, lower: float | None, upper: float | None
 ) -> tuple[float | None, float | None]:
-    """Return the capability indices without and with the position of the mean.
+    """Return two capability indices, one without and one with the position of the mean.
 
-    The first is the tolerance divided by six standard deviations. The second is the distance of the nearer
-    limit divided by three standard deviations.
+    The first index is the tolerance divided by six standard deviations. The second index is the distance
+    from the mean to the nearer limit, divided by three standard deviations.
     """
     if sigma <= 1e-12:
         return None, None  # the resolution of the gauge is too coarse to show the variation
@@ -101,7 +106,11 @@ MIN_STABLE_POINTS = 20
 
 
 class ChartFactors(NamedTuple):
-    """Factors for a sample of n values: limits of averages and ranges, and ratio of range to deviation."""
+    """Factors for a sample of n values.
+
+    The factors are for the limits of averages (``a2``) and of ranges (``d3``, ``d4``), and for the ratio of
+    range to standard deviation (``d2``).
+    """
 
     a2: float
     d3: float
@@ -126,7 +135,7 @@ SAMPLE_SIZES = range(2, 11)
 
 @dataclass(frozen=True, slots=True)
 class ControlChart:
-    """One chart: its points in order, the center line and the two limits."""
+    """A control chart with its points in order, its center line and its two limits."""
 
     points: FloatArray
     center_line: float
@@ -135,18 +144,24 @@ class ControlChart:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the points that corresponds to the limits; 0 if the points do not vary."""
+        """Return the standard deviation that corresponds to the limits.
+
+        The result is 0 if the points do not vary.
+        """
         return (self.upper_limit - self.center_line) / 3.0
 
     @property
     def has_stable_limits(self) -> bool:
-        """Whether there are enough points for stable limits."""
+        """Return whether there are enough points for stable limits."""
         return len(self.points) >= MIN_STABLE_POINTS
 
 
 @dataclass(frozen=True, slots=True)
 class ControlChartPair:
-    """Charts of location and spread; ``within`` is the standard deviation within samples."""
+    """Control charts of location and spread.
+
+    ``within_sigma`` is the standard deviation within the samples.
+    """
 
     location: ControlChart
     spread: ControlChart
@@ -155,10 +170,10 @@ class ControlChartPair:
 
 
 def make_charts(values: Sequence[float], size: int) -> ControlChartPair:
-    """Return the charts of values in the order of the parts.
+    """Return the control charts of values in the order of the parts.
 
-    The chart is for individuals if ``size`` is 1, otherwise X-bar/R. An incomplete last sample is omitted.
-    Raises QualityError.
+    If ``size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
+    omitted. Raises QualityError.
     """
     if size == 1:
         return make_individuals_charts(values)
@@ -177,7 +192,7 @@ def make_charts(values: Sequence[float], size: int) -> ControlChartPair:
 
 
 def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
-    """Return X-bar/R charts of samples, one in each row. Raises QualityError."""
+    """Return the X-bar/R charts of a table with one sample in each row. Raises QualityError."""
     table = np.asarray(samples, dtype=np.float64)
     if table.ndim != 2 or table.shape[1] not in SAMPLE_SIZES:
         raise QualityError(
@@ -204,9 +219,9 @@ def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:
 
 
 def make_individuals_charts(values: Sequence[float]) -> ControlChartPair:
-    """Return charts of individuals and moving ranges of two. Raises QualityError.
+    """Return the charts of individuals and of moving ranges of two values.
 
-    The limits are at 3/d2 = 2.660 mean ranges.
+    The limits of the individuals are at 3/d2 = 2.660 mean ranges. Raises QualityError.
     """
     points = np.asarray(values, dtype=np.float64)
     _demand_finite(points)
@@ -235,7 +250,7 @@ ZoneArray = npt.NDArray[np.float64]
 
 
 class RuleViolation(NamedTuple):
-    """A violated rule: the last point of the run, counted from 0, the rule's number, and its text."""
+    """A violated rule: the index of the last point of the run (from 0), the rule's number, and its text."""
 
     point_index: int
     rule_number: int
@@ -243,7 +258,7 @@ class RuleViolation(NamedTuple):
 
 
 def find_rule_violations(chart: ControlChart) -> tuple[RuleViolation, ...]:
-    """Return the violations of all rules, sorted by point; () if the points do not vary."""
+    """Return the violations of all rules, sorted by point, or () if the points do not vary."""
     if chart.sigma <= 0.0 or not len(chart.points):
         return ()
     zones = (chart.points - chart.center_line) / chart.sigma
@@ -281,9 +296,9 @@ def _alternating(zones: ZoneArray) -> bool:
 
 
 def _so_many(zones: ZoneArray, count: int, beyond: float) -> bool:
-    """Return whether the last point and others are beyond a limit on the same side.
+    """Return whether enough points, including the last point, are beyond a limit on the same side.
 
-    ``count`` is the least number of such points, and ``beyond`` the limit in sigma.
+    ``count`` is the minimum number of such points, and ``beyond`` is the limit in sigma.
     """
     side = 1.0 if zones[-1] > 0.0 else -1.0
     far = zones * side > beyond
@@ -316,4 +331,4 @@ CONTROL_RULES: dict[int, tuple[str, Callable[[ZoneArray], Iterator[int]]]] = {
 
 
 class QualityError(CodedError, ValueError):
-    """Values that cannot be evaluated. The text has the reason and a remedy."""
+    """An error raised for values that cannot be evaluated. The text states the reason and a remedy."""

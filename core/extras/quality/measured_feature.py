@@ -1,7 +1,7 @@
-"""A measured feature of a part: nominal size, limits, correcting offset and proposed correction.
+"""Measured feature of a part: nominal size, limits, correcting offset and proposed correction.
 
-Lengths are in mm, and a diameter is a diameter. ``grows`` is +1 if the feature becomes larger with a larger
-correction, or -1 if it becomes smaller. A diameter, outside or inside, becomes larger with X of a tool at
+Lengths are in mm, and diameters are not halved. ``grows`` is +1 if the feature becomes larger with a larger
+correction, or -1 if it becomes smaller. Any diameter, outside or inside, becomes larger with X of a tool at
 positive X, and smaller with X of a tool at negative X. For a length, the sign depends on the end that the
 tool cuts.
 """
@@ -25,14 +25,14 @@ MAX_SAMPLE_INTERVAL = 10_000
 
 
 class FeatureKind(StrEnum):
-    """Kind of the measured size."""
+    """Kind of size that is measured."""
 
     DIAMETER = "diameter"
     LENGTH = "length"
 
 
 class CorrectingOffset(StrEnum):
-    """Kind of offset that corrects the feature: wear of a tool, or a secondary offset."""
+    """Kind of offset that corrects the feature: the wear of a tool, or a secondary offset."""
 
     TOOL = "tool"
     SECONDARY = "secondary"
@@ -40,9 +40,10 @@ class CorrectingOffset(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class MeasuredFeature:
-    """A measured feature; ``low`` and ``high`` are deviations from the nominal size.
+    """A measured feature of a part.
 
-    ``every`` is the number of parts between two measurements, or 0 without a sampling plan.
+    ``low`` and ``high`` are deviations from the nominal size. ``every`` is the number of parts between two
+    measurements, or 0 without a sampling plan.
     """
 
     name: str
@@ -58,27 +59,27 @@ class MeasuredFeature:
 
     @property
     def axis(self) -> str:
-        """Axis whose correction changes the feature."""
+        """Return the axis whose correction changes the feature."""
         return "x" if self.kind is FeatureKind.DIAMETER else "z"
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Smallest and largest permitted size, in mm."""
+        """Return the smallest and the largest permitted size, in mm."""
         return self.nominal + self.low, self.nominal + self.high
 
     @property
     def middle(self) -> float:
-        """Target size, which is the middle of the tolerance, in mm."""
+        """Return the target size, which is the middle of the tolerance, in mm."""
         return self.nominal + (self.low + self.high) / 2.0
 
     @property
     def width(self) -> float:
-        """Width of the tolerance, in mm."""
+        """Return the width of the tolerance, in mm."""
         return self.high - self.low
 
     @property
     def corrected_by(self) -> str:
-        """Name of the correcting offset and axis, such as ``T3 X`` or ``D4 Z``."""
+        """Return the name of the correcting offset and axis, such as ``T3 X`` or ``D4 Z``."""
         return f"{'T' if self.by is CorrectingOffset.TOOL else 'D'}{self.number} {self.axis.upper()}"
 
     def good(self, size: float) -> bool:
@@ -88,7 +89,7 @@ class MeasuredFeature:
 
 
 def check_feature(feature: MeasuredFeature) -> None:
-    """Raise QualityError with a remedy if the feature cannot be measured or corrected."""
+    """Raise QualityError if the feature cannot be measured or corrected. The message contains a remedy."""
     if not feature.name.strip() or len(feature.name) > MAX_NAME_LENGTH or not feature.name.isprintable():
         raise QualityError(
             Message("a feature name must have 1 to {name_longest} characters", name_longest=MAX_NAME_LENGTH),
@@ -168,11 +169,12 @@ _FAR = 3.0  # tolerance widths; a larger deviation cannot be wear
 
 @dataclass(frozen=True, slots=True)
 class CorrectionRule:
-    """Rule for corrections: dead band and step as fractions of the tolerance and of the deviation.
+    """Rule for corrections, with a dead band and a step.
 
-    ``dead_band_share`` is the fraction of the tolerance within which nothing is corrected. ``step_share`` is
-    the fraction of the deviation that is corrected. ``reading_count`` is the number of newest readings that
-    are averaged. A step of one half follows the variation of single parts only half as much.
+    ``dead_band_share`` is the fraction of the tolerance within which nothing is corrected. ``step_share``
+    is the fraction of the deviation that is corrected. ``reading_count`` is the number of newest readings
+    that are averaged. With a step of one half, the corrections follow the variation of single parts only
+    half as much.
     """
 
     dead_band_share: float = 0.1
@@ -182,8 +184,9 @@ class CorrectionRule:
 
 @dataclass(frozen=True, slots=True)
 class CorrectionProposal:
-    """A proposed correction; ``change_mm`` is in mm, as a diameter for a diameter, and 0 for no
-    correction.
+    """A proposed correction of a feature.
+
+    ``change_mm`` is the change of the size in mm (of the diameter for a diameter), or 0 for no correction.
     """
 
     feature: MeasuredFeature
@@ -200,8 +203,8 @@ def propose_correction(
 ) -> CorrectionProposal:
     """Propose a correction from the newest readings since the last correction.
 
-    The change is a multiple of ``resolution`` in mm. Raises QualityError if there are no readings, or if wear
-    cannot explain a reading or the change.
+    The change is a multiple of ``resolution`` in mm. Raises QualityError if there are no readings, or if
+    wear cannot explain a reading or the change.
     """
     rule = rule or CorrectionRule()
     if not readings:
@@ -259,6 +262,9 @@ def _nothing(feature: MeasuredFeature, count: int, mean: float, why: str) -> Cor
 
 
 def _round_to_resolution(length: float, resolution: float) -> float:
-    """Return a length rounded to the resolution, with halves toward zero so that it is never too large."""
+    """Return a length rounded to the resolution.
+
+    Halves are rounded toward zero, so that the length is never too large.
+    """
     steps = math.ceil(abs(length) / resolution - 0.5 - 1e-9)
     return math.copysign(max(0, steps) * resolution, length) if steps > 0 else 0.0

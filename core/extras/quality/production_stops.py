@@ -1,4 +1,4 @@
-"""Stops of the machine: Pareto analysis of their reasons, times between stops, and availability.
+"""Analysis of production stops: Pareto analysis of the reasons, times between stops, and availability.
 
 The availability of a shift is the fraction of its time in which parts were made (ISO 22400-2).
 """
@@ -13,7 +13,7 @@ from core.message import Message
 
 
 class ProductionStop(NamedTuple):
-    """A stop of production, with its start and duration in seconds of one clock."""
+    """A production stop with its reason, and with its start and duration in seconds of one clock."""
 
     reason: str
     start_s: float
@@ -21,10 +21,10 @@ class ProductionStop(NamedTuple):
 
 
 class StopReasonTotal(NamedTuple):
-    """All stops with one reason.
+    """Total of all stops with the same reason.
 
-    ``share`` is the fraction of the total stop time. ``together`` is the cumulative fraction with all more
-    frequent reasons.
+    ``share`` is the fraction of the total stop time. ``together`` is the cumulative fraction of this reason
+    and all reasons with a longer duration.
     """
 
     reason: str
@@ -35,7 +35,7 @@ class StopReasonTotal(NamedTuple):
 
 
 def analyze_stop_reasons(stops: Iterable[ProductionStop]) -> tuple[StopReasonTotal, ...]:
-    """Return the reasons by total duration, longest first.
+    """Return the stop reasons in descending order of total duration.
 
     Raises QualityError if a stop has a negative duration.
     """
@@ -61,9 +61,10 @@ def analyze_stop_reasons(stops: Iterable[ProductionStop]) -> tuple[StopReasonTot
 
 
 def calculate_times_between(stops: Sequence[ProductionStop]) -> tuple[float, ...]:
-    """Return the seconds from the end of each stop to the start of the next, in order of time.
+    """Return the times in seconds between consecutive stops, in chronological order.
 
-    Stops that overlap have 0 s between them.
+    A time is from the end of a stop to the start of the next stop. The time between stops that overlap is
+    0.
     """
     ordered = sorted(stops, key=lambda stop: stop.start_s)
     between, end = [], None
@@ -82,22 +83,22 @@ class TimeSpan(NamedTuple):
 
 
 class Availability(NamedTuple):
-    """Duration of a shift and of its running cycles, in seconds."""
+    """Availability of a shift, as the duration of the shift and of its running cycles in seconds."""
 
     planned_s: float
     producing_s: float
 
     @property
     def producing_share(self) -> float:
-        """Fraction of the shift in which a cycle ran, 0…1."""
+        """Return the fraction of the shift in which a cycle ran, 0 to 1."""
         return self.producing_s / self.planned_s
 
 
 def calculate_availability(shift: TimeSpan, cycle_spans: Iterable[TimeSpan]) -> Availability:
     """Return the availability of a shift from the periods in which a cycle ran.
 
-    Overlapping periods count once, and time outside the shift does not count. Raises QualityError for a shift
-    without duration, and for a period that ends before it begins.
+    Overlapping periods count once, and time outside the shift does not count. Raises QualityError for a
+    shift without duration, and for a period that ends before it begins.
     """
     if shift.end_s <= shift.start_s:
         raise QualityError(

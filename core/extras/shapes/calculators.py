@@ -34,7 +34,10 @@ _INCHES, _MILLIMETRES = 12.0, 1000.0
 
 
 def solve_taper(known_values: Mapping[str, FieldValue]) -> dict[str, float]:
-    """Return SMALL, LARGE, LONG and ANGLE (degrees to the axis), calculated if three of them are known."""
+    """Return the known values of SMALL, LARGE, LONG and ANGLE, and the fourth value if three are known.
+
+    ANGLE is the angle to the axis in degrees.
+    """
     at = {
         word: number(known_values, word)
         for word in ("SMALL", "LARGE", "LONG", "ANGLE")
@@ -123,7 +126,7 @@ TAPER_CALCULATOR = Shape(
 
 
 def _around(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the rpm for one unit of surface speed; 0 if the diameter is unknown."""
+    """Return the rpm for one unit of surface speed, or 0 if the diameter is unknown."""
     across = number(values, "DIA")
     return (_MILLIMETRES if settings.metric else _INCHES) / (math.pi * across) if across else 0.0
 
@@ -203,7 +206,7 @@ def _speed_says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...
 
 
 def _make_depth_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[str]:
-    """Yield the depth of a roughing pass, for turning and boring."""
+    """Yield a remark about the depth of a roughing pass, for turning and boring."""
     work = _work(filled_shape.values)
     if work in {Operation.TURN, Operation.BORE}:
         now = _of_material(filled_shape.values, settings)
@@ -282,7 +285,10 @@ def _thread_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fi
 
 
 def _passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the number of passes for the specified first depth, or else the insert makers' proposal."""
+    """Return the number of passes for the specified first depth.
+
+    If no first depth is specified, the number that insert makers recommend is returned.
+    """
     first, deep = number(values, "FIRST"), abs(number(values, "CREST") - number(values, "ROOT")) / 2.0
     if first and deep:
         return (deep / first) ** 2

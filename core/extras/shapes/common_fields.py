@@ -24,7 +24,10 @@ MAX_RPM = 100_000.0
 
 
 def make_tool_field(*kinds: ToolKind) -> ShapeField:
-    """Return a tool field that proposes the first unused tool of these kinds, or else the next number."""
+    """Return a tool field with a proposal.
+
+    The proposal is the first unused tool of these kinds, or the next free number if there is no such tool.
+    """
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         inside = values.get("SIDE") == "BORE" or kinds == (ToolKind.BORING,)
@@ -38,14 +41,14 @@ def make_tool_field(*kinds: ToolKind) -> ShapeField:
 
 
 def find_next_tool(settings: ProgramSettings) -> int:
-    """Return the next number after the largest used tool that the tool data does not assign."""
+    """Return the next number after the largest used tool that is not in the tool data."""
     first = max(settings.used, default=0) + 1
     free = (n for n in range(first, _MOST_TOOL + 1) if n not in settings.shop.tools)
     return next(free, min(first, _MOST_TOOL))
 
 
 def propose_bar(_values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the bar diameter that the head specifies."""
+    """Return the bar diameter that the program head specifies as the proposal."""
     return settings.bar or None
 
 
@@ -55,7 +58,7 @@ def make_diameter_reader(word: str) -> Callable[[FieldValues], float]:
 
 
 def make_rpm_field(operation: Operation, read_diameter: Callable[[FieldValues], float]) -> ShapeField:
-    """Return a speed field with a proposal by material, diameter and spindle."""
+    """Return a spindle speed field, with a proposal that depends on material, diameter and spindle."""
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         return cutting_data.rpm(operation, read_diameter(values) or setting.bar or 0.5, setting)
@@ -66,7 +69,7 @@ def make_rpm_field(operation: Operation, read_diameter: Callable[[FieldValues], 
 def make_feed_field(
     operation: Operation, word: str = "FEED", label: str = "FEED", **more: object
 ) -> ShapeField:
-    """Return a field for the feed per revolution, with a proposal by material and tool."""
+    """Return a field for the feed per revolution, with a proposal that depends on material and tool."""
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         return cutting_data.propose_feed(operation, setting, number(values, "T"), number(values, "DIA"))
@@ -77,7 +80,7 @@ def make_feed_field(
 
 
 def make_surface_speed_field() -> ShapeField:
-    """Return a field for constant surface speed; 0 means constant rpm."""
+    """Return a field for constant surface speed, in which 0 means constant rpm."""
     return ShapeField("SURF", "SURFACE SPEED", FieldKind.SURFACE_SPEED, 0.0, allows_zero=True)
 
 

@@ -1,4 +1,4 @@
-"""A contour as a table of points with X, Z, chamfer or radius, and arc, and its conversion to lines."""
+"""Contour as a table of points with X, Z, chamfer or radius, and arc, and its conversion to lines."""
 
 from __future__ import annotations
 
@@ -23,10 +23,11 @@ Point = tuple[float, float]  # (Z, radius)
 
 @dataclass(frozen=True, slots=True)
 class ContourPoint:
-    """A point of a contour; ``x`` is a diameter, or None if it is unchanged.
+    """A point of a contour.
 
-    ``arc`` is the radius of the arc to the point, positive for G02 and negative for G03. ``chamfer`` or
-    ``radius`` is the corner between the lines that meet at the point.
+    ``x`` is a diameter, or None if X is unchanged. ``arc`` is the radius of the arc that leads to the
+    point, positive for G02 and negative for G03. ``chamfer`` or ``radius`` is the corner between the lines
+    that meet at the point.
     """
 
     x: float | None = None
@@ -37,17 +38,17 @@ class ContourPoint:
 
     @property
     def empty(self) -> bool:
-        """Whether the row has no values."""
+        """Return whether the row has no values."""
         return self == ContourPoint()
 
 
 def make_point_label(number: int) -> str:
-    """Return the name of a row in error messages; rows are counted from 1."""
+    """Return the name of a row in error messages. Row numbers start at 1."""
     return f"#{number}"
 
 
 def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
-    """Return the points of the rows, with missing values replaced by those of the previous row."""
+    """Return the points of the rows as (z, r). Missing values are copied from the previous row."""
     x = z = 0.0
     found = []
     for row in rows:
@@ -58,7 +59,7 @@ def resolve_points(rows: Iterable[ContourPoint]) -> list[Point]:
 
 
 def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows from which these lines were made; None if a line has other contents."""
+    """Return the rows from which these lines were made, or None if a line has other contents."""
     if settings.dialect is Dialect.SINUMERIK:
         return _read_sinumerik(lines, settings)
     rows = []
@@ -75,7 +76,7 @@ def read_contour(lines: Iterable[str], settings: ProgramSettings) -> tuple[Conto
 
 
 def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[ContourPoint, ...] | None:
-    """Return the rows from SINUMERIK lines, in which G3 is a convex arc with X drawn upward."""
+    """Return the rows of SINUMERIK lines, or None. G3 is a convex arc when X is drawn upward."""
     rows = []
     scale = 1.0 if settings.diameter else 2.0
     for line in lines:
@@ -93,7 +94,7 @@ def _read_sinumerik(lines: Iterable[str], settings: ProgramSettings) -> tuple[Co
 
 
 def find_contour_errors(rows: Sequence[ContourPoint]) -> Iterator[FieldError]:
-    """Yield the errors in a table of points, row by row."""
+    """Yield the errors in a table of points in the order of the rows."""
     if len(rows) < 2:
         yield FieldError(
             make_point_label(len(rows) + 1), "A contour needs at least two points: enter the next point."
@@ -185,7 +186,7 @@ def _corner(
 
 
 def _set_back(row: ContourPoint, before: Point, here: Point, behind: Point) -> float:
-    """Return the length that a corner removes from each of its lines."""
+    """Return the length that a corner removes from each of its two lines."""
     if row.chamfer:
         return row.chamfer
     a, b = _direction(before, here), _direction(here, behind)
@@ -201,7 +202,10 @@ def _direction(a: Point, b: Point) -> float:
 
 
 def make_outline(rows: Sequence[ContourPoint]) -> list[Point]:
-    """Return the contour as a polyline, with corners cut and arcs divided into chords."""
+    """Return the contour as a polyline.
+
+    Corners are chamfered or rounded, and arcs are divided into chords.
+    """
     there = resolve_points(rows)
     if not there:
         return []
@@ -232,7 +236,7 @@ def _cut_corner(row: ContourPoint, before: Point, here: Point, behind: Point) ->
 
 
 def _quadratic(a: Point, corner: Point, b: Point, t: float) -> Point:
-    """Return a point on a quadratic curve, which is close enough to an arc for a sketch."""
+    """Return a point on a quadratic curve, which approximates an arc closely enough for a sketch."""
     u = 1.0 - t
     return (
         u * u * a[0] + 2 * u * t * corner[0] + t * t * b[0],
@@ -241,7 +245,10 @@ def _quadratic(a: Point, corner: Point, b: Point, t: float) -> Point:
 
 
 def _arc(a: Point, b: Point, radius: float) -> list[Point]:
-    """Return the chords of an arc from ``a`` to ``b``; G02 is counterclockwise when X is drawn upward."""
+    """Return the end points of the chords of an arc from ``a`` to ``b``.
+
+    G02 is counterclockwise when X is drawn upward.
+    """
     chord = math.dist(a, b)
     r = max(abs(radius), chord / 2.0)
     if chord < POINT_TOLERANCE:

@@ -1,19 +1,21 @@
 """Proposed feeds, speeds and depths of cut by material, operation, tool and machine.
 
-Surface speeds in ft/min and feeds in in/rev are conservative values from handbooks and insert makers for
-uncoated carbide and, for drills and taps, high-speed steel on small machines. They are only proposals.
+Surface speeds in ft/min and feeds in in/rev are conservative values from handbooks and insert makers. They
+are for uncoated carbide and, for drills and taps, for high-speed steel on small machines. They are only
+proposals.
 
 All depths are per side. A proposal is the smallest of three values, rounded down:
 
-- by material: ``CuttingData.depth``, which handbooks give for light roughing on small lathes;
+- by material: ``CuttingData.roughing_depth_in``, which handbooks give for light roughing on small lathes;
 - by insert: a quarter of the largest depth for its cutting edge. Insert makers limit the depth to a
   fraction of the edge, which is smaller for a sharper corner: 1/2 from 75°, 1/3 from 55°, 1/5 below;
 - by machine: the depth at which the cutting force equals the torque of the spindle at the stock diameter.
   Drives of these lathes have constant torque. A machine file may state the power at the highest speed,
   ``[spindle] power_kw``; otherwise a small drive of 1.5 kW is assumed.
 
-Boring bars get half of the depth, because they bend. If the tool data has no insert, the insert of a small
-holder, CCMT 0602, is assumed. The operator may change every proposal; only the largest depth is enforced.
+For boring bars half of this depth is proposed, because they bend. If the tool data has no insert, the
+insert of a small holder, CCMT 0602, is assumed. The operator may change every proposal; only the largest
+depth is enforced.
 """
 
 from __future__ import annotations
@@ -46,9 +48,10 @@ class Operation(StrEnum):
 class CuttingData:
     """Cutting data of a material.
 
-    Surface speeds are in ft/min for turning with carbide and drilling with high-speed steel. ``feed`` is a
-    factor. ``depth`` is the depth of a roughing pass in inches per side. ``specific_cutting_force`` is the
-    specific cutting force kc1.1 at the proposed feeds in N/mm², for a chip thickness of 0.1 mm.
+    Surface speeds are in ft/min for turning with carbide and for drilling with high-speed steel.
+    ``feed_factor`` is a factor for the feed. ``roughing_depth_in`` is the depth of a roughing pass in
+    inches per side. ``specific_cutting_force`` is the specific cutting force kc1.1 at the proposed feeds in
+    N/mm², for a chip thickness of 0.1 mm.
     """
 
     turning_speed_ft_min: float
@@ -99,12 +102,15 @@ _SURE_RPM = 50.0  # rpm are rounded down to multiples of this value
 
 
 def find_cutting_data(settings: ProgramSettings) -> CuttingData:
-    """Return the material that the head of the program specifies, or conservative values."""
+    """Return the cutting data of the material that the program head specifies, or conservative values."""
     return CUTTING_DATA.get(settings.material, CONSERVATIVE_DATA)
 
 
 def propose_surface_speed(operation: Operation, settings: ProgramSettings) -> float:
-    """Return the proposed surface speed in ft/min, or m/min in a metric program, rounded to 5."""
+    """Return the proposed surface speed, rounded to a multiple of 5.
+
+    The speed is in ft/min, or in m/min in a metric program.
+    """
     material = find_cutting_data(settings)
     feet = (
         material.drilling_speed_ft_min
@@ -116,7 +122,10 @@ def propose_surface_speed(operation: Operation, settings: ProgramSettings) -> fl
 
 
 def rpm(operation: Operation, diameter: float, settings: ProgramSettings) -> float:
-    """Return the proposed rpm for a diameter in the program's unit, limited by the spindle."""
+    """Return the proposed rpm for a diameter, limited by the spindle.
+
+    The diameter is in the unit of the program.
+    """
     speed = propose_surface_speed(operation, settings)
     around = math.pi * max(diameter, 1e-6)
     turns = speed * (1000.0 if settings.metric else _INCHES) / around
@@ -160,7 +169,7 @@ _FACING = 0.75  # fraction of the depth along a profile
 
 
 def find_max_depth(settings: ProgramSettings, tool: float) -> float:
-    """Return the largest depth of cut for the insert of a tool, in the unit of the program."""
+    """Return the largest permitted depth of cut for the insert of a tool, in the unit of the program."""
     insert = _insert(settings, tool)
     if not insert.edge_lengths:
         return _OF_ROUND * insert.inscribed_circle / settings.mm
@@ -182,17 +191,17 @@ def propose_roughing_depth(
 
 
 def propose_facing_depth(settings: ProgramSettings, tool: float, diameter: float) -> float:
-    """Return the proposed depth of passes across the end of a bar."""
+    """Return the proposed depth of facing passes across the end of a bar."""
     return _rounded(_FACING * propose_roughing_depth(settings, tool, diameter), settings)
 
 
 def propose_finish_allowance(settings: ProgramSettings, rough_depth: float) -> float:
-    """Return the finishing allowance in X and Z, at most half a roughing pass."""
+    """Return the proposed finishing allowance in X and Z, which is at most half a roughing pass."""
     return min(_LEAVE[settings.metric], rough_depth / 2.0)
 
 
 def _limit_depth_by_torque(settings: ProgramSettings, tool: float, diameter: float) -> float:
-    """Return the depth at which the cutting force needs the full torque of the spindle.
+    """Return the depth of cut at which the cutting force needs the full torque of the spindle.
 
     The torque is force · depth · feed · radius.
     """

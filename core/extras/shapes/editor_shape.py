@@ -1,4 +1,4 @@
-"""A shape: its fields, lines, checks and sketch; and a shape with values."""
+"""Shape of the editor with its fields, lines, checks and sketch, and a shape filled with values."""
 
 from __future__ import annotations
 
@@ -41,11 +41,12 @@ TOOL_FIELD_WORD = "T"  # in the code of the line with the comment, and therefore
 class Shape:
     """A shape that the editor offers.
 
-    ``name`` begins the comment, so it has only letters and spaces. ``cut`` writes the lines. ``first`` yields
-    errors that prevent proposals for other fields, and ``checks`` errors between fields. ``contour`` means
-    that the shape has a point table, which is read from its lines. ``ends`` returns lines for the end of the
-    program, after M30. ``noted`` means that the lines have a comment, so that the shape can be opened again.
-    ``says`` returns notes about the lines. ``extent`` returns values of the points on which proposals depend.
+    ``name`` begins the comment, so it contains only letters and spaces. ``cut`` writes the lines. ``first``
+    yields errors that prevent proposals for other fields, and ``checks`` yields errors between fields. If
+    ``contour`` is True, the shape has a point table, which is read from its lines. ``ends`` returns lines
+    for the end of the program, after M30. If ``noted`` is True, the lines have a comment, so that the shape
+    can be opened again. ``says`` returns notes about the lines. ``extent`` returns values of the points on
+    which proposals depend.
     """
 
     name: str
@@ -70,29 +71,29 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class FilledShape:
-    """A shape with entered values and with proposals for the other fields."""
+    """A shape with the entered values, and with proposals for the other fields."""
 
     shape: Shape
     values: FieldValues
     contour_points: tuple[ContourPoint, ...] = ()
 
     def get_number(self, word: str) -> float:
-        """Return the value of a number field; 0 if it is missing."""
+        """Return the value of a number field, or 0 if it is missing."""
         value = self.values.get(word, 0.0)
         return 0.0 if isinstance(value, str) else float(value)
 
     def get_text(self, word: str) -> str:
-        """Return the value of a text field; empty if it is missing."""
+        """Return the value of a text field, or an empty text if it is missing."""
         value = self.values.get(word, "")
         return value if isinstance(value, str) else ""
 
     @property
     def fields(self) -> tuple[ShapeField, ...]:
-        """Fields that exist for these values."""
+        """Return the fields that apply to these values."""
         return tuple(each for each in self.shape.fields if each.applies_to(self.values))
 
     def find_errors(self, settings: ProgramSettings) -> list[FieldError]:
-        """Return all errors of single fields, or else the errors between fields."""
+        """Return all errors of single fields or, if there are none, the errors between fields."""
         if first := list(self.shape.first(self, settings)):
             return first
         said = (each.find_error(self.values.get(each.word)) for each in self.fields)
@@ -100,7 +101,7 @@ class FilledShape:
         return found or [*self._tool(settings), *self.shape.checks(self, settings)]
 
     def _tool(self, settings: ProgramSettings) -> Iterator[FieldError]:
-        """Yield an error if the tool data specifies another kind of tool."""
+        """Yield an error if the tool data specifies a kind of tool that the shape cannot use."""
         known, sheet = self.shape.find_field(TOOL_FIELD_WORD), settings.tool(self.get_number(TOOL_FIELD_WORD))
         if known is not None and sheet is not None and sheet.kind not in {*known.tool_kinds, ToolKind.FORM}:
             wanted = " or ".join(known.tool_kinds)
@@ -113,7 +114,10 @@ class FilledShape:
             yield FieldError(TOOL_FIELD_WORD, Message("{what}: enter another tool.", what=text))
 
     def make_lines(self, settings: ProgramSettings) -> list[str]:
-        """Return the lines with their comment. All fields must have values."""
+        """Return the program lines, with a comment if the shape requires it.
+
+        All fields must have values.
+        """
         code = (
             SinumerikCodeWriter(settings) if settings.dialect is Dialect.SINUMERIK else CodeWriter(settings)
         )
@@ -121,7 +125,9 @@ class FilledShape:
         return code.add_comment(self.make_comment(settings)) if self.shape.noted else code.lines
 
     def make_comment(self, settings: ProgramSettings) -> str:
-        """Return the comment: the name of the shape, and value and word of each field with a value."""
+        """Return the comment with the name of the shape, and the value and word of each field
+        with a value.
+        """
         said = [self.shape.name]
         for each in self.fields:
             value = self.values.get(each.word)
@@ -141,7 +147,10 @@ def fill_shape(
     settings: ProgramSettings,
     contour_points: tuple[ContourPoint, ...] = (),
 ) -> FilledShape:
-    """Return the shape with the entered values, and proposals for the other fields in order."""
+    """Return the shape with the entered values, and with proposals for the other fields.
+
+    The proposals are made in the order of the fields.
+    """
     values: dict[str, FieldValue] = {}
     drawn = shape.extent(contour_points)
     for each in shape.fields:
@@ -155,7 +164,7 @@ def fill_shape(
 
 
 def read_comment(shape: Shape, words: list[str]) -> dict[str, FieldValue] | None:
-    """Return the values from the words of a comment after the shape's name; None if they are invalid."""
+    """Return the values from the words of a comment after the shape's name, or None if they are invalid."""
     if len(words) % 2:
         return None
     found: dict[str, FieldValue] = {}

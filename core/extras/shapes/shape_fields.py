@@ -1,4 +1,4 @@
-"""Fields of a shape, and the context for proposals: program, machine, material and tools."""
+"""Fields of a shape, and the data for proposals: program, machine, material and tools."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ TEXT_KINDS = frozenset({FieldKind.CHOICE, FieldKind.NAME})
 
 
 class FieldError(NamedTuple):
-    """An error of a field: its word, and a sentence with the error and a remedy."""
+    """An error of a field: the word of the field, and a sentence with the error and a remedy."""
 
     field_word: str
     text: str
@@ -56,11 +56,12 @@ def _always(_values: FieldValues) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class ShapeField:
-    """A field of a shape; ``word`` is its name in the comment and ``label`` its name on the form.
+    """A field of a shape. ``word`` is its name in the comment, and ``label`` is its name on the form.
 
-    ``default`` is the proposed value. ``allows_zero`` means that 0 is allowed, as "none". ``applies_to``
-    returns whether the field exists for the other values. ``is_in_comment`` adds MM to metric values in the
-    comment, for readers that use the value as a tool size without knowing the program's unit.
+    ``default`` is the proposed value. If ``allows_zero`` is True, the value 0 is permitted and means
+    "none". ``applies_to`` returns whether the field applies, depending on the other values.
+    ``is_in_comment`` adds MM to metric values in the comment, for programs that read the value as a tool
+    size without knowing the program's unit.
     """
 
     word: str
@@ -75,11 +76,11 @@ class ShapeField:
     tool_kinds: tuple[str, ...] = ()  # for T, the permitted kinds of tool
 
     def propose_value(self, values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-        """Return the proposed value; None if a value must be entered."""
+        """Return the proposed value, or None if the operator must enter a value."""
         return self.default(values, settings) if callable(self.default) else self.default
 
     def find_error(self, value: FieldValue | None) -> FieldError | None:
-        """Return the error of a single value, or None."""
+        """Return the error in the value of this field, or None."""
         said = self._wrong_word(value) if isinstance(value, str | None) else self._wrong_number(value)
         return FieldError(self.word, said) if said else None
 
@@ -124,23 +125,26 @@ class ShapeField:
 
 
 def make_choice_text(field: ShapeField, choice: str) -> str:
-    """Return the text by which translation catalogs identify a choice: the field's label and the choice."""
+    """Return the text that identifies a choice in translation catalogs.
+
+    The text consists of the field's label and the choice.
+    """
     return f"{field.label}: {choice}"
 
 
 def propose_length(inch_value: float, metric: float) -> ValueProposal:
-    """Return a proposal for a length in the unit of the program."""
+    """Return a function that proposes a length in the unit of the program."""
     return lambda _values, setting: metric if setting.metric else inch_value
 
 
 def number(values: FieldValues, word: str) -> float:
-    """Return the value of a number field; 0 if it is missing."""
+    """Return the value of a number field, or 0 if it is missing."""
     value = values.get(word, 0.0)
     return float(value) if not isinstance(value, str) else 0.0
 
 
 def text(values: FieldValues, word: str) -> str:
-    """Return the value of a text field; empty if it is missing."""
+    """Return the value of a text field, or an empty text if it is missing."""
     value = values.get(word, "")
     return value if isinstance(value, str) else ""
 
@@ -151,7 +155,9 @@ DEFAULT_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the tool 
 
 @dataclass(frozen=True, slots=True)
 class ShopData:
-    """Data of the machine and its tools: rpm, live tool, and tools by T in mm."""
+    """Data of the machine and its tools, such as the maximum rpm, the live tool, and tools by T number in
+    mm.
+    """
 
     max_rpm: float = 3500.0
     spindle_power: float = 1500.0  # W at the highest speed; the default is a small drive
@@ -168,12 +174,12 @@ class ShopData:
 
 @dataclass(frozen=True, slots=True)
 class ProgramSettings:
-    """State of the program in which a shape is written, with lengths in the unit of the program.
+    """Settings of the program at the place of a shape, with lengths in the unit of the program.
 
-    ``tool_change_z`` is Z of the tool change position, or 0 if it is not specified, and ``bar`` the bar
-    diameter. ``is_subroutine`` means that the shape is in a subroutine. ``used`` are the tools used before
-    it. ``free_subroutine`` is the first number that no subroutine of the program uses, and in SINUMERIK no
-    labeled contour.
+    ``tool_change_z`` is the Z of the tool change position, or 0 if it is not specified. ``bar`` is the bar
+    diameter. If ``is_subroutine`` is True, the shape is in a subroutine. ``used`` contains the numbers of
+    the tools used before the shape. ``free_subroutine`` is the first number that is not used by a
+    subroutine of the program or, in SINUMERIK, by a labeled contour.
     """
 
     metric: bool = False
@@ -189,19 +195,19 @@ class ProgramSettings:
 
     @property
     def near(self) -> float:
-        """Distance from the part at which a rapid ends."""
+        """Return the distance from the part at which a rapid ends."""
         return _NEAR[self.metric]
 
     @property
     def clear(self) -> float:
-        """Z of the tool change position."""
+        """Return the Z of the tool change position."""
         return self.tool_change_z or DEFAULT_CHANGE_Z[self.metric]
 
     @property
     def mm(self) -> float:
-        """Size of one unit of the program in mm."""
+        """Return the size of one length unit of the program in mm."""
         return 1.0 if self.metric else 25.4
 
     def tool(self, number: float) -> ToolShape | None:
-        """Return the shape of a tool, or None if its tool data has no shape."""
+        """Return the shape data of a tool, or None if the tool has no shape data."""
         return self.shop.tools.get(int(number))

@@ -1,7 +1,7 @@
-"""Shapes in the text of a program: found by their comments, compared, written and replaced.
+"""Shapes in the text of a program, which are found by their comments, compared, written and replaced.
 
 A shape is intact if its fields produce the lines in the text. If a value was changed by hand and one field
-explains the change, the field adopts it. Otherwise the shape is reported as changed.
+explains the change, the field adopts the new value. Otherwise the shape is reported as changed.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ _MOST_CHANGES = 4  # largest number of hand-changed values that are adopted
 
 @dataclass(frozen=True, slots=True)
 class ShapePiece:
-    """A shape in a text: ``first_line`` is its first line, counted from 0, and ``line_count`` the number of
-    lines.
+    """A shape in the text of a program.
 
-    ``adopted_fields`` are the fields that were adopted from the lines. ``edited_line`` is the line, counted
-    from 0, that differs from the lines of the fields, or -1.
+    ``first_line`` is the number of its first line, counted from 0, and ``line_count`` is the number of its
+    lines. ``adopted_fields`` are the fields whose values were adopted from the lines. ``edited_line`` is
+    the line, counted from 0, that differs from the lines that the fields produce, or -1.
     """
 
     first_line: int
@@ -67,14 +67,14 @@ class ShapePiece:
 
     @property
     def next_line(self) -> int:
-        """Number of the first line after the shape."""
+        """Return the number of the first line after the shape."""
         return self.first_line + self.line_count
 
 
 def strip_line(line: str, dialect: Dialect = Dialect.OMNITURN) -> str:
-    """Return a line without comment and spaces, in capitals; a line of plane switching remains complete.
+    """Return a line in capitals, without comment and spaces.
 
-    In SINUMERIK, the block number is also removed.
+    A line that switches planes remains complete. In SINUMERIK, the block number is also removed.
     """
     bare = line.strip()
     if dialect is Dialect.SINUMERIK:
@@ -90,7 +90,7 @@ def ends_program(line: str, dialect: Dialect) -> bool:
 
 
 def starts_subroutine(line: str) -> bool:
-    """Return whether a line starts a subroutine that a form has written or can write into."""
+    """Return whether a line starts a subroutine that a form has written or into which it can write."""
     return line.lstrip().upper().startswith(_BEGINS)
 
 
@@ -108,9 +108,9 @@ def has_units(lines: Sequence[str], dialect: Dialect) -> bool:
 def find_settings(
     lines: Sequence[str], line_number: int, shop: ShopData, initial_settings: ProgramSettings | None = None
 ) -> ProgramSettings:
-    """Return the settings in force before line ``at``, counted from 0.
+    """Return the settings that are active before line ``line_number``, counted from 0.
 
-    ``initial_settings`` has the settings for a program that does not specify any.
+    ``initial_settings`` contains the settings for a program that does not specify any.
     """
     now = replace(initial_settings or ProgramSettings(), shop=shop)
     for line in lines[:line_number]:
@@ -152,7 +152,9 @@ def _with_head(values: FieldValues, now: ProgramSettings) -> ProgramSettings:
 
 
 def _parse_comment(line: str, dialect: Dialect) -> tuple[Shape, dict[str, FieldValue]] | None:
-    """Return the shape whose comment a line has, with its fields; None without such a comment."""
+    """Return the shape and the fields from the comment of a line, or None if the line has no
+    shape comment.
+    """
     found = _COMMENT[dialect].search(line)
     if found is None or line.lstrip().startswith(("(", ";")):
         return None
@@ -174,10 +176,10 @@ def _parse_comment(line: str, dialect: Dialect) -> tuple[Shape, dict[str, FieldV
 def find_damaged_comment(
     lines: Sequence[str], line_number: int, dialect: Dialect
 ) -> tuple[int, Shape] | None:
-    """Return the line, counted from 0, and the shape of a damaged comment above line ``at``; or None.
+    """Return the line and the shape of a damaged comment at or above line ``line_number``, or None.
 
-    Such a comment begins with the name of a shape and still has two of its fields, because programmers also
-    use names such as DRILL in comments.
+    Lines are counted from 0. A damaged comment begins with the name of a shape and still has two of its
+    fields. The fields are required because programmers also use names such as DRILL in comments.
     """
     for line in range(min(line_number, len(lines) - 1), -1, -1):
         found = _COMMENT[dialect].search(lines[line])
@@ -242,7 +244,7 @@ def _piece(
 def _compare_with_text(
     filled_shape: FilledShape, there: list[str], at: int, settings: ProgramSettings
 ) -> ShapePiece:
-    """Return the piece for these fields, compared with the lines in the text."""
+    """Return the piece for these fields, after comparing its lines with the lines in the text."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted and there[: len(wanted)] == wanted:
         return ShapePiece(at, len(wanted), filled_shape, settings)
@@ -258,7 +260,7 @@ def _compare_with_text(
 
 
 def make_code_lines(shape: FilledShape, settings: ProgramSettings) -> list[str]:
-    """Return the code lines of a shape without comments; [] if its fields are incomplete or invalid."""
+    """Return the code lines of a shape without comments, or [] if its fields are incomplete or invalid."""
     if shape.find_errors(settings) and _incomplete(shape):
         return []
     try:
@@ -274,7 +276,10 @@ def _incomplete(one: FilledShape) -> bool:
 def _contours(
     shape: Shape, there: list[str], settings: ProgramSettings
 ) -> Iterator[tuple[ContourPoint, ...]]:
-    """Yield the point tables that these lines may contain; one empty table for a shape without a contour."""
+    """Yield the point tables that these lines may contain.
+
+    For a shape without a contour, one empty table is yielded.
+    """
     if not shape.contour:
         yield ()
         return
@@ -334,7 +339,7 @@ def _bare_contours(there: list[str], settings: ProgramSettings) -> Iterator[tupl
 def _adopt_fields(
     filled_shape: FilledShape, there: list[str], settings: ProgramSettings, left: int
 ) -> FilledShape | None:
-    """Return the shape with fields that match the lines; None if no such fields exist."""
+    """Return the shape with field values that match the lines, or None if no such values exist."""
     wanted = make_code_lines(filled_shape, settings)
     if wanted == there:
         return filled_shape
@@ -366,7 +371,10 @@ def _agreeing(wanted: list[str], there: list[str]) -> int:
 
 
 def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | None:
-    """Return the first number that differs, before and after; None if other parts differ too."""
+    """Return the first number that differs, as (before, after).
+
+    The result is None if other parts of the lines differ too.
+    """
     if len(wanted) != len(there):
         return None
     for a, b in zip(wanted, there, strict=True):
@@ -380,7 +388,10 @@ def _first_change(wanted: list[str], there: list[str]) -> tuple[float, float] | 
 
 
 def _explaining(filled_shape: FilledShape, before: float, after: float) -> Iterator[tuple[str, float]]:
-    """Yield the fields whose value is in the changed word: unchanged, negated, doubled or halved."""
+    """Yield the fields whose value is in the changed word, with the new value of the field.
+
+    The value in the word may be unchanged, negated, doubled or halved.
+    """
     for word, value in filled_shape.values.items():
         if isinstance(value, str):
             continue
@@ -399,10 +410,11 @@ def insert_shape(
     settings: ProgramSettings,
     replaced_piece: ShapePiece | None = None,
 ) -> tuple[list[str], int]:
-    """Return the text with a shape inserted before line ``at``, or replacing a piece, and the next line.
+    """Return the text with a shape inserted before line ``line_number``, and the number of the next line.
 
-    A program without an end gets M30. A bar feed loop gets its subroutine at the end of the program, and the
-    next line is then inside the subroutine.
+    If ``replaced_piece`` is not None, the shape replaces this piece. M30 is added to a program without an
+    end. The subroutine of a bar feed loop is added at the end of the program, and the next line is then
+    inside the subroutine.
     """
     text = list(lines)
     while text and not text[-1].strip():
@@ -450,9 +462,9 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
 def rewrite_pieces(
     lines: Sequence[str], shop: ShopData, old_settings: Sequence[ShapePiece]
 ) -> tuple[list[str], int]:
-    """Rewrite the pieces after a changed head; return the text and the number of pieces left unchanged.
+    """Rewrite the pieces after a changed head; return the text and the number of unchanged pieces.
 
-    Pieces that were changed by hand are left unchanged.
+    Pieces that were changed by hand remain unchanged.
     """
     text, stay = list(lines), 0
     shift = 0

@@ -1,4 +1,4 @@
-"""Table of the shapes in the order of the menu, each with its key."""
+"""Tables of the shapes and calculators in the order of the menu, each with its key."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ CALCULATORS_BY_DIALECT = {Dialect.OMNITURN: CALCULATORS_BY_KEY, Dialect.SINUMERI
 
 
 def _labelled(shape: Shape) -> Shape:
-    """Return the shape with a label field, for a contour that CYCLE95 finds by its labels."""
+    """Return the shape with an additional label field, for a contour that CYCLE95 finds by its labels."""
     return replace(shape, fields=(*shape.fields, LABEL_FIELD))
 
 
@@ -116,7 +116,7 @@ _BY_NAME = {
 
 
 def find_shape(words: list[str], dialect: Dialect = Dialect.OMNITURN) -> tuple[Shape, list[str]] | None:
-    """Return the shape whose name begins these words, and the remaining words; or None."""
+    """Return the shape whose name is at the beginning of these words, and the remaining words, or None."""
     for count in (2, 1):
         found = _BY_NAME[dialect].get(" ".join(words[:count]))
         if found is not None and len(words) >= count:

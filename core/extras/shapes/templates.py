@@ -1,4 +1,4 @@
-"""Program heads and templates, and calculators for SINUMERIK: start, rough, thread and bar feed."""
+"""Program heads and templates (start, roughing, threading and bar feed), and calculators for SINUMERIK."""
 
 from __future__ import annotations
 
@@ -276,7 +276,7 @@ def _speed(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
-    """Return the notes with the feed per minute in the syntax of SINUMERIK."""
+    """Return the notes of the speed calculator, with the feed per minute in the syntax of SINUMERIK."""
     _, *others = SPEED_CALCULATOR.says(filled_shape, settings)
     return Message(
         "equivalent feed per minute: G94 F{number}",
@@ -285,7 +285,7 @@ def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) ->
 
 
 def _run_up(filled_shape: FilledShape, settings: ProgramSettings) -> FilledShape:
-    """Return the shape with a run-up of three pitches, in which the axis reaches the lead."""
+    """Return the shape with a run-up of three pitches, within which the axis reaches the lead."""
     return replace(
         filled_shape,
         values={**filled_shape.values, "RUNUP": 3.0 * filled_shape.get_number("PITCH") + settings.near},
@@ -297,7 +297,7 @@ def _passes(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _make_pass_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
-    """Return the notes without the start position.
+    """Return the notes of the thread calculator without the start position.
 
     The cycle moves to its first pass automatically.
     """

@@ -1,6 +1,7 @@
 """Sharing of programs in a PostgreSQL database, whose rows are added in one transaction and never changed.
 
-Connection strings are read as by libpq, shown without secrets, and use TLS to other computers.
+Connection strings are interpreted as by libpq and shown without secrets. Connections to other computers use
+TLS.
 """
 
 from __future__ import annotations
@@ -45,7 +46,10 @@ _VERIFIED = {"verify-ca", "verify-full"}
 
 
 def parse_conninfo(connection_string: str) -> dict[str, str]:
-    """Return the parameters of a connection string. Raises SharingError, which does not quote them."""
+    """Return the parameters of a connection string.
+
+    Raises SharingError, whose message does not contain the parameters.
+    """
     if importlib.util.find_spec("psycopg") is None:
         raise SharingErrorCause.NO_PSYCOPG.make_error("")
     import psycopg  # noqa: PLC0415  optional, and only for those who share so
@@ -63,7 +67,10 @@ def parse_conninfo(connection_string: str) -> dict[str, str]:
 
 
 def get_display_parameters(values: Mapping[str, str]) -> str:
-    """Return the parameters that messages may show, and whether the server's certificate is not verified."""
+    """Return the parameters that messages may show.
+
+    A note is added if the server's certificate is not verified.
+    """
     named = " ".join(f"{key}={values[key]}" for key in _SHOWN if key in values)
     return (
         named
@@ -73,7 +80,7 @@ def get_display_parameters(values: Mapping[str, str]) -> str:
 
 
 def require_tls(values: Mapping[str, str]) -> dict[str, str]:
-    """Return the parameters with TLS verification for a server on another computer.
+    """Return the parameters, with TLS verification added for a server on another computer.
 
     Parameters or environment variables that specify TLS have priority.
     """
@@ -88,7 +95,7 @@ def require_tls(values: Mapping[str, str]) -> dict[str, str]:
 
 
 def is_server_local(values: Mapping[str, str]) -> bool:
-    """Return whether the server is on this computer according to the parameters."""
+    """Return whether, according to the parameters, the server is on this computer."""
     if "service" in values:
         return False
     hosts = values.get("hostaddr") or values.get("host") or os.environ.get("PGHOST", "")
@@ -146,10 +153,11 @@ _CODES: tuple[tuple[SharingErrorCause, tuple[str, ...]], ...] = (
 
 
 class SharedDatabase:
-    """A PostgreSQL database as a shared place.
+    """A PostgreSQL database in which machines share programs.
 
-    ``conninfo`` is a connection string of libpq, such as ``host=shop-pc dbname=shop user=lathe3``, or an
-    address. Each call opens and closes a connection, so a restart of the server affects at most one call.
+    ``conninfo`` is an address or a connection string of libpq, such as ``host=shop-pc dbname=shop
+    user=lathe3``. Each call opens and closes a connection, so a restart of the server affects at most one
+    call.
     """
 
     def __init__(self, conninfo: str) -> None:
@@ -187,7 +195,7 @@ class SharedDatabase:
         return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
 
     def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
-        """Add versions and this machine's state in one transaction.
+        """Add versions and the state of this machine in one transaction.
 
         The method returns when the data is on the server's disk.
         """
@@ -198,7 +206,7 @@ class SharedDatabase:
             connection.execute(_TELL, (state.machine_id, state.encode()))
 
     def read_text(self, version: SharedVersion) -> bytes:
-        """Return the text of a version from its row, checked against its checksum."""
+        """Return the text of a version from its row, after checking it against its checksum."""
         query = "SELECT substr(program_text, 1, %s) FROM turndesk.versions WHERE id = %s"
         with self._open_transaction() as connection:
             row = connection.execute(query, (MAX_PROGRAM_BYTES + 1, version.id)).fetchone()
@@ -227,7 +235,7 @@ class SharedDatabase:
 
     @contextmanager
     def _open_transaction(self, *, is_setup_required: bool = True) -> Iterator[psycopg.Connection]:
-        """Open a connection with one transaction; raise errors of the server as SharingError."""
+        """Open a connection with one transaction, and convert errors of the server to SharingError."""
         values: dict[str, Any] = require_tls(parse_conninfo(self._conninfo))
         import psycopg  # noqa: PLC0415  optional, and only for those who share so
 
@@ -252,5 +260,5 @@ class SharedDatabase:
 
 
 def _bare(line: str) -> str:
-    """Return only the cause from the message of a failed connection."""
+    """Return the cause from the message of a failed connection, without the rest of the message."""
     return line.rpartition(" failed: ")[2].removeprefix("FATAL:")

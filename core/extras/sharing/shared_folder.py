@@ -1,7 +1,8 @@
-"""Sharing of programs in a folder, with one file for each version and one for each machine.
+"""Sharing of programs in a folder, with one file for each version and one file for each machine.
 
 Files are added completely or not at all. Files on a network drive are not locked. Each machine writes only
-its own files and version files, whose contents do not depend on the machine that writes them.
+its own state file and version files. The contents of a version file do not depend on the machine that
+writes it.
 """
 
 from __future__ import annotations
@@ -46,7 +47,10 @@ _ENDING, _STATE, _WRITING = ".version", ".json", ".writing-"
 
 
 class SharedFolder:
-    """A folder that all machines can access. A version file has the record, a line end and the text."""
+    """A folder in which machines share programs.
+
+    A version file contains the record, a line end and the text.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.name = make_folder_label(folder)
@@ -55,11 +59,14 @@ class SharedFolder:
 
     @property
     def marker_path(self) -> Path:
-        """Path of the file that identifies a folder with shared programs."""
+        """Return the path of the file that identifies a folder with shared programs."""
         return self._folder / MARKER_FILE_NAME
 
     def set_up(self) -> None:
-        """Set up the folder, which must exist, so that a folder that is not mounted is never created."""
+        """Set up the folder, which must exist.
+
+        A missing folder is not created, because it may only be unmounted.
+        """
         with self._system():
             if not self.marker_path.exists():
                 os.stat(self._folder)
@@ -69,7 +76,7 @@ class SharedFolder:
             self._demand()
 
     def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
-        """Return the versions in the folder; only files of unknown versions are opened."""
+        """Return the versions in the folder. Only files of unknown versions are opened."""
         with self._system():
             self._demand()
             there, fresh, strays = set[str](), list[SharedVersion](), list[str]()
@@ -91,7 +98,10 @@ class SharedFolder:
             return Found(frozenset(there), tuple(fresh), desks, (*strays, *bad))
 
     def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
-        """Add version files and this machine's state; each file is synced before it gets its name."""
+        """Add version files and the state of this machine.
+
+        Each file is synced before it gets its final name.
+        """
         with self._system():
             self._demand()
             self._clear(state.machine_id)
@@ -104,7 +114,7 @@ class SharedFolder:
             _to_disk(self._folder / DESKS)
 
     def read_text(self, version: SharedVersion) -> bytes:
-        """Return the text of a version from its file, checked against its checksum."""
+        """Return the text of a version from its file, after checking it against its checksum."""
         path = self._folder / VERSIONS / f"{version.id}{_ENDING}"
         with self._system():
             self._demand()
@@ -141,7 +151,7 @@ class SharedFolder:
         draft.replace(path)
 
     def _clear(self, machine_id: str) -> None:
-        """Remove unfinished files of this machine that a power failure left."""
+        """Remove unfinished files of this machine that remained after a power failure."""
         for folder in (VERSIONS, DESKS):
             for path in (self._folder / folder).glob(f"{_WRITING}{machine_id}-*"):
                 path.unlink(missing_ok=True)
@@ -192,7 +202,7 @@ def _files(folder: Path) -> list[Path]:
 
 
 def _read_version_file(path: Path) -> SharedVersion | None:
-    """Return the version in a file; None if the file is incomplete or invalid."""
+    """Return the version in a file, or None if the file is incomplete or invalid."""
     try:
         record, _, text = read_input_bytes(path, MAX_VERSION_FILE_BYTES).partition(b"\n")
         version = decode_version(path.name.removesuffix(_ENDING), record)

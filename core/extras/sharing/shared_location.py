@@ -1,6 +1,6 @@
-"""Interface of a place where machines share programs, and the errors of sharing.
+"""Interface of a location where machines share programs, and the errors of sharing.
 
-Versions are added to a place and never changed. Each error has one cause and a remedy.
+Versions are added to a location and never changed. Each error has one cause and a remedy.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from core.message import CodedError, Message
 
 
 class PublishedVersion(NamedTuple):
-    """A version with its text."""
+    """A program version together with its text."""
 
     version: SharedVersion
     text: bytes
@@ -26,10 +26,10 @@ class PublishedVersion(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Contents of a shared place: ``stored_ids`` are the ids of all versions, and ``unknown_versions`` the
-    unknown versions.
+    """Contents of a shared location.
 
-    ``foreign_items`` are the names of other items, such as damaged or incomplete files.
+    ``stored_ids`` are the ids of all versions, and ``unknown_versions`` are the versions that the caller
+    did not know. ``foreign_items`` are the names of other items, such as damaged or incomplete files.
     """
 
     stored_ids: frozenset[str]
@@ -39,43 +39,45 @@ class Found:
 
 
 class SharedLocation(Protocol):
-    """A place where machines share programs.
+    """A location where machines share programs.
 
-    Calls may take long, so they are made only in a worker thread. They raise SharingError.
+    Calls may take a long time, so they are made only in a worker thread. They raise SharingError.
     """
 
     name: str  # the name in messages
 
     def set_up(self) -> None:
-        """Set up the place. Parts that are already set up remain unchanged."""
+        """Set up the location. Parts that are already set up remain unchanged."""
         ...
 
     def read_contents(self, known_versions: Mapping[str, SharedVersion]) -> Found:
-        """Return the contents of the place, with the records of versions that are not ``known_versions`` (by
-        id).
+        """Return the contents of the location.
+
+        The result contains the records of the versions that are not in ``known_versions``. The keys of
+        ``known_versions`` are ids.
         """
         ...
 
     def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
         """Add versions and the state of this machine, and return when they are stored permanently.
 
-        Versions that already exist are left unchanged. After a failure some versions may have been added,
-        each completely. The same call then adds the rest.
+        Versions that already exist remain unchanged. After a failure some versions may have been added
+        completely. The same call then adds the other versions.
         """
         ...
 
     def read_text(self, version: SharedVersion) -> bytes:
-        """Return the text of a version, checked against its checksum."""
+        """Return the text of a version, after checking it against its checksum."""
         ...
 
 
 def make_folder_label(folder: object) -> str:
-    """Return the name of a folder for messages."""
+    """Return the label of a folder for messages."""
     return Message("the folder {folder}", folder=folder)
 
 
 def make_database_label(address: str) -> str:
-    """Return the name of a database for messages; ``address`` must not contain a password."""
+    """Return the label of a database for messages; ``address`` must not contain a password."""
     return Message("the database {address}", address=address)
 
 
@@ -85,7 +87,7 @@ _NOT_THERE = frozenset({errno.ENOENT, errno.ENOTDIR})
 
 
 class SharingErrorCause(Enum):
-    """Cause of a sharing error; the value is the template of the message."""
+    """Cause of a sharing error. The value of each member is the template of its message."""
 
     AWAY = (
         "{place} does not respond ({why}); this control continues to work, and will "
@@ -131,11 +133,11 @@ class SharingErrorCause(Enum):
 
     @property
     def error_code(self) -> str:
-        """Code of the error: the name in kebab case, such as ``no-right``."""
+        """Return the code of the error, which is the name in kebab case, such as ``no-right``."""
         return "disk-full" if self is SharingErrorCause.FULL else self.name.lower().replace("_", "-")
 
     def make_error(self, location: str, reason: object = "") -> SharingError:
-        """Return the SharingError with this cause, with the reason ``reason`` on one line."""
+        """Return the SharingError with this cause. The reason is shown on one line."""
         made = SharingError(
             Message(self.value, place=location, why=" ".join(str(reason).split())), self.error_code
         )
@@ -144,13 +146,13 @@ class SharingErrorCause(Enum):
 
 
 class SharingError(CodedError):
-    """Sharing cannot do a requested operation. The shared contents are unchanged."""
+    """An error raised if sharing cannot perform a requested operation. The shared contents are unchanged."""
 
     cause: SharingErrorCause
 
 
 def make_system_error(location: str, error: OSError) -> SharingError:
-    """Return the SharingError for an error of the system."""
+    """Return the SharingError for an error of the operating system."""
     why = error.strerror or str(error)
     if error.errno in _FULL:
         return SharingErrorCause.FULL.make_error(location)

@@ -1,4 +1,4 @@
-"""Shared program versions as this machine stores them: its own versions and those of other machines."""
+"""Shared program versions that are stored on this machine: its own versions and those of other machines."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from typing import NamedTuple
 
 
 class SharedVersion(NamedTuple):
-    """One version of a program: its machine, the versions it was made from, and the SHA-256 of its text.
+    """One version of a program.
 
-    ``id`` is the SHA-256 of its record, so different versions never have the same id. ``saved`` is the time
-    of the machine's clock (UTC); it is shown and never compared.
+    The version has its machine, the versions from which it was made, and the SHA-256 of its text. ``id`` is
+    the SHA-256 of the record, so different versions never have the same id. ``saved`` is the time of the
+    machine's clock (UTC), which is shown but never compared.
     """
 
     id: str
@@ -27,7 +28,7 @@ class SharedVersion(NamedTuple):
 
     @property
     def program_key(self) -> str:
-        """Key of its program. Names that differ only in case belong to the same program."""
+        """Return the key of the program. Names that differ only in case belong to the same program."""
         return make_program_key(self.program)
 
 
@@ -41,8 +42,9 @@ def make_program_key(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class ProgramVersions:
-    """All known versions of one program. ``local_version_id`` is the id of the version on this machine, or
-    empty.
+    """All known versions of one program.
+
+    ``local_version_id`` is the id of the version on this machine, or empty.
     """
 
     versions: Mapping[str, SharedVersion] = field(default_factory=dict)
@@ -50,25 +52,25 @@ class ProgramVersions:
 
     @property
     def newest_versions(self) -> tuple[SharedVersion, ...]:
-        """Versions that no other version follows.
+        """Return the versions that no other version follows.
 
-        There is one, unless two machines have changed the same version.
+        There is one such version, unless two machines have changed the same version.
         """
         followed = {each for version in self.versions.values() for each in version.follows}
         return tuple(version for name, version in sorted(self.versions.items()) if name not in followed)
 
     @property
     def newest_remote_versions(self) -> tuple[SharedVersion, ...]:
-        """Newest versions that this machine does not have."""
+        """Return the newest versions that this machine does not have."""
         return tuple(version for version in self.newest_versions if version.id != self.local_version_id)
 
     @property
     def state(self) -> str:
-        """Relation to other machines.
+        """Return how the program on this machine relates to other machines.
 
-        The value is ``same`` if this machine has the newest version, ``is_newer`` if another machine has a
-        newer version, ``both`` if both have changed the program, or ``new`` if this machine does not have the
-        program.
+        The value is ``same`` if this machine has the newest version, ``newer`` if another machine has a
+        newer version, ``both`` if both have changed the program, or ``new`` if this machine does not have
+        the program.
         """
         if not self.newest_remote_versions:
             return "same"
@@ -77,7 +79,7 @@ class ProgramVersions:
         return "newer" if all(map(self.is_newer, self.newest_remote_versions)) else "both"
 
     def is_derived_from(self, version: str, older: str) -> bool:
-        """Return whether ``version`` is ``older`` or was made from it directly or indirectly."""
+        """Return whether ``version`` is the same as ``older``, or was made from it directly or indirectly."""
         waiting, seen = [version], set[str]()
         while waiting:
             at = waiting.pop()
@@ -91,13 +93,13 @@ class ProgramVersions:
     def is_newer(self, version: SharedVersion) -> bool:
         """Return whether a version was made from the version on this machine.
 
-        Otherwise both machines changed the program, or the programs only have the same name. Without a
-        version on this machine the result is True.
+        If the result is False, both machines have changed the program, or two programs only have the same
+        name. If this machine has no version, the result is True.
         """
         return not self.local_version_id or self.is_derived_from(version.id, self.local_version_id)
 
     def find_newer_by_text(self, text: str) -> SharedVersion | None:
-        """Return a version with this text (SHA-256) that is newer than the one on this machine, or None.
+        """Return a version with this text (SHA-256) that is newer than the local version, or None.
 
         A version that no other version follows is preferred.
         """
@@ -112,7 +114,10 @@ class ProgramVersions:
 def read_shared_programs(
     connection: sqlite3.Connection, more_versions: Iterable[SharedVersion] = ()
 ) -> dict[str, ProgramVersions]:
-    """Return the versions of every shared program by key; ``more_versions`` versions are treated as known."""
+    """Return the versions of every shared program by program key.
+
+    The versions in ``more_versions`` are treated as known.
+    """
     here = dict(connection.execute("SELECT program, version FROM shared_here").fetchall())
     found: dict[str, dict[str, SharedVersion]] = {}
     for version in (*read_all_versions(connection), *more_versions):
@@ -127,7 +132,7 @@ def read_all_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ..
 
 
 def read_unpublished_versions(connection: sqlite3.Connection) -> tuple[SharedVersion, ...]:
-    """Return the versions that the shared place does not have and whose text is stored here."""
+    """Return the versions that the shared location does not have and whose text is stored on this machine."""
     rows = connection.execute(
         f"SELECT {_COLUMNS} FROM shared_versions WHERE published = 0 AND EXISTS"
         " (SELECT 1 FROM program_versions WHERE sha256 = shared_versions.text) ORDER BY rowid"
@@ -136,7 +141,7 @@ def read_unpublished_versions(connection: sqlite3.Connection) -> tuple[SharedVer
 
 
 def read_version_text(connection: sqlite3.Connection, digest: str) -> bytes | None:
-    """Return the stored text with this SHA-256; None if it is missing or damaged."""
+    """Return the stored text with this SHA-256, or None if it is missing or damaged."""
     for (text,) in connection.execute("SELECT text FROM program_versions WHERE sha256 = ?", (digest,)):
         if sha256(text).hexdigest() == digest:
             return bytes(text)
@@ -144,7 +149,7 @@ def read_version_text(connection: sqlite3.Connection, digest: str) -> bytes | No
 
 
 def add_versions(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
-    """Store versions as known. Versions that are already known remain unchanged."""
+    """Store versions as known versions. Versions that are already known remain unchanged."""
     connection.executemany(
         f"INSERT INTO shared_versions ({_COLUMNS}) VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING",
         [(*each[:4], " ".join(each.follows), *each[5:]) for each in versions],
@@ -152,7 +157,7 @@ def add_versions(connection: sqlite3.Connection, versions: Iterable[SharedVersio
 
 
 def mark_published(connection: sqlite3.Connection, versions: Iterable[SharedVersion]) -> None:
-    """Mark versions as stored in the shared place."""
+    """Mark versions as stored in the shared location."""
     connection.executemany(
         "UPDATE shared_versions SET published = 1 WHERE id = ?", [(each.id,) for each in versions]
     )
@@ -164,7 +169,10 @@ def delete_unpublished(connection: sqlite3.Connection, version: SharedVersion) -
 
 
 def set_published_versions(connection: sqlite3.Connection, version_ids: Collection[str]) -> None:
-    """Mark exactly these versions as published, so that versions missing there are published again."""
+    """Mark exactly these versions as published.
+
+    Versions that are missing in the shared location are then published again.
+    """
     rows = connection.execute("SELECT id, published FROM shared_versions").fetchall()
     changed = [
         (int(name in version_ids), name) for name, before in rows if (name in version_ids) != bool(before)
@@ -173,7 +181,10 @@ def set_published_versions(connection: sqlite3.Connection, version_ids: Collecti
 
 
 def set_local_version(connection: sqlite3.Connection, key: str, version: str) -> None:
-    """Store which version of a program this machine has in its folder; empty means that it has none."""
+    """Store the version of a program that is in the folder of this machine.
+
+    An empty id means that there is no version.
+    """
     if not version:
         connection.execute("DELETE FROM shared_here WHERE program = ?", (key,))
         return

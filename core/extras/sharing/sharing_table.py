@@ -1,4 +1,4 @@
-"""Table [sharing] of the machine file: the place where this machine shares programs with others."""
+"""Table [sharing] of the machine file, which specifies where this machine shares programs with others."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class SharingTable:
     """Settings for sharing programs.
 
     Either ``folder`` or ``postgresql`` (a connection string of libpq) is set. ``desk`` is the name of this
-    machine for other machines; empty means the machine's own name. ``look`` is the time between two checks
-    for new versions, in seconds.
+    machine that other machines show; if it is empty, the machine's own name is used. ``look`` is the time
+    between two checks for new versions, in seconds.
     """
 
     folder: str = declare_key(default="", meaning="Shared folder, mounted on every computer.")

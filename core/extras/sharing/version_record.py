@@ -1,4 +1,4 @@
-"""Encoding and checking of the records of shared versions and of machine states."""
+"""Functions that encode and check the records of shared versions and of machine states."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ _HEX = frozenset("0123456789abcdef")
 
 
 class RecordError(CodedError):
-    """A record is invalid: not written by TurnDesk, incomplete or damaged."""
+    """An error raised if a record is invalid: not written by TurnDesk, incomplete or damaged."""
 
 
 def make_version(
     program: str, text: bytes, parent_ids: tuple[str, ...], machine: str, saved: str, why: str
 ) -> SharedVersion:
-    """Return the version for a text. Its id is the SHA-256 of the other values."""
+    """Return the version for a text. The id of the version is the SHA-256 of the other values."""
     bare = SharedVersion("", program, sha256(text).hexdigest(), len(text), parent_ids, machine, saved, why)
     return bare._replace(id=sha256(encode_version(bare)).hexdigest())
 
 
 def encode_version(version: SharedVersion) -> bytes:
-    """Return the record of a version as bytes, always identical for the same version."""
+    """Return the record of a version as bytes, which are always identical for the same version."""
     values = version._asdict()
     del values["id"]
     return _plain({"format": FORMAT_VERSION, **values})
@@ -65,7 +65,7 @@ def decode_version(name: str, record: bytes) -> SharedVersion:
 
 
 def verify_text(version: SharedVersion, text: bytes) -> bytes:
-    """Return the text if it matches the version. Raises RecordError if it does not."""
+    """Return the text if it matches the version; otherwise raise RecordError."""
     if sha256(text).hexdigest() != version.text:
         raise RecordError(
             Message(

@@ -1,4 +1,4 @@
-"""Names of the columns in CSV tool tables, and the field that each name means."""
+"""Column names of CSV tool tables, and the field to which each name refers."""
 
 from __future__ import annotations
 
@@ -43,9 +43,10 @@ _SURE_RADIUS = frozenset({"xradius", "radiusx"})
 
 
 class Column(NamedTuple):
-    """A column of a CSV file: its place (from 0) and heading, its field, and its unit if the heading has one.
+    """A column of a CSV file, with its index (from 0), heading and field.
 
-    ``is_radius`` is True if the heading of X states that X is a radius.
+    ``unit`` is the unit in the heading, or empty. ``is_radius`` is True if the heading of X states that X
+    is a radius.
     """
 
     place: int
@@ -56,7 +57,7 @@ class Column(NamedTuple):
 
 
 def column_of(place: int, heading: str, field: str = "") -> Column | None:
-    """Return the column with this heading, or None if its name is unknown and ``field`` is empty.
+    """Return the column with this heading, or None if the heading is unknown and ``field`` is empty.
 
     ``field`` is the field that the user assigned to the column.
     """

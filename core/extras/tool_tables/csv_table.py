@@ -1,6 +1,7 @@
-"""Tool tables as CSV, such as those of Mach or a spreadsheet: a line of headings, then one tool per line.
+"""Tool tables as CSV files, such as those of Mach or a spreadsheet.
 
-Fields are separated by commas, semicolons or tabs. A number may have a decimal comma.
+A file has a line of headings, followed by one tool per line. Fields are separated by commas, semicolons or
+tabs. A number may have a decimal comma.
 """
 
 from __future__ import annotations
@@ -56,7 +57,7 @@ def read(table: TableReader, text: str) -> None:
 
 
 def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Column, ...]:
-    """Return the columns with a known field. Adds a mistake for each heading that is wrong."""
+    """Return the columns whose fields are known, and add a mistake for each wrong heading."""
     place = Message("line {line}", line=line)
     assigned = _assigned(table, place, headings)
     found = [
@@ -86,7 +87,7 @@ def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Co
 
 
 def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[int, str]:
-    """Return the fields that --map assigns, by column place."""
+    """Return the fields that the option --map assigns, by column index."""
     names = [heading.strip().lower() for heading in headings]
     found: dict[int, str] = {}
     for field, column in table.options.columns.items():
@@ -139,7 +140,7 @@ def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Itera
 
 
 def _convert_diameters(table: TableReader, values: dict[str, FieldValue]) -> None:
-    """Replace diameters of X and of the nose with radii."""
+    """Convert the diameters of X and of the nose to radii."""
     if table.options.x == "diameter" and X_DIAMETER not in values and "x" in values:
         values[X_DIAMETER] = values.pop("x")
     for diameter, radius in ((X_DIAMETER, "x"), (NOSE_DIAMETER, "nose_radius")):
@@ -148,7 +149,10 @@ def _convert_diameters(table: TableReader, values: dict[str, FieldValue]) -> Non
 
 
 def _value(table: TableReader, place: str, column: Column, cell: str) -> FieldValue | None:
-    """Return the value of a cell, lengths in mm. None, with a mistake added, if it is invalid."""
+    """Return the value of a cell, with lengths in mm.
+
+    If the value is invalid, a mistake is added and the result is None.
+    """
     where = Message("{place}, column {column}", place=place, column=column.heading)
     field = _field(column.field)
     if field.field_type is FieldType.TEXT:
@@ -176,7 +180,7 @@ def _field(name: str) -> RowField:
 
 
 def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | None:
-    """Return a text, or one of the field's choices."""
+    """Return the text of a cell or, if the field has choices, the matching choice."""
     if not field.choices:
         return cell
     word = cell.lower().replace(" ", "-")
@@ -192,7 +196,7 @@ def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | N
 
 
 def written(tools: Iterable[ToolEntry], unit: str) -> str:
-    """Return a CSV table with these tools, lengths in ``unit``. The headings contain the unit."""
+    """Return a CSV table with these tools. Lengths are in ``unit``, which the headings contain."""
     rows = list(tools)
     names = [name for name in TABLE_FIELDS if any({**t.offset, **t.shape}.get(name) for t in rows)]
     out = io.StringIO()
@@ -221,7 +225,7 @@ def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str
 
 
 def _harmless(value: FieldValue) -> str:
-    """Return a text that a spreadsheet does not calculate as a formula."""
+    """Return the value as a text that a spreadsheet does not evaluate as a formula."""
     text = str(value)
     return f" {text}" if text[:1] in {"=", "+", "-", "@"} else text
 

@@ -1,4 +1,7 @@
-"""ISO codes and kinds of tools in the remarks of tool tables, such as ``CNMG 120408 MCLNR 2020K12 rough``."""
+"""Recognition of ISO codes and tool kinds in the remarks of tool tables.
+
+An example is ``CNMG 120408 MCLNR 2020K12 rough``.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +32,7 @@ _KINDS = tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), kind) for words,
 
 
 def shape_words(text: str) -> dict[str, str]:
-    """Return the fields of a tool shape that the codes and words of a text specify, by name."""
+    """Return the fields of a tool shape, by name, that the codes and words of a text specify."""
     words = text.upper().replace(",", " ").replace(";", " ").split()
     candidates = [*(f"{one}{two}" for one, two in pairwise(words)), *words]
     insert = next(_inserts(candidates), "")
@@ -42,7 +45,7 @@ def shape_words(text: str) -> dict[str, str]:
 
 
 def kind_word(text: str) -> str:
-    """Return the kind of tool that the words of a text name, or an empty text."""
+    """Return the kind of tool that the words of a text specify, or an empty text."""
     return next((kind for words, kind in _KINDS if words.search(text)), "")
 
 
@@ -67,13 +70,13 @@ def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
 
 
 def _kind_of(insert: str, holder: str) -> str:
-    """Return the kind that the codes imply: a round bar bores."""
+    """Return the kind of tool that the codes imply, which is boring for a round bar."""
     if holder and _BAR.match(holder):
         return "boring"
     return "turning" if insert or holder else ""
 
 
 def hand_of(letter: str) -> str:
-    """Return the hand for a letter R, L or N, or an empty text."""
+    """Return the hand of the tool for the letter R, L or N, or an empty text."""
     hands: Mapping[str, str] = _HANDS
     return hands.get(letter.strip().upper(), "")

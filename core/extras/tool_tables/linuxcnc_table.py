@@ -1,7 +1,7 @@
-"""Tool table of LinuxCNC: one tool per line, ``T3 P3 X1.5 Z-2 D.0315 I85 J25 Q2 ;CNMG431 rough``.
+"""Tool table of LinuxCNC, with one tool per line: ``T3 P3 X1.5 Z-2 D.0315 I85 J25 Q2 ;CNMG431 rough``.
 
-X is a radius. D is the nose diameter of a turning tool. The orientation Q is the position of the nose center
-relative to the control point, with X reversed compared with the tip quadrant: Q2 is quadrant 3.
+X is a radius. D is the nose diameter of a turning tool. The orientation Q is the position of the nose
+center relative to the control point, with X reversed compared with the tip quadrant: Q2 is quadrant 3.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
 
 
 def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
-    """Return the numbers of a line by letter. Adds mistakes with their column."""
+    """Return the numbers of a line by letter, and add mistakes with their columns."""
     found: dict[str, float] = {}
     for match in _WORD.finditer(line):
         place = Message("line {line}, column {column}", line=count, column=match.start() + 1)
@@ -84,7 +84,7 @@ def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
 
 
 def written(tools: Iterable[ToolEntry], unit: str) -> str:
-    """Return the table with these tools, in ``unit``."""
+    """Return the table with these tools, with lengths in ``unit``."""
     return "".join(f"{line}\n" for line in _lines(tools, MM_PER_UNIT[unit]))
 
 
@@ -104,7 +104,10 @@ def _lines(tools: Iterable[ToolEntry], factor: float) -> Iterator[str]:
 
 
 def diameter_of(tool: ToolEntry) -> float:
-    """Return the diameter of a rotating tool, or else twice the nose radius, in mm; 0 if not specified."""
+    """Return the diameter of a rotating tool, or twice the nose radius of another tool, in mm.
+
+    The result is 0 if the diameter is not specified.
+    """
     from core.extras.tool_tables.iso_words import ROUND_KINDS  # noqa: PLC0415
 
     if tool.shape.get("kind") in ROUND_KINDS:
@@ -113,7 +116,7 @@ def diameter_of(tool: ToolEntry) -> float:
 
 
 def remark_of(tool: ToolEntry) -> str:
-    """Return the remark with the kind and the codes that it does not contain yet."""
+    """Return the remark of a tool, with its kind and codes added unless the remark already contains them."""
     words = [str(tool.offset.get("remark", ""))]
     for name in ("insert", "holder", "kind"):
         value = str(tool.shape.get(name, ""))

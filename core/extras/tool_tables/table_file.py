@@ -1,4 +1,4 @@
-"""Reading of tool tables: the formats by name and file name, and limits for hostile files."""
+"""Reader of tool tables, with the formats by name and file suffix, and limits for malicious files."""
 
 from __future__ import annotations
 
@@ -17,7 +17,9 @@ _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
 
 
 class Format(NamedTuple):
-    """A format of tool tables: its name for users, its suffixes, and the function that reads its text."""
+    """A format of tool tables: its name for users, its file suffixes, and the function that
+    reads its text.
+    """
 
     title: str
     suffixes: tuple[str, ...]
@@ -47,7 +49,7 @@ def format_of(name: str) -> str:
 
 
 def read_table(path: Path, word: str, options: Reading) -> ToolTable:
-    """Return the tools of a file in the format ``word``. Raises ToolTableError."""
+    """Return the tools of a file in the format that ``word`` names. Raises ToolTableError."""
     table = TableReader(path.name, options)
     FORMATS[word].read(table, _text(path.name, _bytes(path), word))
     return table.table()

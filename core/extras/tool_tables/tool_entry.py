@@ -1,7 +1,7 @@
-"""Tools read from a table of another program, and the collection of its tools and mistakes.
+"""Tools read from a table of another program, and a reader that collects the tools and the mistakes.
 
-Lengths are in mm with X as a radius, and angles in degrees. Values use the field names of the offset tables.
-All mistakes of a file are reported together in one error.
+Lengths are in mm with X as a radius, and angles are in degrees. Values use the field names of the offset
+tables. All mistakes of a file are reported together in one error.
 """
 
 from __future__ import annotations
@@ -43,15 +43,18 @@ _SAME_RADIUS = 0.05  # mm, more than the rounding of an inch radius to tenths of
 
 
 class ToolTableError(CodedError):
-    """A table cannot be read. The message lists all mistakes with their places, and how to correct them."""
+    """An error raised if a table cannot be read.
+
+    The message lists all mistakes with their positions, and how to correct them.
+    """
 
 
 class Reading(NamedTuple):
-    """Options for reading a table, where the file itself does not specify them.
+    """Options for reading a table, for values that the file itself does not specify.
 
-    ``unit`` is a key of ``MM_PER_UNIT``, and ``x`` is "radius" or "diameter". ``columns`` are the columns of
-    a CSV file by field. ``number`` is the tool number of a file that contains one tool without a number. Only
-    the tools in ``only`` are read, or all if it is empty.
+    ``unit`` is a key of ``MM_PER_UNIT``, and ``x`` is "radius" or "diameter". ``columns`` contains the
+    column names of a CSV file by field. ``number`` is the tool number for a file that contains one tool
+    without a number. Only the tools in ``only`` are read, or all tools if ``only`` is empty.
     """
 
     unit: str = ""
@@ -63,7 +66,7 @@ class Reading(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ToolEntry:
-    """One tool of a table, with its place in the file and notes about values that are not imported."""
+    """One tool of a table, with its position in the file and notes about values that are not imported."""
 
     number: int
     place: str
@@ -81,7 +84,7 @@ class ToolTable(NamedTuple):
 
 @dataclass(slots=True)
 class TableReader:
-    """Collects the tools and the mistakes of the file ``name``."""
+    """Collector of the tools and the mistakes of the file ``name``."""
 
     name: str
     options: Reading
@@ -90,11 +93,14 @@ class TableReader:
     mistakes: list[CodedError] = field(default_factory=list)
 
     def reject(self, place: str, code: str, text: str) -> None:
-        """Add a mistake at this place of the file."""
+        """Add a mistake at this position in the file."""
         self.mistakes.append(CodedError(Message("{place}: {text}", place=place, text=text), code))
 
     def number(self, place: str, text: str) -> float | None:
-        """Return the number in a text. None, with a mistake added, if it is not a finite number."""
+        """Return the number in a text.
+
+        If the text is not a finite number, a mistake is added and the result is None.
+        """
         words = text.strip()
         if len(words) <= _LONGEST_NUMBER and _NUMBER.fullmatch(words) and isfinite(value := float(words)):
             return value
@@ -103,10 +109,10 @@ class TableReader:
         return None
 
     def tool_number(self, place: str, value: float | None) -> int | None:
-        """Return the number of a tool to read.
+        """Return the number of a tool, or None if the tool is not to be read.
 
-        The result is None if the options exclude the tool, or, with a mistake added, if the number is invalid
-        or used twice.
+        The result is None if the options exclude the tool. It is also None if the number is invalid or used
+        twice; in this case a mistake is added.
         """
         if value is None:
             return None
@@ -132,7 +138,10 @@ class TableReader:
         return None
 
     def unit(self, place: str) -> float:
-        """Return mm per unit of the file; 1, with a mistake added, if the unit is not specified."""
+        """Return the size of the file's length unit in mm.
+
+        If the unit is not specified, a mistake is added and the result is 1.
+        """
         if self.options.unit:
             return MM_PER_UNIT[self.options.unit]
         known = {mistake.code for mistake in self.mistakes}
@@ -150,9 +159,10 @@ class TableReader:
         words: str = "",
         notes: Sequence[str] = (),
     ) -> None:
-        """Add a tool. ``words`` is a text in which ISO codes and kinds of tools are recognized.
+        """Add a tool to the table.
 
-        The values 0 and "" mean not specified. X and Z that are both 0 mean that the tool is not measured.
+        ``words`` is a text in which ISO codes and tool kinds are recognized. The values 0 and "" mean not
+        specified. If X and Z are both 0, the tool is not measured.
         """
         found: dict[str, FieldValue] = {**shape_words(words), **_stated(values)}
         told = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
@@ -182,7 +192,10 @@ class TableReader:
         self.reject(place, "out-of-range", text)
 
     def table(self) -> ToolTable:
-        """Return the tools. Raises ToolTableError with all mistakes, or if the file has no tools."""
+        """Return the collected tools.
+
+        Raises ToolTableError with all mistakes, or if the file has no tools.
+        """
         if self.mistakes:
             raise self._error()
         if not self.tools:
@@ -204,7 +217,7 @@ def _stated(values: Mapping[str, FieldValue]) -> dict[str, FieldValue]:
 
 
 def _cleaned(found: dict[str, FieldValue]) -> list[str]:
-    """Make the remark printable and short. Return a note if it is shortened."""
+    """Make the remark printable, and shorten it if it is too long; return a note if it is shortened."""
     text = found.get("remark")
     if not isinstance(text, str):
         return []
@@ -216,7 +229,10 @@ def _cleaned(found: dict[str, FieldValue]) -> list[str]:
 
 
 def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) -> list[str]:
-    """Remove X and Z that are 0, with which other programs fill tools that are not measured."""
+    """Remove X and Z if both are 0; return a note if they were specified.
+
+    Other programs enter 0 for tools that are not measured.
+    """
     if found.get("x", 0.0) or found.get("z", 0.0):
         return []
     found.pop("x", None)
@@ -225,7 +241,10 @@ def _unmeasured(values: Mapping[str, FieldValue], found: dict[str, FieldValue]) 
 
 
 def _diameter(found: dict[str, FieldValue]) -> list[str]:
-    """Replace the pseudo field D with the field that it means for this kind of tool."""
+    """Replace the pseudo field D with the field that it represents for this kind of tool.
+
+    Return notes about the replacement.
+    """
     if (value := found.pop(DIAMETER, None)) is None or isinstance(value, str):
         return []
     if found.get("kind") in ROUND_KINDS:
@@ -236,7 +255,7 @@ def _diameter(found: dict[str, FieldValue]) -> list[str]:
 
 
 def _radius_notes(found: Mapping[str, FieldValue]) -> list[str]:
-    """Return a note if the nose radius is not the radius of the insert."""
+    """Return a note if the nose radius differs from the radius of the insert."""
     radius, code = found.get("nose_radius"), found.get("insert")
     if not isinstance(radius, float) or not isinstance(code, str):
         return []

@@ -1,4 +1,4 @@
-"""Bar work: bar feed loop, parting off to the center or a bore, and the blade for plunges."""
+"""Bar work: bar feed loop, parting off to the center or to a bore, and the blade for plunges."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def _width(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 
 
 def _corner(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the touched-off corner from the tool data; for an unknown tool, the corner at the chuck."""
+    """Return the touched-off corner from the tool data, or the corner at the chuck for an unknown tool."""
     shape = settings.tool(number(values, "T"))
     return RIGHT if shape is not None and shape.direction[0] > 0 else LEFT
 
@@ -88,32 +88,35 @@ class BladeWriter:
         self._z = self._z if z is None else z
 
     def calculate_z_at_chuck_corner(self, chuck: float) -> float:
-        """Return the programmed Z that puts the chuck-side corner at ``chuck``."""
+        """Return the programmed Z that positions the chuck-side corner of the blade at ``chuck``."""
         return chuck if self.is_left_corner else chuck + self.width
 
     def calculate_z_at_face_corner(self, front: float) -> float:
-        """Return the programmed Z that puts the face-side corner at ``front``."""
+        """Return the programmed Z that positions the face-side corner of the blade at ``front``."""
         return self.calculate_z_at_chuck_corner(front - self.width)
 
     def move_over(self, z: float, r: float) -> None:
-        """Move along Z at the present radius, then to radius ``r``; omit moves that are not necessary."""
+        """Write a move along Z at the present radius, then a move to radius ``r``.
+
+        Unnecessary moves are omitted.
+        """
         if z != self._z:
             self.write_rapid(z=z)
         if r != self._r:
             self.write_rapid(r)
 
     def write_rapid(self, r: float | None = None, z: float | None = None) -> None:
-        """Write a rapid to a radius on the tool's side of the axis and to a programmed Z."""
+        """Write a rapid to a radius on the tool's side of the axis, and to a programmed Z."""
         self._at(r, z)
         self._code.write_rapid(None if r is None else self._side * r, z)
 
     def write_cut(self, r: float | None = None, z: float | None = None, feed: float = 0.0) -> None:
-        """Write a feed move to a radius and a programmed Z."""
+        """Write a feed move to a radius on the tool's side of the axis, and to a programmed Z."""
         self._at(r, z)
         self._code.write_cut(None if r is None else self._side * r, z, feed)
 
     def write_dwell(self, seconds: float) -> None:
-        """Write a dwell; 0 s writes nothing."""
+        """Write a dwell, unless ``seconds`` is 0."""
         self._code.write_dwell(seconds)
 
 
@@ -317,7 +320,7 @@ BAR_LOOP_SHAPE = Shape(
 
 
 def check_chuck(settings: ProgramSettings, word: str) -> Iterator[FieldError]:
-    """Yield an error at this field if a SINUMERIK program cannot open the chuck of this machine."""
+    """Yield an error for this field if a SINUMERIK program cannot open the chuck of this machine."""
     if settings.shop.chuck_codes is None:
         yield FieldError(
             word,

@@ -1,4 +1,4 @@
-"""Drilling on the axis: G81 for a hole in one pass, G83 with pecking."""
+"""Drilling on the spindle axis, with G81 in one pass or with G83 in pecks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Groove shape: plunges of a blade, square or sloped walls, chamfered edges, several at one pitch."""
+"""Groove shape, which is cut by plunges of a blade.
+
+The walls are square or sloped, the edges may be chamfered, and several grooves may be cut at one pitch.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,7 @@ def _plunges(filled: FilledShape) -> int:
 
 
 def _slants(filled_shape: FilledShape) -> tuple[float, float]:
-    """Return the slopes of the walls at the face and at the chuck, per unit of depth."""
+    """Return the slopes of the wall at the face and of the wall at the chuck, per unit of depth."""
     return math.tan(math.radians(filled_shape.get_number("FANGLE"))), math.tan(
         math.radians(filled_shape.get_number("CANGLE"))
     )
@@ -81,7 +84,7 @@ def _groove(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 
 def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: float) -> None:
-    """Write grooves of one plunge each as a loop with incremental moves."""
+    """Write several grooves of one plunge each, as a loop with incremental moves."""
     deep = get_tool_side(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
     code.write_rapid(z=first)
     code.write(
@@ -123,7 +126,10 @@ def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: fl
 def _slanted_groove(
     filled_shape: FilledShape, blade: BladeWriter, outer: float, chuck: float, free: float
 ) -> None:
-    """Write plunges limited by the corners of the blade, then cuts down each wall and along the bottom."""
+    """Write plunges, then cuts down each wall and along the bottom.
+
+    The plunges are limited by the corners of the blade.
+    """
     feed, top, bottom = (
         filled_shape.get_number("FEED"),
         filled_shape.get_number("TOP") / 2.0,

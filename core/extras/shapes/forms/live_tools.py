@@ -1,4 +1,4 @@
-"""Shapes for a live tool with the spindle as C axis: cross holes, flats and slots in planes XC and ZC."""
+"""Shapes for a live tool with the spindle as C axis: cross holes, flats and slots in the planes XC and ZC."""
 
 from __future__ import annotations
 
@@ -49,7 +49,10 @@ FRONT, REAR = "FRONT", "REAR"
 
 
 def _rate(work: Operation) -> ValueProposal:
-    """Return a proposal for the feed per minute, from the live tool's speed and two teeth of a mill."""
+    """Return a function that proposes the feed per minute from the speed of the live tool.
+
+    A mill is assumed to have two teeth.
+    """
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         turns = number(values, "LRPM") or _LIVE_RPM
@@ -63,7 +66,7 @@ def _rate(work: Operation) -> ValueProposal:
 
 
 def _lines(filled_shape: FilledShape, settings: ProgramSettings, code: CodeWriter) -> LiveToolWriter:
-    """Return a writer for the language of the program."""
+    """Return a live tool writer for the language of the program."""
     kind = SinumerikLiveToolWriter if settings.dialect is Dialect.SINUMERIK else LiveToolWriter
     return kind(code, filled_shape.get_number("LRPM"))
 
@@ -163,7 +166,7 @@ CROSS_HOLES_SHAPE = Shape(
 def _flat_path(
     filled_shape: FilledShape, settings: ProgramSettings
 ) -> tuple[float, list[tuple[float, float]]]:
-    """Return X of the entry, and the path of the tool center around the flats, seen from the front."""
+    """Return the X of the entry and the path of the tool center around the flats, seen from the front."""
     many, radius = int(filled_shape.get_number("FLATS")), filled_shape.get_number("DIA") / 2.0
     away = filled_shape.get_number("ACROSS") / 2.0 + radius
     outside = filled_shape.get_number("FROM") / 2.0 + radius

@@ -1,4 +1,4 @@
-"""Taper, edge and bore: contours defined by a few values."""
+"""Taper, edge and bore shapes, whose contours are defined by a few values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Facing, and turning along a profile: roughing with G75, then the contour."""
+"""Facing and turning shapes.
+
+Turning along a profile consists of roughing with G75 and a pass along the contour.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +71,7 @@ LOWEST, HIGHEST = "LOWEST", "HIGHEST"
 
 
 def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
-    """Return LOWEST and HIGHEST of a contour, without moves square across the face.
+    """Return the values LOWEST and HIGHEST of a contour, without moves square across the face.
 
     The result is empty if roughing along Z cannot cut the contour.
     """
@@ -80,7 +83,7 @@ def _extent(rows: Sequence[ContourPoint]) -> FieldValues:
 
 
 def _stock_and_end(values: FieldValues) -> tuple[float, float]:
-    """Return the diameters of the stock and of the deepest cut; equal if they are unknown."""
+    """Return the diameters of the stock and of the deepest cut, which are equal if they are unknown."""
     low = number(values, LOWEST) or number(values, "SMALL")
     high = max(number(values, each) for each in (HIGHEST, "LARGE", "DIAM"))
     if text(values, "SIDE") == INSIDE or "DIAM" in values:
@@ -91,7 +94,7 @@ def _stock_and_end(values: FieldValues) -> tuple[float, float]:
 
 
 def _depth(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose roughing passes if the stock exceeds two finishing passes."""
+    """Propose a roughing depth if the stock requires more than two finishing passes, otherwise 0."""
     stock, end = _stock_and_end(values)
     depth = propose_roughing_depth(settings, number(values, "T"), max(stock, end), is_inside=end > stock)
     return (
@@ -128,7 +131,10 @@ LABEL_FIELD = ShapeField(
 def write_spindle_start(
     filled_shape: FilledShape, settings: ProgramSettings, code: CodeWriter, x: float, z: float | None
 ) -> None:
-    """Write tool, spindle and approach to the part, with constant surface speed if specified."""
+    """Write the tool call, the spindle start and the approach.
+
+    Constant surface speed is included if it is specified.
+    """
     code.cutting_edge = filled_shape.get_number("COMP") or 1.0
     code.write_tool_start(filled_shape.get_number("T"), filled_shape.get_number("RPM"), x, z)
     if filled_shape.get_number("SURF"):
@@ -138,7 +144,7 @@ def write_spindle_start(
 
 
 def write_spindle_end(filled_shape: FilledShape, code: CodeWriter) -> None:
-    """Write the retract to the tool change position, and the return to rpm."""
+    """Write the retract to the tool change position, and the return to a constant rpm."""
     code.write_retract()
     if filled_shape.get_number("SURF"):
         code.write_constant_rpm()
@@ -155,7 +161,10 @@ def write_contour(
     *,
     is_inside: bool,
 ) -> None:
-    """Write tool and spindle, roughing if a depth is specified, the contour, and the retract."""
+    """Write the tool call, the spindle start, the contour and the retract.
+
+    Roughing is included if a depth is specified.
+    """
     there = resolve_points(rows)
     beside = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
     rough, comp = filled_shape.get_number("ROUGH"), filled_shape.get_number("COMP")
@@ -186,7 +195,7 @@ def _calculate_clear_radius(
     *,
     is_inside: bool,
 ) -> float:
-    """Return the radius clear of the material at which a contour ends and roughing begins."""
+    """Return the radius, clear of the material, at which roughing begins and the contour ends."""
     free, radii = _BESIDE[settings.metric], [r for _, r in there]
     if is_inside:
         hole = filled_shape.get_number("HOLE") / 2.0 or min(radii)
@@ -246,7 +255,7 @@ def _check_first_move(there: Sequence[tuple[float, float]], *, is_inside: bool) 
 
 
 def check_compensation(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if G41 would not work."""
+    """Yield an error if G41 is used in a subroutine, where it would not work."""
     if filled_shape.get_number("COMP") and settings.is_subroutine and settings.dialect is Dialect.OMNITURN:
         yield FieldError(
             "COMP",
@@ -364,7 +373,7 @@ def _face(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> No
 
 
 def _past_axis(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the end diameter of two nose radii past the axis, because stopping earlier leaves a pip."""
+    """Return an end diameter that is two nose radii past the axis, because stopping earlier leaves a pip."""
     shape = settings.tool(number(values, "T"))
     nose = shape.nose_radius / settings.mm if shape is not None else 0.0
     return -math.ceil(2000.0 * (nose or 0.4 / settings.mm)) / 1000.0

@@ -1,4 +1,7 @@
-"""Program lines of a shape and of a bar feed loop: words, rapids, cuts and feeds of this control."""
+"""Writer of the program lines of a shape and of a bar feed loop.
+
+The lines contain words, rapids, cuts and feeds of this control.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,11 @@ from core.language.source import Dialect
 
 
 class BarFeedLoop(NamedTuple):
-    """A bar feed loop.
+    """A bar feed loop that makes ``part_count`` parts of the length ``part_length``.
 
-    ``part_count`` parts of the length ``part_length`` are made. The bar is fed at ``feed_rate`` per minute
-    to the tool ``stop_tool``, which leaves ``facing_stock`` on the face. ``feeds_each_part`` feeds the bar
-    for each part, otherwise it is fed once. ``subroutine_number`` is the number of the part's subroutine.
+    The bar is fed at ``feed_rate`` per minute to the tool ``stop_tool``, which leaves ``facing_stock`` on
+    the face. If ``feeds_each_part`` is True, the bar is fed for each part, otherwise only once.
+    ``subroutine_number`` is the number of the part's subroutine.
     """
 
     part_count: int
@@ -31,7 +34,7 @@ class BarFeedLoop(NamedTuple):
 
     @property
     def feed_length(self) -> float:
-        """Length by which the bar is fed out at a time."""
+        """Return the length by which the bar is fed at a time."""
         return self.part_length if self.feeds_each_part else self.part_count * self.part_length
 
 
@@ -41,7 +44,10 @@ def write_bar_feed_loop(code: CodeWriter, loop: BarFeedLoop) -> None:
 
 
 def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
-    """Write the loop with LS … LF. G97 only carries the comment, which is not allowed inside a loop."""
+    """Write the loop with LS … LF.
+
+    G97 is only written for its comment, because a comment is not permitted inside a loop.
+    """
     call, loop = f"P{bars.subroutine_number}", f"LS{bars.part_count}"
     code.write("G97", loop) if bars.feeds_each_part else code.write("G97")
     code.write(f"T{bars.stop_tool:.0f}")
@@ -56,7 +62,10 @@ def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
 
 
 def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
-    """Write the loop with REPEAT between two labels; ATRANS shifts zero along a bar that is fed once."""
+    """Write the loop with REPEAT between two labels.
+
+    If the bar is fed only once, ATRANS shifts the zero along the bar.
+    """
     opens, closes = code.settings.shop.chuck_codes or (0, 0)
     begin, end = f"BAR_{bars.subroutine_number}", f"BAR_{bars.subroutine_number}_END"
     code.write(*([f"{begin}:"] if bars.feeds_each_part else []), f"T{bars.stop_tool:.0f} D1", "M5")
@@ -80,17 +89,17 @@ def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
 
 
 def _write_stop_move(code: CodeWriter, bars: BarFeedLoop) -> None:
-    """Write the move of the stop to the end of the bar."""
+    """Write the move that brings the stop to the end of the bar."""
     code.write_rapid(0.0, code.settings.clear)
     code.write_rapid(z=bars.facing_stock - bars.feed_length)
 
 
 class ContourTurning(NamedTuple):
-    """Turning of a contour: roughing in passes of ``roughing_depth`` (0 for none), then one pass along the
-    contour.
+    """Turning of a contour: roughing passes, followed by one pass along the contour.
 
-    The contour ends at a radius clear of the material. ``offset`` is the number of the nose compensation, or
-    0. ``roughing_label`` is a number for the contour in languages that label contours.
+    ``roughing_depth`` is the depth of a pass, or 0 for no roughing. The contour ends at ``clear_radius``,
+    which is clear of the material. ``compensation_offset`` is the number of the nose compensation, or 0.
+    ``roughing_label`` is a number for the contour in languages that label contours.
     """
 
     points: Sequence[ContourPoint]
@@ -105,10 +114,10 @@ class ContourTurning(NamedTuple):
 
 
 class TappingCycle(NamedTuple):
-    """A tap on the axis from ``start`` to ``end`` with ``pitch`` at ``rpm``; ``spindle_code`` is its M code.
+    """Tapping on the axis from ``start_z`` to ``end_z`` with ``pitch`` at ``rpm``.
 
-    ``is_rigid`` turns the spindle in step with Z if the language permits; otherwise a floating holder is
-    used.
+    ``spindle_code`` is the M code that starts the spindle. If ``is_rigid`` is True and the language permits
+    it, the spindle turns in step with Z; otherwise a floating holder is used.
     """
 
     start_z: float
@@ -121,9 +130,9 @@ class TappingCycle(NamedTuple):
 
 
 class CodeWriter:
-    """Writer of lines that tracks the modal state of the program.
+    """Writer of program lines that tracks the modal state of the program.
 
-    X is given as a radius. Words that are already in force are not repeated.
+    X is specified as a radius. Words that are already active are not repeated.
     """
 
     supports_loops = True  # LS … LF can repeat a group of lines
@@ -136,39 +145,42 @@ class CodeWriter:
         self._feed = ""
 
     def write(self, *lines: str) -> None:
-        """Add lines unchanged."""
+        """Append lines unchanged."""
         self.lines += lines
 
     def clear_modal_state(self) -> None:
-        """Clear the tracked modal state, after lines that were added unchanged."""
+        """Clear the tracked modal state because lines were added unchanged."""
         self._rapid, self._feed = False, ""
 
     # --- Words
 
     def format_x(self, radius: float, letter: str = "X") -> str:
-        """Return the word of a radius, as a diameter if the program uses diameters."""
+        """Return the word for a radius, converted to a diameter if the program uses diameters."""
         s = self.settings
         value = 2.0 * radius if s.diameter else radius
         return letter + format_short_number(round_length(value, metric=s.metric, is_diameter=s.diameter))
 
     def format_z(self, value: float, letter: str = "Z") -> str:
-        """Return the word of a length along Z, or of another length that is never a diameter."""
+        """Return the word for a length along Z, or for another length that is never a diameter."""
         return letter + format_short_number(round_length(value, metric=self.settings.metric))
 
     def format_point(self, x: float | None, z: float | None) -> str:
-        """Return the X and Z words of a move; None omits a word."""
+        """Return the X and Z words of a move. A coordinate that is None has no word."""
         return ("" if x is None else self.format_x(x)) + ("" if z is None else self.format_z(z))
 
     # --- Moves
 
     def add_comment(self, comment: str) -> list[str]:
-        """Return the lines with a comment on the first line."""
+        """Return the lines, with a comment added to the first line."""
         return [f"{self.lines[0]}({comment})", *self.lines[1:]]
 
     def write_tool_start(
         self, tool: float, rpm: float, x: float, z: float | None, spindle_code: str = "M03"
     ) -> None:
-        """Write tool, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
+        """Write the tool call, the spindle start and the approach.
+
+        The approach is a rapid to ``x`` at the tool change Z, and then a rapid to ``z``.
+        """
         self.write(f"T{tool:.0f}")
         if rpm:
             self.write(f"{spindle_code}S{format_short_number(rpm, 0)}")
@@ -178,18 +190,24 @@ class CodeWriter:
             self.write_rapid(z=z)
 
     def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """Write a rapid."""
+        """Write a rapid to a point; None omits an axis."""
         self.write(("" if self._rapid else "G00") + self.format_point(x, z))
         self._rapid = True
 
     def write_cut(
         self, x: float | None = None, z: float | None = None, feed: float = 0.0, suffix: str = ""
     ) -> None:
-        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``suffix`` follows the point."""
+        """Write a feed move to a point.
+
+        If ``feed`` is 0, the active feed is used. ``suffix`` is text that follows the point.
+        """
         self.write(self.format_feed(feed) + self.format_point(x, z) + suffix)
 
     def format_feed(self, feed: float) -> str:
-        """Return the words that make the next move a cut at ``feed`` per revolution; empty if in force."""
+        """Return the words that make the next move a cut at ``feed`` per revolution.
+
+        The text is empty if these words are already active.
+        """
         word = f"F{format_short_number(feed, 6)}" if feed else self._feed
         if word == self._feed:
             again = "G01" if self._rapid else ""
@@ -199,20 +217,23 @@ class CodeWriter:
         return again
 
     def write_feed(self, feed: float) -> None:
-        """Write a line with only a feed, for the following moves."""
+        """Write a line that contains only a feed, for the following moves."""
         self.write(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """Write a line of a contour, with the corner to the next line."""
+        """Write a straight line of a contour, with the corner to the next element."""
         corner = self.format_z(chamfer, "C") if chamfer else self.format_z(radius, "R") if radius else ""
         self.write(self.format_feed(0.0) + self.format_point(x, z) + corner)
 
     def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
-        """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
+        """Write an arc from the last point.
+
+        A convex arc is like the rounded shoulder of a shaft, and a concave arc is like a fillet.
+        """
         self.write(f"{'G02' if is_convex else 'G03'}{self.format_point(x, z)}{self.format_z(radius, 'R')}")
 
     def write_dwell(self, seconds: float) -> None:
-        """Write a dwell; 0 s writes nothing."""
+        """Write a dwell, unless ``seconds`` is 0."""
         if seconds:
             self.write(f"G04F{format_short_number(seconds)}")
 
@@ -223,7 +244,10 @@ class CodeWriter:
     # --- Contours and holes
 
     def write_contour_turning(self, turning: ContourTurning) -> None:
-        """Write roughing with G75 if specified, then the contour, with compensation if specified."""
+        """Write roughing with G75, then the contour.
+
+        Roughing and nose compensation are included only if they are specified.
+        """
         there = resolve_points(turning.points)
         first = there[0]
         if turning.roughing_depth:
@@ -267,7 +291,7 @@ class CodeWriter:
                 self.write_line(x, z, row.chamfer, row.radius)
 
     def cancel_compensation(self, offset: float) -> None:
-        """Cancel the compensation if a contour used this offset."""
+        """Write the end of the nose compensation if a contour used this offset."""
         if offset:
             self.write("G40")
 
@@ -286,7 +310,7 @@ class CodeWriter:
         self.clear_modal_state()
 
     def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
-        """Write a tap: feed in at the pitch, reverse the spindle, feed out."""
+        """Write the moves of a tap: feed in at the pitch, reverse the spindle, and feed out."""
         self.write_tool_start(tool, cycle.rpm, 0.0, cycle.start_z, cycle.spindle_code)
         self.write_cut(z=cycle.end_z, feed=cycle.pitch)
         self.write("M03" if cycle.spindle_code == "M04" else "M04")
@@ -296,11 +320,11 @@ class CodeWriter:
     # --- Spindle
 
     def write_surface_speed(self, surface: float, max_rpm: float) -> None:
-        """Write constant surface speed, limited to ``max_rpm`` rpm."""
+        """Write the start of constant surface speed, limited to ``max_rpm``."""
         self.write(f"G96S{format_short_number(surface, 0)}", f"G77S{format_short_number(max_rpm, 0)}")
 
     def write_constant_rpm(self) -> None:
-        """Write the return to rpm, before another tool."""
+        """Write the return to constant rpm, before another tool is called."""
         self.write("G97")
 
 
@@ -317,7 +341,7 @@ _BACK = str.maketrans({"S": "/", "A": "-", "P": ".", "N": "#"})
 
 
 def format_short_number(value: float, places: int = 5) -> str:
-    """Return a number as programs write it, without zeros before the point or at the end: .5, -.035, 2."""
+    """Format a number as programs write it, without zeros before the point or at the end: .5, -.035, 2."""
     text = f"{value:.{places}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")
@@ -327,25 +351,26 @@ def format_short_number(value: float, places: int = 5) -> str:
 
 
 def format_sinumerik_number(value: float, places: int = 5) -> str:
-    """Return a number as SINUMERIK programs write it: 0.5, -0.035, 2."""
+    """Format a number as SINUMERIK programs write it: 0.5, -0.035, 2."""
     return add_leading_zero(format_short_number(value, places))
 
 
 def add_leading_zero(word: str) -> str:
-    """Return a word from ``format_short_number`` with a zero before its point."""
+    """Add a zero before the decimal point of a word from ``format_short_number``."""
     return _NO_ZERO.sub("0.", word)
 
 
 def round_length(value: float, *, metric: bool, is_diameter: bool = False) -> float:
-    """Return a length rounded to the step of the control; ``is_diameter`` rounds to the step of a
-    diameter.
+    """Return a length rounded to the resolution of the control.
+
+    If ``is_diameter`` is True, the length is rounded to the resolution of a diameter.
     """
     step = _STEPS[metric] * (2.0 if is_diameter else 1.0)
     return round(value / step) * step
 
 
 def round_depth_up(radius: float, *, metric: bool) -> float:
-    """Return a depth rounded up to the step of the control.
+    """Return a depth rounded up to the resolution of the control.
 
     In passes of equal chip area, a slightly smaller depth would require one more pass.
     """
@@ -354,14 +379,14 @@ def round_depth_up(radius: float, *, metric: bool) -> float:
 
 
 def encode_comment_number(value: float, places: int = 5) -> str:
-    """Return a number for a comment, with P for the point and a leading M for minus: 0P5, M0P035."""
+    """Encode a number for a comment, with P for the point and a leading M for minus: 0P5, M0P035."""
     text = f"{abs(value):.{places}f}".rstrip("0").rstrip(".")
     sign = "M" if value < 0 and text.strip("0.") else ""
     return sign + text.replace(".", "P")
 
 
 def decode_comment_number(text: str) -> float | None:
-    """Return the number written by ``encode_comment_number``; None if the text has another format."""
+    """Return the number that ``encode_comment_number`` encoded, or None if the text has another format."""
     found = _NUMBER.fullmatch(text)
     if found is None:
         return None
@@ -370,10 +395,10 @@ def decode_comment_number(text: str) -> float | None:
 
 
 def encode_thread_name(name: str) -> str:
-    """Return a thread size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
+    """Encode a thread size in letters and digits: 1/2 is 1S2, 1-1/8 is 1A1S8, M10X1.25 is M10X1P25."""
     return name.translate(_NAME)
 
 
 def decode_thread_name(text: str) -> str:
-    """Return the name that ``encode_thread_name`` has written."""
+    """Return the thread size that ``encode_thread_name`` encoded."""
     return text.translate(_BACK)

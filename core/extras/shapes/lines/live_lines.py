@@ -1,4 +1,4 @@
-"""Program lines for a live tool, also in SINUMERIK: spindle as C axis, and the planes XC and ZC."""
+"""Program lines for a live tool in OmniTurn and SINUMERIK: spindle as C axis, and the planes XC and ZC."""
 
 from __future__ import annotations
 
@@ -12,10 +12,11 @@ RAPID_RATE_IN_MIN = 50.0  # in/min, clear of the part in the plane
 
 
 class RadialHoles(NamedTuple):
-    """Radial holes: ``hole_count`` holes at Z ``at``, from ``start_angle_deg`` on in steps of
-    ``angle_step_deg``.
+    """Radial holes around a part.
 
-    Each hole goes from the radius ``clearance_radius`` to the radius ``bottom_radius``.
+    There are ``hole_count`` holes at ``hole_z``, starting at ``start_angle_deg`` in steps of
+    ``angle_step_deg``. Each hole is drilled from the radius ``clearance_radius`` to the radius
+    ``bottom_radius``.
     """
 
     clearance_radius: float
@@ -28,10 +29,12 @@ class RadialHoles(NamedTuple):
 
 
 class FaceMilling(NamedTuple):
-    """Milling around the end of a part: ``path`` of the tool center as (x, y) from the axis, for each depth.
+    """Milling around the end of a part, repeated at each depth.
 
-    ``entry_x`` is X clear of the part at Y 0, to which the tool returns after each round. If the path leads
-    ``is_closed`` the part, the tool goes directly to its first point, which is also clear of the part.
+    ``path`` contains the positions of the tool center as (x, y) from the axis. ``entry_x`` is the X at Y 0
+    that is clear of the part and to which the tool returns after each round. If ``is_closed`` is True, the
+    path leads around the part, and the tool moves directly to its first point, which is also clear of the
+    part.
     """
 
     entry_x: float
@@ -42,11 +45,10 @@ class FaceMilling(NamedTuple):
 
 
 class CylinderSlots(NamedTuple):
-    """Slots in a cylinder of diameter ``diameter``, each ``length_z`` Z and ``angle_span_deg`` degrees
-    around it.
+    """Slots in a cylinder, each ``length_z`` long in Z and ``angle_span_deg`` degrees around the cylinder.
 
-    ``bottom_radii`` are the radii of the mill's end, one for each pass in alternating directions.
-    ``clearance_radius`` is the radius clear of the part.
+    ``diameter`` is the diameter of the cylinder. ``bottom_radii`` contains the radius of the mill's end for
+    each pass; the passes alternate in direction. ``clearance_radius`` is a radius clear of the part.
     """
 
     diameter: float
@@ -60,7 +62,7 @@ class CylinderSlots(NamedTuple):
 
 
 class LiveToolWriter:
-    """Writer for a live tool in OmniTurn.
+    """Writer of lines for a live tool in OmniTurn.
 
     M19 holds the spindle, CA and CI turn it, and ~PLXC and ~PLZC select the planes.
     """
@@ -77,7 +79,7 @@ class LiveToolWriter:
         return f"F{format_short_number(RAPID_RATE_IN_MIN * 25.4 / self._setting.mm, 0)}"
 
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
-        """Write the approach, stop and hold the spindle, and start the live tool."""
+        """Write the approach, the stop and hold of the spindle, and the start of the live tool."""
         self._code.write_tool_start(tool, 0.0, x, z)
         self._code.write("M05", f"M{self._setting.shop.live_tool_codes[0]:02d}", "M19")
 
@@ -92,7 +94,7 @@ class LiveToolWriter:
             self._code.write(f"{word}{format_short_number(degrees, 3)}", wait)
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
-        """Write drilled and indexed holes, as a loop if there are several."""
+        """Write drilled and indexed holes, as a loop if there are several holes."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         self._angle("CA", holes.start_angle_deg)
@@ -108,7 +110,7 @@ class LiveToolWriter:
         self._released()
 
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
-        """Write milling in the plane XC, from the side of negative X."""
+        """Write the moves that mill around the face in the plane XC, from the side of negative X."""
         code, rate = self._code, f"F{format_short_number(faces.feed_rate)}"
         entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path
         begin = f"X{format_short_number(first[0], 4)}Y{format_short_number(first[1], 4)}"
@@ -125,7 +127,7 @@ class LiveToolWriter:
         self._released()
 
     def write_slots(self, tool: float, slots: CylinderSlots) -> None:
-        """Write slots in the plane ZC, starting at each angle of C."""
+        """Write the moves that mill slots in the plane ZC, starting at each angle of C."""
         code, rate = self._code, format_short_number(slots.feed_rate)
         around = slots.angle_span_deg / 360.0 * math.pi * slots.diameter
         self._write_live_tool_start(tool, -slots.clearance_radius, slots.start_z)
@@ -150,12 +152,15 @@ class LiveToolWriter:
 
 
 def _wait(degrees: float, c_rpm: float) -> float:
-    """Return the dwell in seconds until C is in position, because the drive does not report it."""
+    """Return the dwell in seconds until C is in position.
+
+    The dwell is necessary because the drive does not report that C is in position.
+    """
     return math.ceil(10.0 * (abs(degrees) / (6.0 * c_rpm) + 0.5)) / 10.0
 
 
 class SinumerikLiveToolWriter(LiveToolWriter):
-    """Writer for a live tool in SINUMERIK: M5 stops the spindle before C moves or a plane begins."""
+    """Writer of lines for a live tool in SINUMERIK. M5 stops the spindle before C moves or a plane begins."""
 
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
         self._code.write_tool_start(tool, 0.0, x, z)
@@ -171,12 +176,15 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         return f"{name}{'' if len(name) == 1 else '='}{format_sinumerik_number(degrees, 3)}"
 
     def _words(self, degrees: bool) -> None:
-        """Switch X between radius and diameter, because TRANSMIT measures X and Y in the same unit."""
+        """Write the switch of X between radius and diameter.
+
+        TRANSMIT measures X and Y in the same unit.
+        """
         if self._setting.diameter:
             self._code.write("DIAMON" if degrees else "DIAMOF")
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
-        """Write each hole with its absolute angle of C."""
+        """Write the moves of each hole, with its absolute angle of C."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         for k in range(holes.hole_count):
@@ -187,7 +195,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         self._released()
 
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
-        """Write milling with TRANSMIT around the face, from the side of positive X."""
+        """Write the moves that mill around the face with TRANSMIT, from the side of positive X."""
         code, rate = self._code, f"F{format_sinumerik_number(faces.feed_rate)}"
         self._write_live_tool_start(tool, faces.entry_x, self._setting.near)
         self._words(degrees=False)
@@ -209,7 +217,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         return f"X{format_sinumerik_number(x, 4)} Y{format_sinumerik_number(y, 4)}"
 
     def write_slots(self, tool: float, slots: CylinderSlots) -> None:
-        """Write slots with TRACYL.
+        """Write the moves that mill slots with TRACYL.
 
         Y is measured around the part from C0, in the opposite direction of C.
         """

@@ -1,4 +1,4 @@
-"""Program lines of a shape in SINUMERIK: separated words, leading zeros, CYCLE95, CYCLE81 and CYCLE83.
+"""Program lines of a shape in SINUMERIK, with separated words, leading zeros, CYCLE95, CYCLE81 and CYCLE83.
 
 Grooves use G1, or CYCLE93 if the form specifies the second cutting edge of the blade.
 """
@@ -20,7 +20,7 @@ _TURNS = {"M03": "M3", "M04": "M4"}
 
 
 class SinumerikCodeWriter(CodeWriter):
-    """Writer of lines under G18, G90 and G95 that repeats the motion word only in contours."""
+    """Writer of SINUMERIK lines under G18, G90 and G95. It repeats the motion word only in contours."""
 
     supports_loops = False
 
@@ -29,26 +29,26 @@ class SinumerikCodeWriter(CodeWriter):
         self._motion = ""
 
     def clear_modal_state(self) -> None:
-        """Clear the tracked modal state, after lines that were added unchanged."""
+        """Clear the tracked modal state because lines were added unchanged."""
         super().clear_modal_state()
         self._motion = ""
 
     def add_comment(self, comment: str) -> list[str]:
-        """Return the lines with a comment on the first line."""
+        """Return the lines, with a comment added to the first line."""
         return [f"{self.lines[0]} ; {comment}", *self.lines[1:]]
 
     # --- Words
 
     def format_x(self, radius: float, letter: str = "X") -> str:
-        """Return the word of a radius, as a diameter if the program uses diameters."""
+        """Return the word for a radius, converted to a diameter if the program uses diameters."""
         return add_leading_zero(super().format_x(radius, letter))
 
     def format_z(self, value: float, letter: str = "Z") -> str:
-        """Return the word of a length along Z."""
+        """Return the word for a length along Z."""
         return add_leading_zero(super().format_z(value, letter))
 
     def format_point(self, x: float | None, z: float | None) -> str:
-        """Return the X and Z words of a move; None omits a word."""
+        """Return the X and Z words of a move. A coordinate that is None has no word."""
         return " ".join(([] if x is None else [self.format_x(x)]) + ([] if z is None else [self.format_z(z)]))
 
     def _move(self, motion: str, *words: str) -> None:
@@ -61,7 +61,10 @@ class SinumerikCodeWriter(CodeWriter):
     def write_tool_start(
         self, tool: float, rpm: float, x: float, z: float | None, spindle_code: str = "M03"
     ) -> None:
-        """Write tool, cutting edge, spindle and rapids to ``x`` at the tool change Z, and then to ``z``."""
+        """Write the tool call, the cutting edge, the spindle start and the approach.
+
+        The approach is a rapid to ``x`` at the tool change Z, and then a rapid to ``z``.
+        """
         self.write(f"T{tool:.0f} D{self.cutting_edge:.0f}")
         if rpm:
             self.write(f"G95 S{format_sinumerik_number(rpm, 0)} {_TURNS[spindle_code]}")
@@ -71,50 +74,56 @@ class SinumerikCodeWriter(CodeWriter):
             self.write_rapid(z=z)
 
     def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
-        """Write a rapid."""
+        """Write a rapid to a point; None omits an axis."""
         self._move("G0", self.format_point(x, z))
 
     def write_cut(
         self, x: float | None = None, z: float | None = None, feed: float = 0.0, suffix: str = ""
     ) -> None:
-        """Write a feed move; 0 as ``feed`` retains the feed rate, and ``suffix`` follows the point."""
+        """Write a feed move to a point.
+
+        If ``feed`` is 0, the active feed is used. ``suffix`` is text that follows the point.
+        """
         self._move("G1", self.format_point(x, z), suffix, self._fresh(feed))
 
     def _fresh(self, feed: float) -> str:
-        """Return the word of a feed; empty if the feed is in force."""
+        """Return the word for a feed, or an empty text if the feed is already active."""
         word = f"F{format_sinumerik_number(feed, 6)}" if feed else self._feed
         said, self._feed = ("" if word == self._feed else word), word
         return said
 
     def write_feed(self, feed: float) -> None:
-        """Write a line with only a feed, for the following cycle."""
+        """Write a line that contains only a feed, for the following cycle."""
         self.write(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
-        """Write a line of a contour, with the corner to the next line."""
+        """Write a straight line of a contour, with the corner to the next element."""
         corner = (
             self.format_z(chamfer, "CHR=") if chamfer else self.format_z(radius, "RND=") if radius else ""
         )
         self._move("G1", self.format_point(x, z), corner)
 
     def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
-        """Write an arc from the last point: convex like a shoulder of a shaft, or concave like a fillet."""
+        """Write an arc from the last point.
+
+        A convex arc is like the rounded shoulder of a shaft, and a concave arc is like a fillet.
+        """
         self._motion = ""
         self._move("G3" if is_convex else "G2", self.format_point(x, z), self.format_z(radius, "CR="))
         self._motion = ""
 
     def write_dwell(self, seconds: float) -> None:
-        """Write a dwell; 0 s writes nothing."""
+        """Write a dwell, unless ``seconds`` is 0."""
         if seconds:
             self.write(f"G4 F{format_sinumerik_number(seconds)}")
 
     # --- Contours and holes
 
     def write_contour_turning(self, turning: ContourTurning) -> None:
-        """Write CYCLE95 for the contour between two labels if it is roughed, then one pass along the contour.
+        """Write CYCLE95 for roughing if it is specified, then one pass along the contour.
 
-        The cycle removes material up to the outermost point of its contour, so the contour includes the move
-        away from the part.
+        CYCLE95 finds the contour between two labels. The cycle removes material up to the outermost point
+        of its contour, so the contour includes the move away from the part.
         """
         there, name = resolve_points(turning.points), f"CONTOUR_{turning.roughing_label or 1.0:.0f}"
         (z, x), feed = there[0], self._fresh(turning.feed)
@@ -157,7 +166,7 @@ class SinumerikCodeWriter(CodeWriter):
             self.write(off)
 
     def cancel_compensation(self, offset: float) -> None:
-        """Write nothing, because the move away from the contour has canceled the compensation."""
+        """Write nothing, because the move away from the contour has already canceled the compensation."""
 
     def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
         """Write CYCLE81 or CYCLE83 under G17, for drilling along Z."""
@@ -219,7 +228,7 @@ class SinumerikCodeWriter(CodeWriter):
     # --- Spindle
 
     def write_surface_speed(self, surface: float, max_rpm: float) -> None:
-        """Write constant surface speed, limited to ``max_rpm`` rpm."""
+        """Write the start of constant surface speed, limited to ``max_rpm``."""
         self.write(
             Message(
                 "G96 S{surface} LIMS={maximum}",
@@ -229,5 +238,5 @@ class SinumerikCodeWriter(CodeWriter):
         )
 
     def write_constant_rpm(self) -> None:
-        """Write the return to rpm, before another tool."""
+        """Write the return to constant rpm, before another tool is called."""
         self.write("G97")

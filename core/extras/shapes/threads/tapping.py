@@ -1,4 +1,4 @@
-"""Tapping on the axis with a floating holder, and the standard drill size for the hole."""
+"""Tapping on the axis with a floating holder, and selection of the standard drill for the hole."""
 
 from __future__ import annotations
 
@@ -58,16 +58,16 @@ _OVER = 0.025  # mm, permitted excess over the middle of the limits for metric d
 
 
 def _metric() -> Iterator[float]:
-    """Yield metric drill sizes: tenths up to 14 mm, quarters up to 50 mm."""
+    """Yield metric drill sizes, in steps of 0.1 mm up to 14 mm and in steps of 0.25 mm up to 50 mm."""
     yield from (n / 10 for n in range(10, 140))
     yield from (n / 4 for n in range(56, 201))
 
 
 def find_tap_drill(minimum: float, maximum: float, *, metric: bool) -> tuple[str, float] | None:
-    """Return name and size of the drill for a hole between two limits, in mm or inches; or None.
+    """Return the name and size of the drill for a hole between two limits, or None.
 
-    The drill is the largest that is not above the middle, because drills cut oversize. Otherwise the next
-    larger drill is used.
+    The limits and the size are in mm or inches. The drill is the largest one that is not above the middle
+    of the limits, because drills cut oversize. If there is no such drill, the next larger drill is used.
     """
     sold = {f"{size:g}": size for size in _metric()} if metric else _INCH
     fits = sorted((size, name) for name, size in sold.items() if minimum <= size <= maximum)
@@ -205,7 +205,10 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
 
 
 def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSettings) -> str:
-    """Return the name of a drill, with its size in the program's unit if the name is in another unit."""
+    """Return the name of a drill.
+
+    The size in the program's unit follows the name if the name is in another unit.
+    """
     size = convert_length(size, series, metric=settings.metric)
     shown = format_short_number(size, 3 if settings.metric else 4)
     named = Message("{unit} mm", unit=name) if series in METRIC_SERIES else name
@@ -292,7 +295,7 @@ def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator
 
 
 def _propose_tapping_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Return the proposed rpm, limited to that of the C axis for a rigid tap."""
+    """Return the proposed rpm, limited to the maximum rpm of the C axis for a rigid tap."""
     turns = _turns(values, settings)
     most = settings.shop.max_c_rpm if _rigid(values) else math.inf
     return min(turns, most) if isinstance(turns, float) else turns

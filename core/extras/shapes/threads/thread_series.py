@@ -1,7 +1,8 @@
-"""Thread series by name, and limits of a thread by class, from the formulas of the standards.
+"""Thread series by name, and the limits of a thread by class, from the formulas of the standards.
 
-Unified: ASME B1.1. Metric: ISO 965-1, whose tolerances are rounded to preferred numbers (R 40). Pipe:
-B1.20.1, ISO 7-1, ISO 228-1. ACME: B1.5, general purpose.
+The sources are ASME B1.1 for unified threads, and ISO 965-1 for metric threads, whose tolerances are
+rounded to preferred numbers (R 40). Pipe threads follow B1.20.1, ISO 7-1 and ISO 228-1. ACME threads follow
+B1.5, general purpose.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from fractions import Fraction
 
 
 class ThreadSeries(StrEnum):
-    """The standard thread series, and OWN for a thread defined by dimensions."""
+    """The standard thread series, and OWN for a thread that is defined by its dimensions."""
 
     UNC = "UNC"
     UNF = "UNF"
@@ -36,8 +37,9 @@ TAPERED_SERIES = frozenset({ThreadSeries.NPT, ThreadSeries.BSPT})
 class ThreadSize:
     """A thread size in the unit of its series.
 
-    ``diameter`` is the basic major diameter; for a pipe thread it is the diameter of the pipe (NPT) or at the
-    gauge plane. ``gauge_length`` is the distance of the gauge plane from the small end of a tapered thread.
+    ``diameter`` is the basic major diameter. For a pipe thread it is the diameter of the pipe (NPT) or the
+    diameter at the gauge plane. ``gauge_length`` is the distance of the gauge plane from the small end of a
+    tapered thread.
     """
 
     name: str
@@ -70,7 +72,7 @@ def _metric_series(listed: str, *, fine: bool) -> tuple[ThreadSize, ...]:
 
 
 def _listed(unit: float, listed: str) -> tuple[ThreadSize, ...]:
-    """Return sizes from name, diameter, threads per inch and, for tapered threads, gauge length.
+    """Return sizes from a list of name, diameter, threads per inch and, for tapered threads, gauge length.
 
     ``unit`` is the length of an inch in the unit of the series.
     """
@@ -134,9 +136,10 @@ THREAD_SIZES: dict[ThreadSeries, tuple[ThreadSize, ...]] = {
 
 
 def find_size(series: ThreadSeries, name: str) -> ThreadSize | None:
-    """Return the size with this name, such as 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25; or None.
+    """Return the size with this name, or None.
 
-    If a name is ambiguous, 1 is the size in inches and #1 the number.
+    Names are, for example, 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25. If a name is ambiguous, 1 is
+    the size in inches and #1 is the numbered size.
     """
     wanted = name.strip().upper().replace(" ", "")
     sizes = THREAD_SIZES.get(series, ())
@@ -172,10 +175,11 @@ TOLERANCE_CLASSES = {
 
 @dataclass(frozen=True, slots=True)
 class ThreadLimits:
-    """Limits of the diameters of a thread in the unit of its series, at the small end of a tapered thread.
+    """Limits of the diameters of a thread in the unit of its series.
 
-    ``root_diameter`` is the final diameter of the tip of a standard tool when the pitch diameter is in the
-    middle of its limits. ``crest_diameter`` is the diameter to be turned or bored before threading.
+    For a tapered thread the limits are at its small end. ``root_diameter`` is the final diameter of the tip
+    of a standard tool when the pitch diameter is in the middle of its limits. ``crest_diameter`` is the
+    diameter to be turned or bored before threading.
     """
 
     major_diameter: tuple[float, float]
@@ -187,12 +191,15 @@ class ThreadLimits:
 
     @property
     def thread_height(self) -> float:
-        """Height from crest to root, as a radius."""
+        """Return the height from crest to root, as a radius."""
         return abs(self.crest_diameter - self.root_diameter) / 2.0
 
 
 def list_classes(series: ThreadSeries, *, is_inside: bool) -> tuple[str, ...]:
-    """Return the classes of a series, the usual class first; () if the standard has only one."""
+    """Return the tolerance classes of a series, the usual class first.
+
+    The result is () if the standard has only one class.
+    """
     if series in UNIFIED_SERIES:
         return TOLERANCE_CLASSES["unified"][is_inside]
     if series in {ThreadSeries.M, ThreadSeries.MF}:
@@ -201,7 +208,7 @@ def list_classes(series: ThreadSeries, *, is_inside: bool) -> tuple[str, ...]:
 
 
 def get_flank_angle(series: ThreadSeries) -> float | None:
-    """Return the included angle of the flanks in degrees; None if the series does not specify it."""
+    """Return the included angle of the flanks in degrees, or None if the series does not specify it."""
     if series is ThreadSeries.CUSTOM:
         return None
     return (
@@ -218,7 +225,7 @@ def calculate_limits(
 ) -> ThreadLimits:
     """Return the limits of a thread.
 
-    ``nose`` is the tip radius of the tool in the unit of the series; 0 means the standard profile.
+    ``nose_radius`` is the tip radius of the tool in the unit of the series; 0 means the standard profile.
     """
     if series in UNIFIED_SERIES:
         return _unified(series, size, tolerance_class, nose_radius, inside=is_inside)
@@ -236,10 +243,10 @@ def _middle(pair: tuple[float, float]) -> float:
 
 
 def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool) -> float:
-    """Return the final diameter of a tip with radius ``nose``: half the sharp V, minus the tip truncation.
+    """Return the final diameter of a tool tip with the radius ``nose``.
 
-    A nose of 0 means the standard profile: H/6 outside (rounded root), and inside a flat of P/8, which
-    truncates H/8.
+    The diameter is at half the sharp V, minus the tip truncation. A nose of 0 means the standard profile: a
+    truncation of H/6 outside (rounded root) and, inside, a flat of P/8, which is a truncation of H/8.
     """
     high = V60_HEIGHT_FACTOR * pitch
     lack = nose or high / (8.0 if is_inside else 6.0)
@@ -251,7 +258,7 @@ def _v_root(pitch_diameter: float, pitch: float, nose: float, *, is_inside: bool
 
 
 def _printed(value: float) -> float:
-    """Return a value rounded half up, as B1.1 rounds tolerances, allowance and basic diameters."""
+    """Return a value rounded half up, as B1.1 rounds tolerances, allowances and basic diameters."""
     return math.floor(value * 10_000.0 + 0.5 + 1e-9) / 10_000.0
 
 
@@ -281,7 +288,7 @@ def _unified(
 
 
 def _minor_tolerance(d: float, p: float, grade: int) -> float:
-    """Return the tolerance of an internal minor diameter by size and class; B1.1 section 5.8."""
+    """Return the tolerance of an internal minor diameter by size and class, according to B1.1 section 5.8."""
     formula = 0.05 * math.pow(p, 2 / 3) + 0.03 * p / d - 0.002
     if grade < 3:
         if d >= 0.25:
@@ -321,7 +328,10 @@ _PLACE_G |= {1.5: 32, 1.75: 34, 2.0: 38, 2.5: 42, 3.0: 48, 3.5: 53, 4.0: 60, 4.5
 
 
 def _preferred(value: float, *, up: bool = False) -> float:
-    """Return the nearest preferred number of R 40, or with ``up`` the first at least 99 % of the value."""
+    """Return the nearest preferred number of the series R 40.
+
+    If ``up`` is True, return the first preferred number that is at least 99 % of the value.
+    """
     scale = 10.0 ** math.floor(math.log10(value / 100.0))
     numbers = [n * scale for n in (*_R40, 1000)]
     if up:
@@ -365,7 +375,10 @@ _PIPE_MINOR = {28: 0.282, 19: 0.445, 14: 0.541, 11: 0.640}
 
 
 def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: bool) -> ThreadLimits:
-    """Return the limits of a parallel pipe thread of ISO 228-1, which has one class inside."""
+    """Return the limits of a parallel pipe thread according to ISO 228-1.
+
+    The standard has one class for internal threads.
+    """
     d, p, turns = size.diameter, size.pitch, round(25.4 / size.pitch)
     wide, basic_pitch, basic_minor = _PIPE_PITCH[turns], d - _WHITWORTH * p, d - 2.0 * _WHITWORTH * p
     if is_inside:
@@ -382,7 +395,7 @@ def _parallel_pipe(size: ThreadSize, tolerance: str, nose: float, *, is_inside: 
 
 
 def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *, is_inside: bool) -> float:
-    """Return the final diameter of a tip with radius ``nose``; 0 means the standard profile."""
+    """Return the final diameter of a tool tip with the radius ``nose``; 0 means the standard profile."""
     if nose:
         sharp = _V55 if angle == 55.0 else V60_HEIGHT_FACTOR
         high = sharp * pitch - 2.0 * nose * (1.0 / math.sin(math.radians(angle / 2.0)) - 1.0)
@@ -392,7 +405,11 @@ def _pipe_root(pitch_diameter: float, pitch: float, angle: float, nose: float, *
 
 
 def _pipe(series: ThreadSeries, size: ThreadSize, nose: float, *, is_inside: bool) -> ThreadLimits:
-    """Return the limits at the small end outside, or at the mouth inside, which is the large end."""
+    """Return the limits of a tapered pipe thread.
+
+    The limits are at the small end of an external thread, or at the mouth of an internal thread, which is
+    its large end.
+    """
     d, p = size.diameter, size.pitch
     if series is ThreadSeries.NPT:
         small = d - (0.05 * d + 1.1) * p  # =
@@ -408,9 +425,9 @@ def _pipe(series: ThreadSeries, size: ThreadSize, nose: float, *, is_inside: boo
 
 
 def get_pipe_thread_length(series: ThreadSeries, size: ThreadSize) -> float:
-    """Return the length of the full thread of a tapered pipe thread; 0 if it must be specified.
+    """Return the length of the full thread of a tapered pipe thread, or 0 if the operator must specify it.
 
-    The source is L2 of B1.20.1, or the gauge length and fitting allowance of ISO 7-1.
+    The length is L2 of B1.20.1, or the gauge length plus the fitting allowance of ISO 7-1.
     """
     if series is ThreadSeries.NPT:
         return (0.8 * size.diameter + 6.8) * size.pitch
@@ -419,7 +436,7 @@ def get_pipe_thread_length(series: ThreadSeries, size: ThreadSize) -> float:
 
 
 def _acme(size: ThreadSize, tolerance: str, *, is_inside: bool) -> ThreadLimits:
-    """Return the limits of an ACME thread by B1.5, general purpose.
+    """Return the limits of an ACME thread according to B1.5, general purpose.
 
     The height is P/2 with a clearance of .010 in at the root, or .005 in above 10 threads per inch.
     """
@@ -440,7 +457,7 @@ def _acme(size: ThreadSize, tolerance: str, *, is_inside: bool) -> ThreadLimits:
 
 
 def convert_length(value: float, series: ThreadSeries, *, metric: bool) -> float:
-    """Return a length of a series in the unit of a program."""
+    """Convert a length from the unit of a series to the unit of a program."""
     return value * (
         1.0 / 25.4
         if series in METRIC_SERIES and not metric

@@ -1,4 +1,4 @@
-"""Proposals for a thread from its size and tool, and checks of its values."""
+"""Proposals for a thread from its size and tool, and checks of the entered values."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ _TAPER = 1.0 / 16.0
 
 
 def get_series(values: FieldValues) -> ThreadSeries:
-    """Return the chosen series."""
+    """Return the thread series that the operator has chosen."""
     return ThreadSeries(text(values, "SERIES") or ThreadSeries.CUSTOM)
 
 
 def find_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
-    """Return the limits by series, size and class in the unit of the series; None if they are unknown."""
+    """Return the limits for series, size and class in the unit of the series, or None if they are unknown."""
     series, inside = get_series(values), text(values, "SIDE") == INSIDE
     found = find_size(series, text(values, "SIZE"))
     if found is None:
@@ -61,7 +61,7 @@ def find_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits 
 
 
 def propose_diameter(limit_name: str) -> ValueProposal:
-    """Return a proposal for a diameter of the standard; ``limit_name`` is crest or root."""
+    """Return a function that proposes a diameter of the standard; ``limit_name`` is ``crest`` or ``root``."""
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
         known = find_limits(values, setting)
@@ -85,13 +85,13 @@ def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue 
 
 
 def propose_class(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
-    """Propose the usual class of the series."""
+    """Propose the usual tolerance class of the series."""
     allowed = list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
     return allowed[0] if allowed else ""
 
 
 def list_classes_for_side(values: FieldValues) -> tuple[str, ...]:
-    """Return the classes of this series for the chosen side."""
+    """Return the tolerance classes of the series for the chosen side, inside or outside."""
     return list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
 
 
@@ -101,12 +101,12 @@ def has_standard_series(values: FieldValues) -> bool:
 
 
 def propose_taper(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
-    """Propose the taper of the series."""
+    """Propose the taper that the thread series specifies."""
     return _TAPER if get_series(values) in TAPERED_SERIES else 0.0
 
 
 def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the length of a pipe thread."""
+    """Propose the thread length of a pipe thread."""
     series = get_series(values)
     found = find_size(series, text(values, "SIZE"))
     long = get_pipe_thread_length(series, found) if found is not None else 0.0
@@ -114,7 +114,7 @@ def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue
 
 
 def propose_passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the number of passes by pitch, from 4 for the finest to 16 for the coarsest.
+    """Propose the number of passes for the pitch, from 4 for the finest pitch to 16 for the coarsest.
 
     Insert makers recommend these numbers.
     """
@@ -123,19 +123,25 @@ def propose_passes(values: FieldValues, settings: ProgramSettings) -> FieldValue
 
 
 def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
-    """Return the included angle of the flanks from the series, from the tool data, or 60 degrees."""
+    """Return the included flank angle in degrees.
+
+    This is the angle of the series, otherwise the angle in the tool data, otherwise 60.
+    """
     shape = settings.tool(number(values, "T"))
     point = shape.point if shape is not None and shape.kind is ToolKind.THREADING else 0.0
     return get_flank_angle(get_series(values)) or point or 60.0
 
 
 def propose_infeed(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose an infeed angle at least half a degree less than the flank: 29 for 60°, as in the control."""
+    """Propose an infeed angle that is at least half a degree smaller than the flank angle.
+
+    For a thread of 60°, the result is 29°, as in the control.
+    """
     return math.ceil(find_flank_angle(values, settings) / 2.0) - 1.0
 
 
 def propose_threading_rpm(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose a speed that the axis can follow."""
+    """Propose a spindle speed at which the axis can follow the thread."""
     lead = number(values, "PITCH") * number(values, "STARTS")
     across = number(values, "CREST")
     if not lead or not across:
@@ -146,7 +152,7 @@ def propose_threading_rpm(values: FieldValues, settings: ProgramSettings) -> Fie
 
 
 def propose_run_up(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
-    """Propose the distance that the axis needs to reach the lead, at least two pitches."""
+    """Propose the distance within which the axis reaches the lead, at least two pitches."""
     lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
     if not lead or not turns:
         return None
@@ -164,7 +170,7 @@ G35_LEAD_LIMITS_IN = (0.2, 1.0, 2.0)  # in/rev, largest lead without G35, with G
 
 
 def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield the errors of a thread: its dimensions, the machine's limits and the tool."""
+    """Yield the errors of a thread in its dimensions, the machine's limits and the tool."""
     inside = filled_shape.get_text("SIDE") == INSIDE
     crest, root, pitch = (
         filled_shape.get_number("CREST"),
@@ -214,7 +220,7 @@ def check_thread(filled_shape: FilledShape, settings: ProgramSettings) -> Iterat
 
 
 def _flank_checks(filled_shape: FilledShape, settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if the infeed is flatter than the flank.
+    """Yield an error if the infeed angle is larger than the flank angle.
 
     Passes would then cut into the flank that the previous pass has left.
     """
@@ -260,7 +266,7 @@ def _lead_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[Fiel
 
 
 def _relief(filled_shape: FilledShape) -> Iterator[FieldError]:
-    """Yield an error if a pass that ends without pulling out has no relief groove."""
+    """Yield an error if a pass ends without a pull-out and there is no relief groove."""
     lead = filled_shape.get_number("PITCH") * filled_shape.get_number("STARTS")
     relief = filled_shape.get_number("RELIEF")
     if relief <= 0.0:
@@ -323,7 +329,7 @@ def _by_sheet(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldEr
 
 
 def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> Iterator[FieldError]:
-    """Yield an error if the series does not have this size or class; no values are then proposed."""
+    """Yield an error if the series does not have this size or class, in which case no values are proposed."""
     series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
     size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
     if series is not ThreadSeries.CUSTOM and size and find_size(series, size) is None:
@@ -347,7 +353,7 @@ def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> 
 
 
 def find_coarse_step(filled_shape: FilledShape, settings: ProgramSettings) -> float:
-    """Return the step of the axis under the G35 or G35F2 that a lead requires, or 0.
+    """Return the step of the axis under the G35 or G35F2 that a lead requires, or 0 if neither is required.
 
     The step is in the unit of the program.
     """

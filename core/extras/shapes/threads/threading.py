@@ -1,4 +1,7 @@
-"""Threads by series, size and class or by dimensions: outside, in a bore, tapered, multi-start."""
+"""Thread shape, defined by series, size and class or by dimensions.
+
+The thread is outside or in a bore, and may be tapered or multi-start.
+"""
 
 from __future__ import annotations
 
@@ -53,12 +56,15 @@ from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, 
 
 
 def calculate_first_depth(filled_shape: FilledShape) -> float:
-    """Return the depth of the first pass per side for a constant chip area: the depth divided by √N."""
+    """Return the depth of the first pass per side for a constant chip area.
+
+    This is the depth of the thread divided by √N for N passes.
+    """
     return calculate_thread_depth(filled_shape) / math.sqrt(max(1.0, filled_shape.get_number("PASSES")))
 
 
 def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> float:
-    """Return the depth of the first pass, rounded up to the step of its word."""
+    """Return the depth of the first pass, rounded up to the resolution of its word."""
     deep, coarse = calculate_first_depth(filled_shape), find_coarse_step(filled_shape, settings)
     return (
         math.ceil(deep / coarse - 1e-6) * coarse if coarse else round_depth_up(deep, metric=settings.metric)
@@ -66,7 +72,10 @@ def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> f
 
 
 def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWriter) -> None:
-    """Write a thread with CYCLE97, which stops at the end of the thread and therefore needs a relief."""
+    """Write a thread with CYCLE97.
+
+    The cycle stops at the end of the thread and therefore needs a relief groove.
+    """
     crest, far = filled_shape.get_number("CREST"), _far(filled_shape)
     turns = "M04" if filled_shape.get_text("HAND") == LEFT else "M03"
     inside = filled_shape.get_text("SIDE") == INSIDE
@@ -83,7 +92,10 @@ def _cycle97(filled_shape: FilledShape, _settings: ProgramSettings, code: CodeWr
 
 
 def _far(filled_shape: FilledShape) -> float:
-    """Return the diameter before threading at the far end of a tapered thread."""
+    """Return the diameter before threading at the far end of the thread.
+
+    It differs from the start diameter for a tapered thread.
+    """
     outwards = -1.0 if filled_shape.get_text("SIDE") == INSIDE else 1.0
     return filled_shape.get_number("CREST") + outwards * filled_shape.get_number(
         "TAPER"
