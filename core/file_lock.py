@@ -143,9 +143,9 @@ def remove_abandoned_files(folder: Path) -> None:
             if not _is_written_elsewhere(leftover):
                 _remove(leftover)
         for ending in _BESIDE:
-            for beside in folder.glob(f".*{_ENDING}{ending}"):
-                if not beside.with_name(beside.name.removesuffix(ending)).exists():
-                    _remove(beside)
+            for companion_file in folder.glob(f".*{_ENDING}{ending}"):
+                if not companion_file.with_name(companion_file.name.removesuffix(ending)).exists():
+                    _remove(companion_file)
 
 
 def _opened(path: Path) -> int:

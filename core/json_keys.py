@@ -49,10 +49,10 @@ def declare_row_keys(
     the fields of the type in the same order.
     """
     hints = get_type_hints(row)
-    told = {name: (unit, meaning) for name, unit, meaning in (_cells(line, 3) for line in _lines(text))}
-    if list(told) != list(hints):
-        raise ValueError(f"{row.__name__} has the fields {', '.join(hints)}, not {', '.join(told)}")
-    return tuple(JsonKey(f"{path}{name}", find_json_type(hint), *told[name]) for name, hint in hints.items())
+    cells = {name: (unit, meaning) for name, unit, meaning in (_cells(line, 3) for line in _lines(text))}
+    if list(cells) != list(hints):
+        raise ValueError(f"{row.__name__} has the fields {', '.join(hints)}, not {', '.join(cells)}")
+    return tuple(JsonKey(f"{path}{name}", find_json_type(hint), *cells[name]) for name, hint in hints.items())
 
 
 def prefix_keys(path: str, keys: Collection[JsonKey]) -> tuple[JsonKey, ...]:

@@ -152,12 +152,12 @@ class SampleLog:
         self._none = np.empty((0, self.row_width))
         self.newest_time_s = -np.inf  # Time of the newest row.
 
-    def append_row(self, t: float, *figures: float) -> None:
+    def append_row(self, t: float, *values: float) -> None:
         """Append one row at time ``t``.
 
         If the buffer is full, the oldest row is discarded.
         """
-        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *figures)
+        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *values)
         self._added += 1
         self.newest_time_s = t
 

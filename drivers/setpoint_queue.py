@@ -253,11 +253,11 @@ def plan_straight_move(
 
     The axis with index ``axis_index`` moves to ``target``; the other axes remain at rest.
     """
-    way = target - rest_positions[axis_index]
-    sign = math.copysign(1.0, way)
-    top = min(speed, math.sqrt(abs(way) * accel))
+    travel = target - rest_positions[axis_index]
+    sign = math.copysign(1.0, travel)
+    top = min(speed, math.sqrt(abs(travel) * accel))
     ramp = top / accel
-    cruise = (abs(way) - top * ramp) / top if top > 0.0 else 0.0
+    cruise = (abs(travel) - top * ramp) / top if top > 0.0 else 0.0
     dt = np.array([ramp, max(cruise, 0.0), ramp])
     p, v = np.tile(np.asarray(rest_positions, dtype=np.float64), (3, 1)), np.zeros((3, len(rest_positions)))
     a = np.zeros_like(v)

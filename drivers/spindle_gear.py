@@ -260,8 +260,8 @@ class CamGearing:
             self.cam_position_rev, self._speed = goal, max(speed, 0.0)
             return
         if bend < math.inf:
-            behind = goal - speed * dt - self.cam_position_rev
-            wanted = speed + math.copysign(math.sqrt(2.0 * bend * abs(behind)), behind)
+            lag_rev = goal - speed * dt - self.cam_position_rev
+            wanted = speed + math.copysign(math.sqrt(2.0 * bend * abs(lag_rev)), lag_rev)
             least, most = self._speed - bend * dt, self._speed + bend * dt
             top = min(max(min(max(wanted, 0.0), top), least), most)
         self._speed = top

@@ -40,11 +40,11 @@ def run(args: argparse.Namespace) -> int:
     around = read_context(args)
     source = read_source(path, args)
     timeline = Timeline.from_program(source, around.setup, around.machine, ideal=args.ideal)
-    figures = importlib.import_module(f"app.cli.figures.{source.dialect}_output")
+    output_module = importlib.import_module(f"app.cli.figures.{source.dialect}_output")
     if not args.json:
-        sys.stdout.write(figures.TABLE_HEAD)
+        sys.stdout.write(output_module.TABLE_HEAD)
     with ProgressBar(f"expanding {path.name}", len(source.lines)) as progress:
-        for last, text in _block_texts(timeline, source, figures, json_output=args.json):
+        for last, text in _block_texts(timeline, source, output_module, json_output=args.json):
             sys.stdout.write(text)
             progress.report_progress(last)
     return print_diagnostics(path, timeline)
@@ -63,12 +63,12 @@ def _block_texts(
             yield int(each.series.n[-1]), text
             continue
         block, t0, t1 = each
-        told = (
+        result = (
             output_module.make_block_json(block, source.lines[block.line - 1], t0, t1)
             if json_output
             else None
         )
-        yield block.n, output_module.format_row(block, t0) if told is None else json.dumps(told) + "\n"
+        yield block.n, output_module.format_row(block, t0) if result is None else json.dumps(result) + "\n"
 
 
 def print_diagnostics(path: Path, timeline: Timeline) -> int:

@@ -192,7 +192,7 @@ def check(file: str | None, *, json_output: bool) -> int:
         _report(json_output, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.findings))
         return EXIT_USAGE
-    answers, told = check_machine(machine), _unaccepted_changes(machine)
+    answers, changes = check_machine(machine), _unaccepted_changes(machine)
     _report(
         json_output,
         {
@@ -200,7 +200,7 @@ def check(file: str | None, *, json_output: bool) -> int:
             "machine": machine.name,
             "backend": machine.backend,
             "errors": [],
-            "changes": [change._asdict() for change in told],
+            "changes": [change._asdict() for change in changes],
             "ports": [{**row._asdict(), "verdict": row.verdict} for row in answers.rows],
             "rights": [right._asdict() for right in answers.rights],
             "warnings": answers.warnings,
@@ -221,7 +221,7 @@ def check(file: str | None, *, json_output: bool) -> int:
         for right in answers.rights:
             sys.stdout.write(f"  computer: {right.name}: {right.granted}\n")
             sys.stdout.write(f"    {right.missing}\n" if right.missing else "")
-        sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in told))
+        sys.stdout.write("".join(f"  changed since it was accepted: {change}\n" for change in changes))
     said = (*answers.warnings, *answers.faults)
     sys.stderr.write("".join(f"turndesk: {machine.source}: {text}\n" for text in said))
     return EXIT_ERRORS if answers.faults else EXIT_OK
@@ -286,19 +286,19 @@ def require_accepted(machine: Machine) -> None:
     from app.compose.backends.connection import needs_real_time
 
     try:
-        told = list_changes(machine)
+        changes = list_changes(machine)
     except CommandError:
         if needs_real_time(machine):
             raise
         return  # a simulated machine does not need a store
-    if not told:
+    if not changes:
         return
-    lines = [str(change) for change in told[:MAX_PRINTED_CHANGES]]
-    if len(told) > MAX_PRINTED_CHANGES:
+    lines = [str(change) for change in changes[:MAX_PRINTED_CHANGES]]
+    if len(changes) > MAX_PRINTED_CHANGES:
         lines.append(
             Message(
                 "… and {told_count} more; to see all changes, run: turndesk machine check {source}",
-                told_count=len(told) - MAX_PRINTED_CHANGES,
+                told_count=len(changes) - MAX_PRINTED_CHANGES,
                 source=machine.source,
             )
         )
@@ -330,12 +330,12 @@ def accept(file: str, args: argparse.Namespace) -> int:
 
     machine = read_machine(file)
     with open_store() as store:
-        told, who = (
+        changes, who = (
             list_differences(machine, store.settings),
             get_change_author(store, args, ProtectedChange.MACHINE_FILE),
         )
         store.settings.save_setting(get_settings_key(machine), create_record(machine)).result()
-        said = "; ".join(str(change) for change in told or ())
+        said = "; ".join(str(change) for change in changes or ())
         by = "" if who == COMMAND_LINE_USER else f" by {who}"
         store.events.log_event(
             "machine",
@@ -347,8 +347,8 @@ def accept(file: str, args: argparse.Namespace) -> int:
                 text=said,
             ),
         )
-    sys.stdout.write("".join(f"  {change}\n" for change in told or ()))
-    how = "this file was never accepted before" if told is None else _counted(len(told))
+    sys.stdout.write("".join(f"  {change}\n" for change in changes or ()))
+    how = "this file was never accepted before" if changes is None else _counted(len(changes))
     sys.stdout.write(f"{machine.source} is accepted: {how}\n")
     return EXIT_OK
 

@@ -109,13 +109,13 @@ def apply_stored_part(
     try:
         return replace(setting, stock=_said(stored.stock, args, around, setting))
     except CommandError as error:
-        way = "specify the stock again with --stock and --keep-stock"
+        remedy = "specify the stock again with --stock and --keep-stock"
         raise CommandError(
             Message(
                 "the stock saved with {program} cannot be used: {error}; {details}",
                 program=program,
                 error=error,
-                details=way,
+                details=remedy,
             ),
             "kept-stock",
         ) from error

@@ -202,9 +202,9 @@ def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Name
         found = prove_with_findings(job, source, progress.report_progress)
     report, part, _, compare = found
     if args.json:
-        told = make_report_json(str(path), report, part, optional_stop=args.optional_stop)
-        told |= {"compare": compare} if compare is not None else {}
-        sys.stdout.write(json.dumps(told) + "\n")
+        report_json = make_report_json(str(path), report, part, optional_stop=args.optional_stop)
+        report_json |= {"compare": compare} if compare is not None else {}
+        sys.stdout.write(json.dumps(report_json) + "\n")
     else:
         sys.stdout.write(_proof_text(path, report, part))
         stops = count_stops(report, optional_stop=args.optional_stop)

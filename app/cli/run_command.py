@@ -153,8 +153,8 @@ def _say(path: Path, text: str) -> None:
 def _refused(args: argparse.Namespace, why: str, report: ProofReport) -> int:
     sys.stderr.write(f"turndesk: {why}\n")
     if args.json:
-        figures = _figures(None, report.dialect)
-        _write_line({"state": "refused", "final": _final_position(report, None), **figures, "events": ""})
+        run_values = _figures(None, report.dialect)
+        _write_line({"state": "refused", "final": _final_position(report, None), **run_values, "events": ""})
     return EXIT_ERRORS
 
 
@@ -162,17 +162,17 @@ def _write(
     args: argparse.Namespace, path: Path, outcome: RunOutcome, report: ProofReport, events: str
 ) -> None:
     final = _final_position(report, outcome)
-    figures = _figures(outcome, report.dialect)
+    run_values = _figures(outcome, report.dialect)
     if args.json:
-        _write_line({"state": outcome.final_state, "final": final, **figures, "events": events})
+        _write_line({"state": outcome.final_state, "final": final, **run_values, "events": events})
         return
     unit = "in" if report.dialect == "omniturn" else "mm"
     sys.stdout.write(
         f"{path}: {outcome.final_state} after {outcome.elapsed_s:.2f} s (proved: "
         f"{report.times.cycle_s:.2f} s)\n"
         f"  at {_shown_place(final, mill=report.mill_results is not None)} {unit};"
-        f" following error at most {figures['max_following_error']:.5f} {unit},"
-        f" {figures['underruns']} underruns; log {events}\n"
+        f" following error at most {run_values['max_following_error']:.5f} {unit},"
+        f" {run_values['underruns']} underruns; log {events}\n"
     )
 
 

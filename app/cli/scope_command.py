@@ -54,8 +54,8 @@ def run(args: argparse.Namespace) -> int:
             return EXIT_OK
         if args.csv is not None:
             save_csv(record, Path(args.csv))
-    told = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
-    sys.stdout.write(told + "\n")
+    output_text = json.dumps(_object(path, record, args.csv)) if args.json else _text(path, record, args.csv)
+    sys.stdout.write(output_text + "\n")
     return EXIT_OK
 
 

@@ -289,12 +289,12 @@ def run_transfer(transfer: SerialLineTransfer[T], description: str) -> T | None:
     from core.ports import DriverError
 
     with ThreadPoolExecutor(1, thread_name_prefix="serial") as pool, ProgressBar(description) as progress:
-        future, told = pool.submit(transfer.run_transfer), ""
+        future, printed_text = pool.submit(transfer.run_transfer), ""
         try:
             while not wait([future], _POLL_INTERVAL_S).done:
                 progress.total = transfer.progress.total_bytes
                 progress.report_progress(transfer.progress.done_bytes)
-                told = _tell(told, transfer.progress)
+                printed_text = _tell(printed_text, transfer.progress)
             return future.result()
         except (DriverError, FileOperationError) as error:
             sys.stderr.write(f"turndesk: {error}\n")

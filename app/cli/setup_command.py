@@ -55,12 +55,12 @@ def run(args: argparse.Namespace) -> int:
 def _save(args: argparse.Namespace) -> int:
     from app.compose.machine.setup_file import save_setup
 
-    told = save_setup(Path(args.file), args.machine)
+    setup = save_setup(Path(args.file), args.machine)
     sys.stdout.write(
-        f"setup saved to {args.file}: data store, programs: {told.program_count}, {told.machine_name}\n"
+        f"setup saved to {args.file}: data store, programs: {setup.program_count}, {setup.machine_name}\n"
     )
-    if told.omitted_files:
-        sys.stdout.write(f"skipped, because they are not programs: {', '.join(told.omitted_files)}\n")
+    if setup.omitted_files:
+        sys.stdout.write(f"skipped, because they are not programs: {', '.join(setup.omitted_files)}\n")
     return EXIT_OK
 
 
@@ -68,13 +68,13 @@ def _load(args: argparse.Namespace) -> int:
     from app.compose.machine.setup_file import check_setup, load_setup
 
     if args.check:
-        told = check_setup(Path(args.file))
+        setup = check_setup(Path(args.file))
         sys.stdout.write(
-            f"{args.file} is undamaged: data store, programs: {told.program_count}, {told.machine_name}\n"
+            f"{args.file} is undamaged: data store, programs: {setup.program_count}, {setup.machine_name}\n"
         )
         return EXIT_OK
     who = get_permitted_user(open_store, args, ProtectedChange.RESTORE)
-    told, kept = load_setup(Path(args.file))
+    setup, kept = load_setup(Path(args.file))
     log_user_change(
         open_store,
         who,
@@ -82,13 +82,13 @@ def _load(args: argparse.Namespace) -> int:
             "setup loaded from {file}; the previous data was saved as {saved}", file=args.file, saved=kept
         ),
     )
-    beside = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
+    backup_text = Message("; the previous data was saved as {saved}", saved=kept) if kept else ""
     sys.stdout.write(
-        f"setup loaded from {args.file}: data store, programs: {told.program_count}, "
-        f"{told.machine_name}{beside}\n"
+        f"setup loaded from {args.file}: data store, programs: {setup.program_count}, "
+        f"{setup.machine_name}{backup_text}\n"
     )
-    if told.machine_path is not None:
-        sys.stdout.write(f"start with: turndesk --machine {told.machine_path}\n")
+    if setup.machine_path is not None:
+        sys.stdout.write(f"start with: turndesk --machine {setup.machine_path}\n")
     return EXIT_OK
 
 

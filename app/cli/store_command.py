@@ -185,12 +185,12 @@ def _upgrade(_args: argparse.Namespace) -> int:
     if there:
         with open_store():
             pass
-    told = (
+    status_text = (
         Message("the data store in {data_folder} is up to date", data_folder=find_data_folder())
         if there
         else Message("{data_folder} does not contain any stored data yet", data_folder=find_data_folder())
     )
-    sys.stdout.write(f"{told}\n")
+    sys.stdout.write(f"{status_text}\n")
     return EXIT_OK
 
 

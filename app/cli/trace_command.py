@@ -91,14 +91,14 @@ def _write_json(timeline: Timeline, args: argparse.Namespace, path: Path) -> Non
     from app.cli.figures.proof_output import make_diagnostic_json
     from app.cli.figures.units import round_seconds
 
-    told = {
+    result = {
         "file": str(path),
         "out": None if timeline.has_errors else args.out,
         "dt": args.dt,
         "cycle_time_s": round_seconds(timeline.time_s),
         "diagnostics": [make_diagnostic_json(each) for each in timeline.diagnostics],
     }
-    sys.stdout.write(json.dumps(told) + "\n")
+    sys.stdout.write(json.dumps(result) + "\n")
 
 
 class _Table:

@@ -108,10 +108,10 @@ def read_stored_shapes() -> dict[int, ToolShape]:
     with convert_to_command_error(StoreError), Store.open(folder, read_only=True) as store:
         shapes, tools = store.offsets.tool_shapes.read_rows(), store.offsets.tool_offsets.read_rows()
     if wrong := describe_mistakes(shapes, tools):
-        way = "correct the shape on its page (F8) or with 'turndesk offsets set'"
+        remedy = "correct the shape on its page (F8) or with 'turndesk offsets set'"
         raise CommandError(
             Message(
-                "a stored tool shape is invalid: {wrong}; {details}", wrong="; ".join(wrong), details=way
+                "a stored tool shape is invalid: {wrong}; {details}", wrong="; ".join(wrong), details=remedy
             ),
             "invalid-shape",
         )

@@ -150,14 +150,14 @@ def save_document(document: Document, text: str, archive: VersionArchive, may_ov
     foreign = there is not None and not _matches_opened(document, there)
     if foreign and not may_overwrite:
         return CHANGED_EXTERNALLY
-    trouble = ""
+    archive_error = ""
     if there is not None:
-        trouble = _kept(archive, document.name, there, "text before editing")
-        if trouble and foreign:
+        archive_error = _kept(archive, document.name, there, "text before editing")
+        if archive_error and foreign:
             return CHANGED_EXTERNALLY  # Content from another program is not replaced before it is archived.
     data = document.encode(text)
     write_program_file(document.path, data)
-    return _kept(archive, document.name, data, "saved in the editor") or trouble
+    return _kept(archive, document.name, data, "saved in the editor") or archive_error
 
 
 def _matches_opened(document: Document, data: bytes) -> bool:
@@ -262,8 +262,8 @@ class DraftStore:
         del self._wanted[name]
         self.worker.enqueue(lambda: self._write_draft(name, text), self._written, self._written)
 
-    def _written(self, trouble: str) -> None:
-        self.error_text = trouble
+    def _written(self, error_text: str) -> None:
+        self.error_text = error_text
         self._go_on()
 
     def _write_draft(self, name: str, text: str | None) -> str:

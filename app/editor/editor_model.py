@@ -292,12 +292,12 @@ class EditorModel:
         self.stage = EditorStage.SAVING
         self.worker.enqueue(
             lambda: save_document(document, text, self.version_archive, replacing),
-            lambda trouble: self._saved(document, text, trouble),
+            lambda problem: self._saved(document, text, problem),
             self._not_saved,
         )
 
-    def _saved(self, document: Document, text: str, trouble: str) -> None:
-        if trouble == CHANGED_EXTERNALLY:
+    def _saved(self, document: Document, text: str, problem: str) -> None:
+        if problem == CHANGED_EXTERNALLY:
             leave = self._leaving
             self._not_saved(messages.CHANGED_ON_DISK.format(document.name))
             self.pending_action = lambda now: self.save_document(now, leave_after=leave, may_overwrite=True)
@@ -307,10 +307,10 @@ class EditorModel:
             self.draft_store.delete_draft(each)
         self.document, self.stage = replace(document, text=text, is_new=False), EditorStage.OPEN
         self._changed = True
-        self.message = messages.VERSION_NOT_SAVED.format(trouble) if trouble else ""
+        self.message = messages.VERSION_NOT_SAVED.format(problem) if problem else ""
         if self._leaving:
             self._go(self.document)
-        elif not trouble:
+        elif not problem:
             self.message = Message("{document} SAVED", document=document.name)
 
     def _not_saved(self, why: str) -> None:

@@ -493,7 +493,7 @@ class EditorPage(EditorParts):
         if self.mode is EditorMode.PATH:
             ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
             ways[Qt.Key.Key_Down] = (0, 1)
-            chords |= {key: partial(self.path_view.pan_view, *way) for key, way in ways.items()}
+            chords |= {key: partial(self.path_view.pan_view, *pan_step) for key, pan_step in ways.items()}
         return chords
 
     def _handle_closed(self) -> None:

@@ -74,9 +74,9 @@ class JogCross(TouchPanel):
             self._target(painter, QRectF(x, y, wide - 0.8 * u, high - 0.6 * u), each)
         return QRectF(area.x() + wide, area.y() + high, wide - 0.8 * u, high - 0.6 * u)
 
-    def _target(self, painter: ThemedPainter, box: QRectF, way: JogDirection) -> None:
+    def _target(self, painter: ThemedPainter, box: QRectF, direction: JogDirection) -> None:
         u, held = self.theme.u, self._hold.active_jog
-        axis, sign, arrow = way.axis, way.direction_sign, way.arrow_point
+        axis, sign, arrow = direction.axis, direction.direction_sign, direction.arrow_point
         moving = held is not None and held.axis == axis and held.velocity * sign > 0
         painter.draw_box(
             box.adjusted(0.1 * u, 0.1 * u, -0.1 * u, -0.1 * u),
@@ -93,10 +93,10 @@ class JogCross(TouchPanel):
         up = 0.0 if low else 0.16
         aside = box.translated(-arrow[0] * 0.16 * box.width(), -arrow[1] * up * box.height())
         mark = self.axis_suffix if axis in "XYZ" else ""
-        name = f"{way.displayed_axis or axis}{mark}{'+' if sign > 0 else '−'}"
+        name = f"{direction.displayed_axis or axis}{mark}{'+' if sign > 0 else '−'}"
         painter.draw_text_line(aside, name, 3.4, "on_state" if moving else "text", at=ALIGN_CENTER)
         corner = box.adjusted(0.8 * u, 0.3 * u, 0, 2.4 * u - box.height())
-        painter.draw_text_line(corner, way.label, 1.5, "on_state" if moving else "soft")
+        painter.draw_text_line(corner, direction.label, 1.5, "on_state" if moving else "soft")
         self.controls.append(self._make_control(box, axis, sign))
 
     def _make_control(self, box: QRectF, axis: str, sign: int) -> TouchControl:

@@ -202,7 +202,7 @@ class PendantButtons:
     def __post_init__(self) -> None:
         both = ((axis, sign) for axis in self.axis_names for sign in (1, -1))
         named = {jog_button_input(axis, sign): (axis, sign) for axis, sign in both}
-        self.jog_buttons = {name: way for name, way in named.items() if name in self.machine.inputs}
+        self.jog_buttons = {name: jog_move for name, jog_move in named.items() if name in self.machine.inputs}
 
     def update(self, snapshot: Snapshot) -> None:
         """Handle presses and releases of the buttons.

@@ -369,7 +369,7 @@ class SetterTouchOff:
         ways = find_touch_directions(self.tool_setting.tool_row)
         if (axis, sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
-            words = tr(" OR ").join(format_direction(way) for way in ways)
+            words = tr(" OR ").join(format_direction(direction) for direction in ways)
             return tr(Message(text, number=self.tool_setting.tool_number, ways=words))
         self._presses += 1
         return TouchOffTool(axis, sign, self.lease_s, self._presses, button)
@@ -396,14 +396,14 @@ class SetterTouchOff:
             self._found(touched, touched.touch_position, self.setter)
 
     def _found(self, touched: TouchResult, place: float, model: SetterModel) -> None:
-        way = (touched.axis, touched.sign)
-        value = find_zero_position(place, way, model, self.tool_setting.tool_row)
+        touch_direction = (touched.axis, touched.sign)
+        value = find_zero_position(place, touch_direction, model, self.tool_setting.tool_row)
         metric = self.tool_setting.history.value_mode.is_metric
         about = format_signed(touched.uncertainty_mm, metric).removeprefix("+")
         cause = tr(
             Message(
                 "measured at the tool setter, direction {direction}, ±{error}",
-                direction=format_direction(way),
+                direction=format_direction(touch_direction),
                 error=about,
             )
         )

@@ -140,14 +140,14 @@ class ToolSettingPanel(Panel):
             )
             return
         x, z = self._tip
-        figures = (
+        axis_texts = (
             (
                 f"X {'Ø' if mode.is_diameter else 'R'}",
                 format_length(2 * x if mode.is_diameter else x, mode.is_metric),
             ),
             ("Z", format_length(z, mode.is_metric)),
         )
-        for number, (name, figure) in enumerate(figures):
+        for number, (name, figure) in enumerate(axis_texts):
             row = QRectF(room.x(), room.y() + 2.0 * u + number * high, room.width(), high)
             painter.draw_text_line(row, name, 2.2, "accent")
             painter.draw_text_line(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=ALIGN_RIGHT)

@@ -43,10 +43,10 @@ class MillTouchCalculator:
 
         The position is calculated for the rotary axes at ``zero_positions``.
         """
-        stands = self._find_stationary_state()
-        if isinstance(stands, str):
-            return stands
-        machine, angles, slides = stands
+        stationary_state = self._find_stationary_state()
+        if isinstance(stationary_state, str):
+            return stationary_state
+        machine, angles, slides = stationary_state
         number = self.desk.read_snapshot().modal.tool
         row = self.desk.offset_book.mill_tools.get(number)
         if row is None:
@@ -80,8 +80,8 @@ class MillTouchCalculator:
 
     def find_angle(self, axis_name: str) -> float | str:
         """Return the machine position of a rotary axis in degrees, or why it is unknown."""
-        stands = self._find_stationary_state()
-        return stands if isinstance(stands, str) else stands[1][axis_name]
+        stationary_state = self._find_stationary_state()
+        return stationary_state if isinstance(stationary_state, str) else stationary_state[1][axis_name]
 
     def find_nose_height(self) -> float | str:
         """Return the height of the spindle nose above the zero of the active preset in mm.
@@ -89,10 +89,10 @@ class MillTouchCalculator:
         This height is the length L of a tool whose tip touches this zero. If the height is unknown, return
         the reason as text.
         """
-        stands = self._find_stationary_state()
-        if isinstance(stands, str):
-            return stands
-        machine, angles, slides = stands
+        stationary_state = self._find_stationary_state()
+        if isinstance(stationary_state, str):
+            return stationary_state
+        machine, angles, slides = stationary_state
         if abs(machine.tool_frame(angles)[2][2] - 1.0) > _UPRIGHT_TOLERANCE:
             return tr("TOOL TILTED. TURN ROTARY AXES TO SET IT SQUARE TO WORKPIECE")
         return machine.make_transform(angles).to_frame_point(slides)[2]

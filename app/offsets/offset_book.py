@@ -270,7 +270,7 @@ class OffsetBook:
         """
         self._reopened = store, error_text, rows
 
-    def _turn_to(self, store: Store | None, trouble: str, rows: OffsetRows | None) -> str:
+    def _turn_to(self, store: Store | None, error_text: str, rows: OffsetRows | None) -> str:
         self._reopened, self._saving = None, None
         if store is not self.store or (rows is not None and rows != self._shown()):
             self.changes += 1
@@ -278,7 +278,7 @@ class OffsetBook:
             self.show_rows(rows)
         self.store, self.has_read_failed = store, self.has_read_failed and store is None and rows is None
         self.lock_reason = (
-            "" if store is not None else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=trouble)
+            "" if store is not None else Message("OFFSETS CANNOT BE SAVED: {problem}", problem=error_text)
         )
         return self._read_or_why()
 

@@ -132,12 +132,12 @@ def format_set_fields(row: MillRow | PresetRow) -> str:
     """Return the fields of a mill's tool or preset that have values, with the control's field names."""
     fields = FIELDS_BY_KIND[OffsetKind.MILL_TOOL if isinstance(row, MillRow) else OffsetKind.PRESET]
     values: tuple[FieldValue, ...] = tuple(row)
-    told = [
+    field_texts = [
         field.label if field.field_type is FieldType.BOOLEAN else f"{field.label} {format_cell(field, value)}"
         for field, value in zip(fields.values(), values, strict=True)
         if value or field.name in {"x", "y", "z", "rotation"}
     ]
-    return "  ".join(told) or formats.NO_VALUE
+    return "  ".join(field_texts) or formats.NO_VALUE
 
 
 def format_cell(field: RowField, value: FieldValue) -> str:

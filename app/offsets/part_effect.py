@@ -50,14 +50,14 @@ def _row(pair: Pair, mode: ValueMode) -> TableRow:
     assert one is not None
     change = pair.difference
     same = change is not None and abs(change) <= FEATURE_TOLERANCE_MM
-    told = _NO_VALUE if same else tr("ONLY IN THE OLD OR THE NEW PART")
+    difference_text = _NO_VALUE if same else tr("ONLY IN THE OLD OR THE NEW PART")
     if change is not None and not same:
-        told = format_signed(change, mode.is_metric)
+        difference_text = format_signed(change, mode.is_metric)
     cells = (
         _name_feature(one, mode),
         _figure(pair.this_feature, mode),
         _figure(pair.other_feature, mode),
-        told,
+        difference_text,
     )
     return TableRow(cells, is_lit=not same, tone=Tone.OFF if same else Tone.PAUSE)
 

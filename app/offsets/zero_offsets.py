@@ -56,14 +56,14 @@ class PresetTable(CellTable):
     @property
     def footer_text(self) -> str:
         """Return the hint about the keys F2, F3 and Esc, with the active preset."""
-        told = tr("F2: set the current tip position to the typed value")
+        f2_hint = tr("F2: set the current tip position to the typed value")
         if self.name in _ROTARY_AXES:
-            told = tr("F2: set the current axis position to the typed value")
+            f2_hint = tr("F2: set the current axis position to the typed value")
         elif self.name == "rotation":
-            told = tr("Press F2 at two points on an edge to set ROT so that the edge has the typed angle")
+            f2_hint = tr("Press F2 at two points on an edge to set ROT so that the edge has the typed angle")
         active = self.offset_book.active_preset
         now = tr(Message("active preset: {preset}", preset=active or tr("0 (from the machine file)")))
-        return f"{told}        {tr('F3: activate preset')}        {now}"
+        return f"{f2_hint}        {tr('F3: activate preset')}        {now}"
 
     @property
     def selected_preset(self) -> PresetRow:

@@ -354,8 +354,8 @@ class PartModel:
 
         Raise EntryError if the file does not exist.
         """
-        beside = self.loaded_program.path.parent if self.loaded_program.path is not None else Path()
-        there = beside / Path(name).expanduser()
+        program_folder = self.loaded_program.path.parent if self.loaded_program.path is not None else Path()
+        there = program_folder / Path(name).expanduser()
         if name and there.is_file():
             return str(there)
         path = self.desk.program_choice.program_folders.find_path(name) if name else None
@@ -437,7 +437,7 @@ class PartModel:
         if self.desk.is_refused(ProtectedChange.STOCK):
             return
         silenced = ", ".join(stored.silenced_checks) or "none"
-        told = Message(
+        change_text = Message(
             "{name}: stock {stock}, checks turned off: {silenced}",
             name=name,
             stock=stored.stock or "not specified",
@@ -445,7 +445,7 @@ class PartModel:
         )
 
         def done(_none: None) -> None:
-            self.persistence.log_change(told)
+            self.persistence.log_change(change_text)
             self._is_kept(name, on_done)
 
         self.worker.enqueue(

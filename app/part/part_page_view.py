@@ -105,11 +105,11 @@ class PartPage(ListPage):
         sheet = make_table(model)
         self.table_panel.show_table(sheet)
         self._show_part(loaded)
-        figures = (
+        has_pad = (
             model.shown_section is PartSection.STOCK and model.accepts_key("1") and not model.has_keyboard
         )
-        if (figures, model.has_keyboard) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
-            self.number_pad.setVisible(figures)
+        if (has_pad, model.has_keyboard) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
+            self.number_pad.setVisible(has_pad)
             self.letter_pad.setVisible(model.has_keyboard)
             self._lay_out()
 

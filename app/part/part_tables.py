@@ -53,8 +53,8 @@ def _notes(page: PartModel) -> tuple[str, ...]:
     found = page.selected_finding
     if found is None:
         return (_nothing(page),)
-    told = [*_wrapped(tr(found.text)), *_wrapped(tr(found.hint))]
-    return (*told[:5], _at(page, found))
+    note_lines = [*_wrapped(tr(found.text)), *_wrapped(tr(found.hint))]
+    return (*note_lines[:5], _at(page, found))
 
 
 def _nothing(page: PartModel) -> str:
@@ -131,8 +131,8 @@ def _stock_notes(page: PartModel) -> tuple[str, ...]:
     if page.selected_field is StockField.STICK_OUT and not page.has_workholding:
         return (tr("THE STICK-OUT IS USED ONLY IF THE MACHINE FILE HAS A [clamping] SECTION"),)
     part = page.loaded_program.part_proof
-    told = part.report.assumptions if part is not None and part.report is not None else ()
-    said = (f"{tr('ASSUMED')}: {tr(each)}" for each in told[:3])
+    assumptions = part.report.assumptions if part is not None and part.report is not None else ()
+    said = (f"{tr('ASSUMED')}: {tr(each)}" for each in assumptions[:3])
     return tuple(textwrap.shorten(each, NOTE_WIDTH_CHARS, placeholder=" …") for each in said)
 
 
@@ -163,10 +163,10 @@ def _format_stock_value(stock: Stock, name: StockField, metric: bool) -> str:
     """Return the text of a field of the assumed stock."""
     if name is StockField.KIND:
         return tr("TUBE") if stock.bore_profile else tr("BAR")
-    figures = {
+    lengths_mm = {
         StockField.DIAMETER: 2.0 * stock.max_radius_mm,
         StockField.LENGTH: stock.front_z_mm - stock.back_z_mm,
         StockField.ALLOWANCE: stock.front_z_mm,
         StockField.BORE: 2.0 * max((r for _, r in stock.bore_profile), default=0.0),
     }
-    return format_length(figures[name], metric) if name in figures else ""
+    return format_length(lengths_mm[name], metric) if name in lengths_mm else ""

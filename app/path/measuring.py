@@ -136,9 +136,9 @@ class SnapPoints:
 
 def _find_end_points(polyline: Polyline) -> FloatArray:
     """Return the ends of blocks and the starts after jumps in path order, as an array of shape (n, 2)."""
-    told = polyline.stroke == Stroke.JUMP
-    told[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
-    index = np.flatnonzero(told)
+    is_end_point = polyline.stroke == Stroke.JUMP
+    is_end_point[polyline.first[1:][np.diff(polyline.first) > 0] - 1] = True
+    index = np.flatnonzero(is_end_point)
     return np.column_stack((polyline.z[index], polyline.x[index]))
 
 
@@ -224,12 +224,12 @@ def measure_on_side(start: SnapPoint, end: SnapPoint, metric: bool, scale: float
 
     ``scale`` is the circumferential length per degree of C, in millimeters.
     """
-    dz, way = end.z - start.z, start.x - end.x
+    dz, arc_length_mm = end.z - start.z, start.x - end.x
     return [
         ("ΔZ", formats.format_length(dz, metric)),
-        ("ΔC", f"{formats.format_angle(way / scale)}°"),
-        (tr("ARC LENGTH"), formats.format_length(way, metric)),
-        *_straight(dz, way, metric, tr("TO Z")),
+        ("ΔC", f"{formats.format_angle(arc_length_mm / scale)}°"),
+        (tr("ARC LENGTH"), formats.format_length(arc_length_mm, metric)),
+        *_straight(dz, arc_length_mm, metric, tr("TO Z")),
     ]
 
 
@@ -291,7 +291,7 @@ def find_largest_distance(before: Polyline, after: Polyline) -> LargestDistance 
     cut = np.flatnonzero(after.stroke >= Stroke.TURN)
     if not len(cut):
         return None
-    way = np.hypot(after.z[cut] - before.z[cut], after.x[cut] - before.x[cut])
-    at = int(np.argmax(way))
-    distance = float(way[at]) if way[at] > SAME_POINT_MM else 0.0
+    distances_mm = np.hypot(after.z[cut] - before.z[cut], after.x[cut] - before.x[cut])
+    at = int(np.argmax(distances_mm))
+    distance = float(distances_mm[at]) if distances_mm[at] > SAME_POINT_MM else 0.0
     return LargestDistance(distance, float(after.z[cut[at]]), float(after.x[cut[at]]))

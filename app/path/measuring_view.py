@@ -96,13 +96,13 @@ class Measurement:
         """
         self._features = SnapPoints(self.pane.polyline)
 
-    def _jump(self, way: tuple[int, int]) -> None:
+    def _jump(self, direction: tuple[int, int]) -> None:
         self._features.update_intersections(self.pane.find_visible_area())
-        self._go(self._features.find_in_direction(self.cursor.z, self.cursor.x, way))
+        self._go(self._features.find_in_direction(self.cursor.z, self.cursor.x, direction))
 
-    def _creep(self, way: tuple[int, int]) -> None:
+    def _creep(self, direction: tuple[int, int]) -> None:
         step = self.pane.pixel_size_mm
-        self._go(SnapPoint(self.cursor.z + way[0] * step, self.cursor.x + way[1] * step))
+        self._go(SnapPoint(self.cursor.z + direction[0] * step, self.cursor.x + direction[1] * step))
 
     def _step(self, steps: int) -> None:
         self._go(self._features.find_following(self.cursor.z, self.cursor.x, steps))
@@ -191,5 +191,5 @@ class Measurement:
 
 def _find_distance(pane: PathPane, spot: SnapPoint, z: float, x: float) -> float:
     """Return the distance in pixels between a point and a position."""
-    way = pane.map_to_pane(spot.z, spot.x) - pane.map_to_pane(z, x)
-    return float((way.x() ** 2 + way.y() ** 2) ** 0.5)
+    offset_px = pane.map_to_pane(spot.z, spot.x) - pane.map_to_pane(z, x)
+    return float((offset_px.x() ** 2 + offset_px.y() ** 2) ** 0.5)

@@ -89,8 +89,8 @@ class PartPane(PathPane):
         shown = self.part_player.result
         if shown is not None and (stock := shown.part_instant.stock) is not None:
             left = self._left_of(shown, stock)
-            beside = BESIDE * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
-            z0, z1, x0, x1 = left, stock.front_z_mm + beside, 0.0, stock.max_radius_mm + 0.5 * beside
+            margin_mm = BESIDE * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
+            z0, z1, x0, x1 = left, stock.front_z_mm + margin_mm, 0.0, stock.max_radius_mm + 0.5 * margin_mm
         u = self.theme.u
         left_band, low_band = _X_BAND * u, _Z_BAND * u
         wide, high = self.area.width() - left_band, self.area.height() - low_band

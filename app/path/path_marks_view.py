@@ -231,11 +231,11 @@ def inside_room(box: QRectF, room: QRectF) -> QRectF:
 
 def _draw_arrow(painter: QPainter, theme: ScreenTheme, start: QPointF, end: QPointF) -> None:
     """Draw an arrowhead at the end of a leg if the leg is long enough."""
-    way, u = end - start, theme.u
-    length = math.hypot(way.x(), way.y())
+    leg_vector, u = end - start, theme.u
+    length = math.hypot(leg_vector.x(), leg_vector.y())
     if length < 2.5 * u:
         return
-    along = way / length
+    along = leg_vector / length
     across = QPointF(-along.y(), along.x())
     back = end - along * 1.6 * u
     painter.save()
@@ -307,8 +307,8 @@ def make_part_title(pane: PathPane) -> str:
     """
     shown = pane.part_player.result if pane.part_player is not None else None
     if pane.part_player is None or shown is None:
-        trouble = pane.part_player.error_text if pane.part_player is not None else ""
-        return trouble or tr("PART  ·  CALCULATING …")
+        error_text = pane.part_player.error_text if pane.part_player is not None else ""
+        return error_text or tr("PART  ·  CALCULATING …")
     wrong = find_pane_errors(pane)
     if wrong:
         return tr(Message("LINE {line}: {what}", line=wrong[-1].line, what=tr(wrong[-1].message)))

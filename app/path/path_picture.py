@@ -344,10 +344,10 @@ class PictureBuilder:
     def _locked(self, block: Block) -> None:
         if self._turned is None:
             self._turned = FaceAndSideBuilder(len(self._line))
-        stroke, way = _stroke(block), find_mill_points(block)
-        self._turned.add_move(block, stroke, way)
+        stroke, mill_points = _stroke(block), find_mill_points(block)
+        self._turned.add_move(block, stroke, mill_points)
         if block.plane is not None:
-            self._add_mill_move(block, block.plane, way, stroke)
+            self._add_mill_move(block, block.plane, mill_points, stroke)
         elif block.kind is not BlockKind.ROTATE:
             self._move(block, stroke)
 
@@ -394,11 +394,11 @@ def build_picture(
 
     ``watch`` is called with the block count at intervals. It may raise an exception to cancel.
     """
-    sketch, count, told = PictureBuilder(), 0, 0
+    sketch, count, reported_count = PictureBuilder(), 0, 0
     for each in blocks:
         count += sketch.add_timed(each)
-        if count - told >= BLOCKS_PER_CHECK:
-            told = count
+        if count - reported_count >= BLOCKS_PER_CHECK:
+            reported_count = count
             watch(count)
     return sketch.build_picture()
 

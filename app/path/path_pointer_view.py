@@ -104,8 +104,8 @@ class PathPointer:
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
         """Magnify by the change in the distance between two touches, around their midpoint."""
         self._pane = None
-        way = one - other
-        spread, before = max(MIN_PINCH_PX, math.hypot(way.x(), way.y())), self._spread
+        finger_offset = one - other
+        spread, before = max(MIN_PINCH_PX, math.hypot(finger_offset.x(), finger_offset.y())), self._spread
         self._spread = spread
         if before is not None and before != spread:
             self.on_magnify(spread / before, (one + other) / 2)

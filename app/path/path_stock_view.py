@@ -45,10 +45,10 @@ class Blank:
         face = max(
             self.stock.back_z_mm, self._face if self._face is not None else min(z0, self.stock.front_z_mm)
         )
-        beside = BESIDE * (self.stock.front_z_mm - face + 2.0 * self.stock.max_radius_mm)
-        right, radius = self.stock.front_z_mm + beside, self.stock.max_radius_mm
-        reach = max(radius, min(max(abs(x0), abs(x1)), radius + beside))
-        return min(face, max(z0, face - beside)), right, min(0.0, x0), reach
+        margin_mm = BESIDE * (self.stock.front_z_mm - face + 2.0 * self.stock.max_radius_mm)
+        right, radius = self.stock.front_z_mm + margin_mm, self.stock.max_radius_mm
+        reach = max(radius, min(max(abs(x0), abs(x1)), radius + margin_mm))
+        return min(face, max(z0, face - margin_mm)), right, min(0.0, x0), reach
 
     @property
     def chuck_from(self) -> float | None:

@@ -140,8 +140,8 @@ class PartsBook:
 
     def _call_done(self) -> None:
         """Call the callbacks of changes that have been written to the disk and read again."""
-        told, self._kept = self._kept, []
-        for done in told:
+        callbacks, self._kept = self._kept, []
+        for done in callbacks:
             done()
 
     def _look_at_writing(self) -> None:

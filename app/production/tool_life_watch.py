@@ -217,8 +217,8 @@ class ToolLifeWatch:
         """Return the message about the tool that is nearest to the end of its life, or an empty string."""
         lives = self.read_lives()
         if self._due[0] is not lives:
-            told = [life for life in lives.values() if life.state in _REPORTED_STATES]
-            self._due = lives, make_life_notice(max(told, key=lambda life: life.share)) if told else ""
+            alerts = [life for life in lives.values() if life.state in _REPORTED_STATES]
+            self._due = lives, make_life_notice(max(alerts, key=lambda life: life.share)) if alerts else ""
         return self._due[1]
 
     def find_block_reason(self, snapshot: Snapshot, tools: Collection[int]) -> str:

@@ -85,8 +85,8 @@ def import_programs(
         target = folder / (find_same_name(folder, name) or name)
         _keep_old(target, persistence, text)
         write_program_file(target, text)
-        if not is_drawing(target.name) and (trouble := check_program(target)):
-            found.append(Message("{target}: {problem}", target=target.name, problem=trouble))
+        if not is_drawing(target.name) and (problem := check_program(target)):
+            found.append(Message("{target}: {problem}", target=target.name, problem=problem))
     return TransferResult(tuple(texts), (), tuple(found))
 
 
@@ -342,7 +342,7 @@ class ImportExport:
         self._at = at
         self._done_of = (0, len(paths))
         self.desk.clear_prompt_line()
-        told = self._update_progress
+        report_progress = self._update_progress
         if self.is_export:
             work = partial(
                 export_programs,
@@ -350,7 +350,7 @@ class ImportExport:
                 at,
                 may_overwrite=replace,
                 medium=self.folder_chooser.medium,
-                report_progress=told,
+                report_progress=report_progress,
             )
         else:
             work = partial(
@@ -361,7 +361,7 @@ class ImportExport:
                 self.check_program,
                 may_overwrite=replace,
                 is_drawing=self.desk.program_choice.program_folders.is_drawing_name,
-                report_progress=told,
+                report_progress=report_progress,
             )
         self.worker.enqueue(
             partial(self._run_transfer, work, self.folder_chooser.medium), self._done, self._failed

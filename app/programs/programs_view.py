@@ -54,12 +54,12 @@ class ProgramDetailPanel(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         u = self.theme.u
         rows = list(make_details(self.program)) if self.program is not None else []
-        beside = len(rows) - FULL_WIDTH_ROWS
+        preview_row_count = len(rows) - FULL_WIDTH_ROWS
         if self.error_text:
             rows.append(("PREVIEW", self.error_text))
         room = self.inside()
         high = min(3.0 * u, room.height() / max(1, len(rows)))
-        self._draw_part(painter, high * beside)
+        self._draw_part(painter, high * preview_row_count)
         for number, (label, text) in enumerate(rows):
             y = room.y() + number * high
             painter.draw_text_line(QRectF(room.x(), y, (LABEL_WIDTH - 0.6) * u, high), label, 1.6, "soft")

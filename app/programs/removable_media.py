@@ -101,8 +101,8 @@ def _is_removable(device: str, blocks: Path) -> bool:
         return False
     try:
         place = (blocks / device).resolve()
-        told = next((p for p in (place / "removable", place.parent / "removable") if p.is_file()), None)
-        return told is not None and told.read_text().strip() == "1"
+        flag_file = next((p for p in (place / "removable", place.parent / "removable") if p.is_file()), None)
+        return flag_file is not None and flag_file.read_text().strip() == "1"
     except OSError:
         return False
 

@@ -110,11 +110,11 @@ def mark_interrupted_runs(run_records: RunRecords) -> None:
 
     This is called at startup.
     """
-    told = run_records.end_interrupted_runs(
+    write_future = run_records.end_interrupted_runs(
         INTERRUPTED_OUTCOME, "{program}: the control shut down during the last run of this program"
     )
     with suppress(StoreError):  # A full disk stores the records later.
-        told.result()
+        write_future.result()
 
 
 MAX_COUNT = 9_999_999

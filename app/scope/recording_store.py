@@ -85,8 +85,8 @@ class RecordingStore:
             for entry in os.scandir(self.folder):
                 with suppress(OSError):
                     if entry.name.endswith(RECORD_SUFFIX) and entry.is_file():
-                        told = entry.stat()
-                        found.append(RecordingFile(Path(entry.path), told.st_mtime, told.st_size))
+                        file_stat = entry.stat()
+                        found.append(RecordingFile(Path(entry.path), file_stat.st_mtime, file_stat.st_size))
         return tuple(sorted(found, key=lambda each: -each.modified_at)[:MAX_FILES])
 
     def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
@@ -198,12 +198,12 @@ def find_zero_instant(record: ScopeRecord) -> float:
 
     This is the trigger or alarm, or the last sample if there is neither.
     """
-    told = record.about.get(INSTANT_KEY, "")
+    instant_text = record.about.get(INSTANT_KEY, "")
     if not len(record.times_s):
         return 0.0
     try:
-        if not told and ALARM_TIME_KEY in record.about:
+        if not instant_text and ALARM_TIME_KEY in record.about:
             return float(record.about[ALARM_TIME_KEY])
-        return float(record.times_s[0]) + float(told)
+        return float(record.times_s[0]) + float(instant_text)
     except ValueError:
         return float(record.times_s[-1])

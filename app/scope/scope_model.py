@@ -234,8 +234,8 @@ class ScopeModel:
             record = live.read_between(end - most, end)
             if instant is None or not len(record.times_s):
                 return record
-            told = {**record.about, INSTANT_KEY: f"{instant - float(record.times_s[0]):.6f}"}
-            return replace(record, about=told)
+            metadata = {**record.about, INSTANT_KEY: f"{instant - float(record.times_s[0]):.6f}"}
+            return replace(record, about=metadata)
 
         def done(record: ScopeRecord) -> None:
             before = 1.0 if instant is None else self.trigger.share_before

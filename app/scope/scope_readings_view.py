@@ -50,7 +50,7 @@ class ScopeReadings(RowPanel):
         """
         scope = self.scope_model
         latest = {each.signal.key: each.latest_value for each in picture.curves}
-        figures = tuple(self._words(each, latest, picture) for each in scope.shown)
+        value_texts = tuple(self._words(each, latest, picture) for each in scope.shown)
         times = scope.cursors.times_s if scope.cursors.shown else None
         known = (
             scope.marked,
@@ -66,8 +66,8 @@ class ScopeReadings(RowPanel):
         ):
             return
         self.picture, self._known = picture, known
-        self.mark = (figures, known)
-        self.value_texts = figures
+        self.mark = (value_texts, known)
+        self.value_texts = value_texts
 
     def _words(self, signal: ScopeSignal, latest: dict[str, float], sight: ScopePicture) -> tuple[str, ...]:
         places = signal.quantity.places(sight.is_metric)

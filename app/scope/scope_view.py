@@ -156,18 +156,18 @@ class CurveArea(QWidget):
     def _handle_two_touches(self, one: QPointF, other: QPointF) -> None:
         """Zoom the time by horizontal motion of two fingers, or the lane by vertical motion."""
         self._down = None
-        way = (abs(one.x() - other.x()), abs(one.y() - other.y()))
-        before, self._spread = self._spread, way
+        spans_px = (abs(one.x() - other.x()), abs(one.y() - other.y()))
+        before, self._spread = self._spread, spans_px
         chart = self.chart
         if before is None or chart is None:
             return
         middle = (one + other) / 2
-        if way[0] >= way[1]:
+        if spans_px[0] >= spans_px[1]:
             self.scope_model.magnify_window(
-                max(way[0], _MIN_FINGER_PX) / max(before[0], _MIN_FINGER_PX), chart.find_time(middle)
+                max(spans_px[0], _MIN_FINGER_PX) / max(before[0], _MIN_FINGER_PX), chart.find_time(middle)
             )
         else:
-            factor = max(way[1], _MIN_FINGER_PX) / max(before[1], _MIN_FINGER_PX)
+            factor = max(spans_px[1], _MIN_FINGER_PX) / max(before[1], _MIN_FINGER_PX)
             self.scope_model.magnify_lane(factor, chart.find_quantity(middle))
 
 
@@ -399,11 +399,11 @@ def _find_view_key(sight: ScopePicture) -> object:
     """Return a value that is equal for pictures with the same appearance."""
     if sight.constant_values is None:
         return sight
-    figures = [
+    level_texts = [
         (each.signal.key, f"{level!r}")
         for each, level in zip(sight.curves, sight.constant_values, strict=True)
     ]
-    return figures, dict(sight.lane_ranges), sight.begin_s, sight.end_s, sight.is_metric
+    return level_texts, dict(sight.lane_ranges), sight.begin_s, sight.end_s, sight.is_metric
 
 
 def format_span(seconds: float) -> str:

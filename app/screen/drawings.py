@@ -65,13 +65,13 @@ class SketchPanel(Panel):
         self._scale, self._middle, self._centre = 1.0, (0.0, 0.0), QPointF()
 
     def draw(self, painter: ThemedPainter) -> None:
-        drawn, figures, here, wrong = self.displayed
+        drawn, labels, here, wrong = self.displayed
         if not drawn.outlines:
             return
         self._fit_sketch(drawn)
         for each in drawn.outlines:
             self._outline(painter, each)
-        said = dict(figures)
+        said = dict(labels)
         for number, dim in enumerate(sorted(drawn.dimensions, key=lambda dim: dim.field_word == here)):
             if said.get(dim.field_word, ""):
                 ink = "alarm" if dim.field_word in wrong else "lit" if dim.field_word == here else "text"

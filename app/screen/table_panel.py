@@ -125,14 +125,14 @@ class RowPanel(Panel):
         """
         gap, (wide, high) = 0.6 * self.theme.u, self.scroll_key_size
         foot = self.is_narrow(area.width())
-        beside = foot or area.height() < 2 * high + gap
-        strip = QRectF(area.right() - wide - beside * (wide + gap), area.y(), wide, area.height())
+        is_side_by_side = foot or area.height() < 2 * high + gap
+        strip = QRectF(area.right() - wide - is_side_by_side * (wide + gap), area.y(), wide, area.height())
         if foot:
             wide = (area.width() - gap) / 2
             strip = QRectF(area.x(), area.bottom() - high, wide, high)
-        right, down = (wide + gap, 0.0) if beside else (0.0, (strip.height() + gap) / 2)
+        right, down = (wide + gap, 0.0) if is_side_by_side else (0.0, (strip.height() + gap) / 2)
         for number, sign in enumerate((-1, 1)):
-            box = QRectF(strip.x(), strip.y(), wide, strip.height() if beside else down - gap)
+            box = QRectF(strip.x(), strip.y(), wide, strip.height() if is_side_by_side else down - gap)
             self._scroll_key(painter, box.translated(number * right, number * down), sign)
         left = area.adjusted(0, 0, -2 * gap, -high - gap)
         if not foot:

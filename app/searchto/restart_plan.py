@@ -77,11 +77,11 @@ def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: Op
         modest=formats.format_feed(choices.inside_speed_mm_s, metric, False),
         metric=formats.find_feed_unit(metric, False),
     )
-    trouble = describe_manual_retract(found, tool)
-    if not trouble and not steps:
-        trouble = tr(Message("T{tool} IS ALREADY CLEAR OF THE PART", tool=tool))
+    problem = describe_manual_retract(found, tool)
+    if not problem and not steps:
+        problem = tr(Message("T{tool} IS ALREADY CLEAR OF THE PART", tool=tool))
     return RetractPlan(
-        begin, make_drawn_legs(steps, snapshot, cut_state.tool_offsets.get(tool, (0.0, 0.0))), feed, trouble
+        begin, make_drawn_legs(steps, snapshot, cut_state.tool_offsets.get(tool, (0.0, 0.0))), feed, problem
     )
 
 
@@ -326,9 +326,9 @@ def _words(step: ApproachStep, point: Checkpoint, language: str) -> str:
     modal = point.modal
     match action:
         case SpindleRun():
-            way = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
+            direction = tr("SPINDLE FORWARD") if modal.spindle > 0 else tr("SPINDLE REVERSE")
             speed = next(row.value for row in make_modal_rows(point, language) if row.key == "speed")
-            return Message("{details} {speed}", details=way, speed=speed)
+            return Message("{details} {speed}", details=direction, speed=speed)
         case SpindleLock():
             return tr("SPINDLE LOCKED AS C AXIS AND TURNED INTO POSITION")
         case SpindlePositioning(angle=angle):

@@ -365,12 +365,12 @@ class SearchtoModel:
         ``start_instruction`` is the instruction for starting a cycle.
         """
         shown = self.retract_plan or self.restart_plan
-        trouble = shown.error_text if shown is not None else ""
-        return "" if snapshot.state in CYCLE_STATES else self._prompt(snapshot, trouble, start_instruction)
+        error_text = shown.error_text if shown is not None else ""
+        return "" if snapshot.state in CYCLE_STATES else self._prompt(snapshot, error_text, start_instruction)
 
-    def _prompt(self, snapshot: Snapshot, trouble: str, start: str) -> str:
+    def _prompt(self, snapshot: Snapshot, error_text: str, start: str) -> str:
         return make_searchto_prompt(
-            self.stage, snapshot, trouble, start, is_retract=self.retract_plan is not None
+            self.stage, snapshot, error_text, start, is_retract=self.retract_plan is not None
         )
 
     def barred(self) -> str:

@@ -377,10 +377,10 @@ class SearchtoPage(ModelPage):
             )
         if plan.approach_texts:
             choices.append(tr(Message("PATH: {legs}", legs=", ".join(plan.approach_texts))))
-        trouble = plan.error_text or plan.warning_text
+        problem_text = plan.error_text or plan.warning_text
         starts = plan.started_functions or (tr("AXES ONLY"),)
         self.functions_panel.show_functions(
-            starts, choices, trouble, is_confirmed=model.stage is SearchtoStage.READY
+            starts, choices, problem_text, is_confirmed=model.stage is SearchtoStage.READY
         )
 
     def _show_stock(self, loaded: LoadedProgram) -> None:
@@ -396,8 +396,8 @@ class SearchtoPage(ModelPage):
 
     def _show_leaving(self, leaving: RetractPlan) -> None:
         self.path_view.show_approach(leaving.drawn_legs)
-        told = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed_text))
-        choices = () if leaving.error_text else (told, tr("H: FEED HOLD DURING RETRACT"))
+        retract_text = tr(Message("RETRACT FROM PART AT {feed}", feed=leaving.feed_text))
+        choices = () if leaving.error_text else (retract_text, tr("H: FEED HOLD DURING RETRACT"))
         ready = self.model.stage is SearchtoStage.READY
         only = () if leaving.error_text else (tr("AXES ONLY"),)
         self.functions_panel.show_functions(only, choices, leaving.error_text, is_confirmed=ready)

@@ -273,10 +273,10 @@ def _describe_differences(verdict: BackupVerdict) -> str:
 
     The text is empty if a restore would not change anything.
     """
-    told = [f"{tr(name)} {count}" for name, count in verdict.difference_counts]
+    difference_texts = [f"{tr(name)} {count}" for name, count in verdict.difference_counts]
     if verdict.is_older:
-        told.append(tr("other data was not compared because the backup is from an older version"))
-    return ", ".join(told)
+        difference_texts.append(tr("other data was not compared because the backup is from an older version"))
+    return ", ".join(difference_texts)
 
 
 def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupPlace, ...]:

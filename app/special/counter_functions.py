@@ -150,7 +150,7 @@ class ToolLifeFunction(NumericFunction):
         row = ToolLifeRow(wanted.number, wanted.limit_parts, wanted.limit_seconds, wanted.warn, wanted.stops)
         done = partial(self.desk.say, tr(Message("T{number} SAVED", number=wanted.number)))
         minutes = Message("{limit_seconds} min", limit_seconds=f"{row.limit_seconds / 60.0:g}")
-        told = Message(
+        change_text = Message(
             "T{number} tool life: {limit_parts} parts, {minutes}, warn at {warn}",
             number=row.number,
             limit_parts=row.limit_parts,
@@ -162,7 +162,7 @@ class ToolLifeFunction(NumericFunction):
             lambda c: tool_lives.save_limits(c, row),
             done,
             self.parts_watch.report_refusal,
-            f"{told}, {'stops' if row.stops else 'no stop at end of tool life'}",
+            f"{change_text}, {'stops' if row.stops else 'no stop at end of tool life'}",
         )
         return True
 

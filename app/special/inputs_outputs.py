@@ -297,8 +297,8 @@ class DriveStatusFunction(SpecialFunction):
         home = "HOMED" if snapshot.homed[number] else "NOT HOMED"
         power = "ON" if on else "OFF"
         known = UnknownPart.AXES not in snapshot.unknown
-        figures = [write(value) if known else f"{write(value)} {UNKNOWN_VALUE}" for value in values[:3]]
-        cells = (axis.name, power if known else UNKNOWN_VALUE, home, *figures, write(values[3]), fault)
+        value_texts = [write(value) if known else f"{write(value)} {UNKNOWN_VALUE}" for value in values[:3]]
+        cells = (axis.name, power if known else UNKNOWN_VALUE, home, *value_texts, write(values[3]), fault)
         return TableRow(cells, on and known and fault == formats.NO_VALUE, Tone.RUN)
 
     def _spindle(self, snapshot: Snapshot) -> TableRow:

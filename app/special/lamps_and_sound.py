@@ -101,13 +101,13 @@ class EventSounds:
         self.persistence.save_setting(
             _SETTING, {"volume": self.volume_percent, "silent": sorted(muted_kinds)}
         )
-        told = Message(
+        change_text = Message(
             "sound volume: {before} → {volume} %, muted: {silent}",
             before=before,
             volume=self.volume_percent,
             silent=", ".join(sorted(muted_kinds)) or "nothing",
         )
-        self.persistence.log_change(told)
+        self.persistence.log_change(change_text)
 
     def close(self) -> None:
         """Stop all sounds."""

@@ -125,10 +125,10 @@ class RParametersFunction(NumericFunction):
         if value is not None:
             self.parameter_values[number] = value
         kept = {str(each): self.parameter_values[each] for each in sorted(self.parameter_values)}
-        told = f"R{number}: {_told(before)} → {_told(value)}"
+        change_text = f"R{number}: {_told(before)} → {_told(value)}"
         self._worker.enqueue(
             partial(self._persistence.save_settings, {R_PARAMETERS_SETTING: kept or None}),
-            lambda _none: self._handle_saved(told),
+            lambda _none: self._handle_saved(change_text),
             lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
         )
         return True
@@ -297,10 +297,12 @@ class SpindleLimitFunction(NumericFunction):
     def _limit(self, rpm: float | None) -> None:
         before = self.desk.read_snapshot().spindle_limit_rpm
         self.desk.post(SetSpindleLimit(rpm))
-        told = " → ".join(
+        change = " → ".join(
             Message("{speed} rpm", speed=f"{each:g}") if each else "none" for each in (before, rpm)
         )
-        self.desk.user_access.persistence.log_change(Message("spindle speed limit: {details}", details=told))
+        self.desk.user_access.persistence.log_change(
+            Message("spindle speed limit: {details}", details=change)
+        )
 
     def take(self, text: str) -> bool:
         """Set the limit in rpm.

@@ -261,12 +261,12 @@ class SetupSheetFunction(SpecialFunction):
         program = self.program_name
 
         def save() -> None:
-            told = _describe_change(
+            change_text = _describe_change(
                 self.notes, notes
             )  # compared before saving, because later readers see the new notes
             self.persistence.save_setting(make_notes_setting_key(program), notes or None)
             self.persistence.log_change(
-                Message("notes for {program}: {details}", program=program, details=told)
+                Message("notes for {program}: {details}", program=program, details=change_text)
             )
             self._notes_of = program, notes
 

@@ -155,9 +155,9 @@ class SpecialPage(ListPage):
         self.function_list.mark = (self.model.at, self.model.inside)
         self.table_panel.show_table(sheet)
         letters = bool(sheet.question) and shown.accepts_key("a")
-        figures = bool(sheet.question) and shown.accepts_key("1") and not letters
-        if (figures, letters) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
-            self.number_pad.setVisible(figures)
+        has_number_pad = bool(sheet.question) and shown.accepts_key("1") and not letters
+        if (has_number_pad, letters) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
+            self.number_pad.setVisible(has_number_pad)
             self.letter_pad.setVisible(letters)
             self._lay_out()
 

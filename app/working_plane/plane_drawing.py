@@ -369,8 +369,8 @@ class _ScenePicture:
         done = scene.count_finished_points(self._instant.active_block)
         keep = np.arange(0, len(scene.points), max(1, len(scene.points) // _MAX_POINTS))
         seen = self._seen(transform_points(self._part, scene.points[keep]))
-        ink, behind = scene.move_styles[keep], keep < done
-        return [*_make_strokes(seen, ink, behind)]
+        ink, is_finished = scene.move_styles[keep], keep < done
+        return [*_make_strokes(seen, ink, is_finished)]
 
     def make_axis_strokes(self) -> list[DrawnStroke]:
         """Return the axes of the working plane at its datum.
@@ -421,11 +421,11 @@ class _ScenePicture:
 
 
 def _make_strokes(
-    seen: FloatArray, styles: npt.NDArray[np.int8], behind: npt.NDArray[np.bool_]
+    seen: FloatArray, styles: npt.NDArray[np.int8], is_finished: npt.NDArray[np.bool_]
 ) -> list[DrawnStroke]:
     """Return the lines of the path, which are split where the drawing style changes."""
     role = np.where(
-        styles == MoveStyle.CUT, np.where(behind, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
+        styles == MoveStyle.CUT, np.where(is_finished, 3, 2), np.where(styles == MoveStyle.RAPID, 1, 0)
     )
     starts = np.flatnonzero(np.diff(role, prepend=-1))
     names = {1: "rapid", 2: "cut", 3: "done"}

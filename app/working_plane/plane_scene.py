@@ -122,12 +122,12 @@ def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
 
     Arcs are replaced by chords.
     """
-    way = None if block.travel is None else block.travel.way
-    if not isinstance(way, HelixMove):
+    curve = None if block.travel is None else block.travel.way
+    if not isinstance(curve, HelixMove):
         return [swivel.end]
-    count = max(1, math.ceil(abs(math.degrees(way.arc.sweep)) / _CHORD_ANGLE_DEG))
+    count = max(1, math.ceil(abs(math.degrees(curve.arc.sweep)) / _CHORD_ANGLE_DEG))
     share = np.arange(1, count) / count
-    between = [(x, y, z) for x, y, z in way.workpiece_points(way.machine_positions(share)).tolist()]
+    between = [(x, y, z) for x, y, z in curve.workpiece_points(curve.machine_positions(share)).tolist()]
     return [*between, swivel.end]
 
 

@@ -137,8 +137,8 @@ class WorkingPlaneView(Panel):
         """Pan in steps during a drag."""
         if self._held is None:
             return
-        way = event.position() - self._held
-        across, down = (int(side / _DRAG_STEP) for side in (way.x(), way.y()))
+        drag_offset_px = event.position() - self._held
+        across, down = (int(side / _DRAG_STEP) for side in (drag_offset_px.x(), drag_offset_px.y()))
         if across or down:
             self._held = event.position()
             self.pan_view(-across, -down)

@@ -476,8 +476,8 @@ class Executor:
         with ReportedAttempt(self.handle_failure):
             try:
                 part()
-            except AlarmError as trouble:
-                self._raise_alarm(trouble)
+            except AlarmError as alarm_error:
+                self._raise_alarm(alarm_error)
             except MotionError as error:
                 self._control.raise_alarm(AlarmError("program", str(error)))
             except TrippedError:

@@ -124,8 +124,8 @@ class ReadAhead:
     def _sort(self, block: Block) -> None:
         try:
             check_block(block, self._machine)
-        except AlarmError as trouble:
-            self.read_error = trouble
+        except AlarmError as error:
+            self.read_error = error
             return
         if self._ends.needs_standstill_before(block):
             self.stop = block

@@ -196,11 +196,11 @@ class Recorder(ScopeRecordings):
             s = tick.snapshot
             if s.t <= last:
                 continue
-            heard = UnknownPart.SPINDLE not in s.unknown
-            figures = [
+            is_spindle_known = UnknownPart.SPINDLE not in s.unknown
+            row_values = [
                 s.rpm_command,
-                s.rpm_actual if heard else _NAN,
-                tick.spindle_revolutions if heard else _NAN,
+                s.rpm_actual if is_spindle_known else _NAN,
+                tick.spindle_revolutions if is_spindle_known else _NAN,
                 s.feed_override,
                 s.spindle_override,
                 tick.queued_motion_s,
@@ -212,22 +212,22 @@ class Recorder(ScopeRecordings):
                 *_values_or_nan(pack_bits(recorded.outputs, s.outputs), UnknownPart.OUTPUTS not in s.unknown),
             ]
             self._late = max(self._late, tick.delay_s)
-            if figures == self._figures and s.t < last + _REST_ROW_INTERVAL_S - _TIME_RESOLUTION_S:
+            if row_values == self._figures and s.t < last + _REST_ROW_INTERVAL_S - _TIME_RESOLUTION_S:
                 continue
-            self._figures, last = figures, s.t
-            rows.append([s.t, *figures[:6], self._late, *figures[7:]])
+            self._figures, last = row_values, s.t
+            rows.append([s.t, *row_values[:6], self._late, *row_values[7:]])
             self._late = 0.0
         return np.array(rows).reshape(-1, recorded.tick_width)
 
     def _sample_rows(self, ticks: list[TickData]) -> FloatArray:
         """Return the driver's samples, or the axis positions at each tick if the driver has no samples."""
         width, last = self.ring.layout.sample_width, self.ring.samples.last_time_s
-        told = [
+        sample_blocks = [
             _add_spindle_load(tick.samples, tick)
             for tick in ticks
             if tick.samples is not None and len(tick.samples)
         ]
-        rows = np.concatenate(told) if told else self._rows_from_snapshots(ticks, last)
+        rows = np.concatenate(sample_blocks) if sample_blocks else self._rows_from_snapshots(ticks, last)
         rows = self._with_gap(rows, ticks)
         if rows.shape[1:] != (width,):
             return np.empty((0, width))
@@ -239,10 +239,10 @@ class Recorder(ScopeRecordings):
         begins, self._silent = bool(silent) and not self._silent, bool(silent)
         if not silent:
             return rows
-        before, behind = rows[rows[:, 0] < silent[0]], rows[rows[:, 0] > silent[-1]]
+        before, later_rows = rows[rows[:, 0] < silent[0]], rows[rows[:, 0] > silent[-1]]
         gap = np.full((int(begins), self.ring.layout.sample_width), _NAN)
         gap[:, 0] = silent[0]
-        return np.concatenate([before, gap, behind])
+        return np.concatenate([before, gap, later_rows])
 
     def _rows_from_snapshots(self, ticks: Iterable[TickData], last: float) -> FloatArray:
         """Return samples made from the snapshots. The last row before a change is always included."""
@@ -318,8 +318,8 @@ def _values_or_nan(values: list[float], is_known: bool) -> list[float]:
 
 
 def _over(now: Snapshot, alarm: float) -> bool:
-    stands = now.velocity < _STANDSTILL_SPEED_MM_S and abs(now.rpm_actual) < _TURNING_RPM
-    return now.t >= alarm + BEHIND or (stands and now.t >= alarm + _RECORD_DELAY_S)
+    is_stationary = now.velocity < _STANDSTILL_SPEED_MM_S and abs(now.rpm_actual) < _TURNING_RPM
+    return now.t >= alarm + BEHIND or (is_stationary and now.t >= alarm + _RECORD_DELAY_S)
 
 
 def delete_oldest_records(folder: Path) -> None:

@@ -109,7 +109,7 @@ class StationWatch:
         if not silent:
             self._auto, self._spoke = state.spindle_auto, now
         noisy = self._feed.is_noisy or self._spindle.is_noisy
-        trouble = (
+        fault_text = (
             "NO RESPONSE FROM OPERATOR STATION" if silent else "OVERRIDE SIGNAL UNSTABLE" if noisy else ""
         )
         return StationSignals(
@@ -119,7 +119,7 @@ class StationWatch:
             feed_override=self._feed.value,
             spindle=self._spindle.value,
             spindle_auto=self._auto,
-            station_fault=trouble,
+            station_fault=fault_text,
             handwheel_counts=state.handwheel,
             spindle_turned_on=turned,
             connection_lost_reason=state.trouble,

@@ -103,11 +103,11 @@ def _removed_length(element: Element, leg: float, *, is_first: bool) -> float:
     """Return the length in mm that the leg removes from an element."""
     if isinstance(element, Arc) and leg > 2.0 * element.radius:
         raise CornerTooLargeError(leg, is_first_move=is_first)
-    way = _way(element, leg)
+    removed_length_mm = _way(element, leg)
     # A part of an arc must remain, because an arc with equal ends would be a full circle.
-    if way > element.length - _required_length(element):
-        raise CornerTooLargeError(way, is_first_move=is_first)
-    return min(way, element.length)
+    if removed_length_mm > element.length - _required_length(element):
+        raise CornerTooLargeError(removed_length_mm, is_first_move=is_first)
+    return min(removed_length_mm, element.length)
 
 
 def _way(element: Element, leg: float) -> float:

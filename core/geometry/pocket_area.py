@@ -438,11 +438,11 @@ def _order_rings(
     made: list[ClearingRing] = []
     for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
         loop = start_loop_near(_sense(ring, against=conventional), position)
-        way = (
+        link = (
             Line(position, loop[0].start) if dist(position, loop[0].start) > SAME_POINT_TOLERANCE_MM else None
         )
         straight = index > 0 and (
-            way is None or (way.length <= _LINK_RADII * radius and room.contains_element(way, distance))
+            link is None or (link.length <= _LINK_RADII * radius and room.contains_element(link, distance))
         )
         ramp = loop
         if not straight and _size(loop) < _RAMP_RADII * radius:
@@ -505,14 +505,14 @@ def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], Element
 
     If ``length`` is greater than the length of the loop, the loop is repeated.
     """
-    way: list[Element] = []
+    first_elements: list[Element] = []
     left, at = length, 0
     while left > SAME_POINT_TOLERANCE_MM:
         element = loop[at % len(loop)]
         if element.length > left + SAME_POINT_TOLERANCE_MM:
-            way.append(element.section_between(element.start, element.point_at(left)))
-            return way, start_loop_at(loop, at % len(loop), left)
-        way.append(element)
+            first_elements.append(element.section_between(element.start, element.point_at(left)))
+            return first_elements, start_loop_at(loop, at % len(loop), left)
+        first_elements.append(element)
         left -= element.length
         at += 1
-    return way, start_loop_at(loop, at % len(loop), 0.0)
+    return first_elements, start_loop_at(loop, at % len(loop), 0.0)

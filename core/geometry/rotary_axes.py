@@ -82,10 +82,10 @@ class RotaryAxis:
 
         A modulo axis moves in the shorter direction. A travel of 180 degrees is positive.
         """
-        way = target - start
+        travel_deg = target - start
         if not self.is_modulo:
-            return way
-        short = way % FULL_TURN_DEG
+            return travel_deg
+        short = travel_deg % FULL_TURN_DEG
         return short - FULL_TURN_DEG if short > FULL_TURN_DEG / 2.0 + RANGE_TOLERANCE_DEG else short
 
 

@@ -243,8 +243,8 @@ class PlaneMove:
         """
         first, sweep = self._start_and_sweep()
         turn = 2.0 * math.pi
-        way = (angle - first) % turn if sweep > 0.0 else (first - angle) % turn
-        share = way / abs(sweep)
+        swept_angle = (angle - first) % turn if sweep > 0.0 else (first - angle) % turn
+        share = swept_angle / abs(sweep)
         if share <= 1.0:
             return share
         return 0.0 if self.distance_from_axis(0.0) <= self.distance_from_axis(1.0) else 1.0

@@ -135,12 +135,12 @@ def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
     if not values.has_values(path, "machine.backend"):
         return
     word, backend = values.text(path), values.text("machine.backend")
-    beside = {
+    table_path_by_driver = {
         driver.spindle: driver.tables[0].path for driver in drivers if driver.spindle and not driver.backend
     }
     allowed = [
         *(driver.spindle for driver in drivers if driver.spindle and driver.backend == backend),
-        *beside,
+        *table_path_by_driver,
     ]
     if word not in allowed:
         expected = Message(
@@ -149,9 +149,9 @@ def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
             backend=format_toml_value(backend),
         )
         yield FileFinding(path, format_toml_value(word), expected, "broken-rule")
-    elif word in beside and beside[word] not in file.tables:
+    elif word in table_path_by_driver and table_path_by_driver[word] not in file.tables:
         yield FileFinding(
-            beside[word],
+            table_path_by_driver[word],
             "",
             Message('this table is missing but required by spindle.driver = "{word}"', word=word),
             "missing",

@@ -176,12 +176,12 @@ def _check_lamps(reading: MachineReading) -> Iterator[FileFinding]:
         elif reading.values.has_values(f"{path}.safe"):
             safe = reading.values.values_by_path[f"{path}.safe"]
             if safe == "keep" or (safe is True and name != RED):
-                told = "true or false" if name == RED else "false"
+                accepted_values = "true or false" if name == RED else "false"
                 why = "while TurnDesk does not control the lamp, the lamp must not indicate normal operation"
                 yield FileFinding(
                     Message("{path}.safe", path=path),
                     format_toml_value(safe),
-                    Message("this value must be {details}; {why}", details=told, why=why),
+                    Message("this value must be {details}; {why}", details=accepted_values, why=why),
                     "broken-rule",
                 )
     for code in reading.m_codes:

@@ -120,8 +120,8 @@ def _clear(free: BoolArray) -> IntArray:
     """Return the number of consecutive free joints (m,) on both sides of each joint."""
     at = np.arange(len(free))
     before = at - np.maximum.accumulate(np.where(free, -1, at))
-    behind = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
-    clear: IntArray = np.minimum(before, behind)
+    count_after = np.minimum.accumulate(np.where(free, len(free), at)[::-1])[::-1] - at
+    clear: IntArray = np.minimum(before, count_after)
     return clear
 
 

@@ -65,7 +65,7 @@ def find_divided_blocks(table: BlockTable) -> BoolArray:
     """Return a mask (m,) of the blocks that are divided into several pieces."""
     parted = _find_c_fed_moves(table)
     if table.way.count(None) < len(table.way):
-        parted = parted | np.array([way is not None for way in table.way], dtype=bool)
+        parted = parted | np.array([travel is not None for travel in table.way], dtype=bool)
     return parted
 
 
@@ -180,8 +180,8 @@ def _find_c_fed_moves(table: BlockTable) -> BoolArray:
 def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> PathPieces:
     """Return the move of X and Z with C, followed by the rotation of C that the move does not need."""
     start, end, feed = table.start[index], table.end[index], float(table.feed[index])
-    way = float(np.hypot(*(end - start)[:2]))
-    needed, turn = way / feed * 360.0, float(end[2] - start[2])
+    path_length_mm = float(np.hypot(*(end - start)[:2]))
+    needed, turn = path_length_mm / feed * 360.0, float(end[2] - start[2])
     if abs(turn) < needed * (1.0 - _ROUNDING):
         raise MotionError(
             Message(
@@ -195,10 +195,10 @@ def _divide_c_fed_move(piece: PathPieces, table: BlockTable, index: int) -> Path
         )
     there = end.copy()
     there[2] = start[2] + np.copysign(min(needed, abs(turn)), turn)
-    first = _make_straight_pieces(piece, np.array([start, there]), np.array([way]))
+    first = _make_straight_pieces(piece, np.array([start, there]), np.array([path_length_mm]))
     rest = (abs(turn) - needed) * feed / 360.0
     if rest <= SAME_POINT_TOLERANCE:
-        return _make_straight_pieces(piece, np.array([start, end]), np.array([way]))
+        return _make_straight_pieces(piece, np.array([start, end]), np.array([path_length_mm]))
     return concatenate_pieces([first, _make_straight_pieces(piece, np.array([there, end]), np.array([rest]))])
 
 

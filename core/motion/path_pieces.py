@@ -99,14 +99,14 @@ def make_pieces(table: BlockTable, speeds: FloatArray) -> PathPieces:
     delta = table.end - table.start
     length = np.hypot(delta[:, 0], delta[:, 1])
     turn = np.abs(delta[:, 2])
-    way, slides = (
+    path_length_mm, slides = (
         length,
         length > np.maximum(SAME_POINT_TOLERANCE, np.minimum(turn / _MAX_DEG_PER_MM, _MIN_PATH_MM)),
     )
-    length = np.where(slides, way, np.where(turn > SAME_POINT_TOLERANCE, turn, 0.0))
-    beside = ~slides & (way > _C_ONLY_TOLERANCE_MM) & np.isnan(table.length)
+    length = np.where(slides, path_length_mm, np.where(turn > SAME_POINT_TOLERANCE, turn, 0.0))
+    has_short_path = ~slides & (path_length_mm > _C_ONLY_TOLERANCE_MM) & np.isnan(table.length)
     speeds = np.where(
-        beside, speeds * length / np.maximum(way, _C_ONLY_TOLERANCE_MM), speeds
+        has_short_path, speeds * length / np.maximum(path_length_mm, _C_ONLY_TOLERANCE_MM), speeds
     )  # X and Z retain their feed
     length = np.where(np.isnan(table.length), length, table.length)
     centre, radius, angle, curvature, sweep = _circles(table)
@@ -216,12 +216,12 @@ def move_joints(pieces: PathPieces, joints: FloatArray, is_free: BoolArray) -> P
     start, direction = pieces.start.copy(order="K"), pieces.direction.copy(order="K")
     length = pieces.length.copy()
     begins = [joints[:, axis].take(touched) for axis in (0, 1)]
-    ways = [joints[:, axis].take(touched + 1) - begin for axis, begin in enumerate(begins)]
-    size = np.hypot(*ways)
+    travels = [joints[:, axis].take(touched + 1) - begin for axis, begin in enumerate(begins)]
+    size = np.hypot(*travels)
     length[touched] = size
-    for axis, (begin, way) in enumerate(zip(begins, ways, strict=True)):
+    for axis, (begin, travel) in enumerate(zip(begins, travels, strict=True)):
         start[touched, axis] = begin
-        direction[touched, axis] = way / size
+        direction[touched, axis] = travel / size
     return dataclasses.replace(pieces, start=start, direction=direction, length=length)
 
 

@@ -313,9 +313,9 @@ def _per_lead(table: BlockTable) -> FloatArray:
         "the thread does not advance along Z",
         "no-lead",
     )
-    way = np.hypot(table.end[:, 0] - table.start[:, 0], table.end[:, 1] - table.start[:, 1])
+    path_length_mm = np.hypot(table.end[:, 0] - table.start[:, 0], table.end[:, 1] - table.start[:, 1])
     along = np.where(table.thread, np.abs(table.end[:, 1] - table.start[:, 1]), 1.0)
-    return np.where(table.thread, way / along, 1.0)
+    return np.where(table.thread, path_length_mm / along, 1.0)
 
 
 def depends_on_radius(table: BlockTable) -> BoolArray:

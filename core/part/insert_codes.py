@@ -253,14 +253,14 @@ class _CodeDigits:
     def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
         """Remove the next characters of the code and return their value."""
         if not found or len(found) < len(min(known, key=len)):
-            place, figures = self.place + len(found) + 1, " ".join(sorted(known))
+            place, known_codes = self.place + len(found) + 1, " ".join(sorted(known))
             raise InsertCodeError(
                 Message(
                     "{code}: character {place} is missing; it specifies the {what}, one of: {values}",
                     code=self.code,
                     place=place,
                     what=what,
-                    values=figures,
+                    values=known_codes,
                 ),
                 "character-missing",
             )

@@ -306,9 +306,9 @@ class _DiscSweep:
     ) -> tuple[FloatArray, FloatArray]:
         if not len(lines):
             return np.zeros((1, len(self._angles))), np.zeros((1, len(self._angles)))
-        start, way = self._start[lines], self._way[lines]
+        start, delta_mm = self._start[lines], self._way[lines]
         return unite_intervals(
-            *capsule_intervals(start + begin * way, start + stop * way, self._radius, self._angles)
+            *capsule_intervals(start + begin * delta_mm, start + stop * delta_mm, self._radius, self._angles)
         )
 
 
@@ -317,11 +317,11 @@ def _level_fractions(path: FloatArray, levels: FloatArray, length: float) -> tup
 
     If the mill does not reach a level, the first fraction is greater than the second.
     """
-    way = np.diff(path, axis=0)
+    deltas_mm = np.diff(path, axis=0)
     depth = levels[:, None] - path[:-1, 2]
-    begin, stop = clip_interval(np.broadcast_to(way[:, 2], depth.shape), depth - length, depth)
+    begin, stop = clip_interval(np.broadcast_to(deltas_mm[:, 2], depth.shape), depth - length, depth)
     stop = np.minimum(stop, 1.0)
-    plunges = (begin <= stop) & np.all(way[:, :2] == 0.0, axis=1)
+    plunges = (begin <= stop) & np.all(deltas_mm[:, :2] == 0.0, axis=1)
     return np.where(plunges, 0.0, begin), np.where(plunges, 1.0, stop)
 
 
@@ -361,14 +361,14 @@ def _parts_inside(
     path: FloatArray, outside: float, reach: FloatArray
 ) -> Iterator[tuple[FloatArray, FloatArray]]:
     """Yield the parts of a radial path with r less than ``outside`` and Z within ``reach``."""
-    way = np.diff(path, axis=0)
-    first, last = np.zeros(len(way)), np.ones(len(way))
+    deltas_mm = np.diff(path, axis=0)
+    first, last = np.zeros(len(deltas_mm)), np.ones(len(deltas_mm))
     for axis, least, most in ((0, -math.inf, outside), (1, *reach.tolist())):
-        low, high = clip_interval(way[:, axis], least - path[:-1, axis], most - path[:-1, axis])
+        low, high = clip_interval(deltas_mm[:, axis], least - path[:-1, axis], most - path[:-1, axis])
         first, last = np.maximum(first, low), np.minimum(last, high)
     for line in np.flatnonzero(first <= last).tolist():
         start = path[line]
-        yield start + first[line] * way[line], start + last[line] * way[line]
+        yield start + first[line] * deltas_mm[line], start + last[line] * deltas_mm[line]
 
 
 def _lifted(run: list[RadialMillMove], rise: float) -> list[RadialMillMove]:

@@ -200,8 +200,8 @@ class PolarField:
                 columns, rays, low, high, np.where(met, near, high), np.where(met, far, high)
             )
             self.change_count += 1
-        told = self._told(columns, touched, np.where(met, thick * (far + near), 0.0), float(thick.max()))
-        return told._replace(min_radius_mm=float(near[met].min()), max_radius_mm=float(far[met].max()))
+        material = self._told(columns, touched, np.where(met, thick * (far + near), 0.0), float(thick.max()))
+        return material._replace(min_radius_mm=float(near[met].min()), max_radius_mm=float(far[met].max()))
 
     def _told(
         self, columns: slice, touched: npt.NDArray[np.bool_], rings: FloatArray, depth: float

@@ -56,9 +56,9 @@ def _rectangle_intervals(
     start: FloatArray, end: FloatArray, radius: float, cos: FloatArray, sin: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the intervals that are covered by the rectangle between the first and the last disc."""
-    way = end - start
-    length = np.hypot(way[:, :1], way[:, 1:])
-    unit = way / np.maximum(length, _TINY)
+    displacement = end - start
+    length = np.hypot(displacement[:, :1], displacement[:, 1:])
+    unit = displacement / np.maximum(length, _TINY)
     ux, uy = unit[:, :1], unit[:, 1:]
     along, across = start[:, :1] * ux + start[:, 1:] * uy, start[:, 1:] * ux - start[:, :1] * uy
     low, high = clip_interval(ux * cos + uy * sin, along, along + length)

@@ -187,13 +187,13 @@ def _prism_faces(polygon: FloatArray, lift: float, thick: float, eye: _Viewer) -
     turned = float(np.sign(_area(polygon)) or 1.0)
     down = np.linspace(lift, -thick, max(math.ceil((thick + lift) * eye.scale), 2))
     for a, b in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
-        way = b - a
-        length = math.hypot(*way)
-        shade = _face_brightness(eye, np.array([way[1], -way[0], 0.0]) * (turned / max(length, 1e-9)))
+        vector = b - a
+        length = math.hypot(*vector)
+        shade = _face_brightness(eye, np.array([vector[1], -vector[0], 0.0]) * (turned / max(length, 1e-9)))
         if length < 1e-9 or shade <= 0.0:
             continue
         share = np.linspace(0.0, 1.0, max(math.ceil(length * eye.scale), 1), endpoint=False)
-        edge = a + share[:, None] * way
+        edge = a + share[:, None] * vector
         edge = edge[_seen(edge[:, 0], eye.z) & _seen(edge[:, 1], eye.x)]
         points = np.column_stack([np.repeat(edge, len(down), axis=0), np.tile(down, len(edge))])
         yield _LitFace(points, float(shade))
@@ -235,9 +235,9 @@ def _crossing_range(polygon: FloatArray, axis: int, at: FloatArray) -> tuple[Flo
     """Return the range that a convex outline covers at each of the given positions on an axis, or NaN."""
     a, b = polygon[None], np.roll(polygon, -1, axis=0)[None]
     place = at[:, None]
-    way = b[..., axis] - a[..., axis]
-    share = (place - a[..., axis]) / np.where(way == 0.0, np.inf, way)
-    met = (share >= -1e-9) & (share <= 1.0 + 1e-9) & (way != 0.0)
+    edge_delta = b[..., axis] - a[..., axis]
+    share = (place - a[..., axis]) / np.where(edge_delta == 0.0, np.inf, edge_delta)
+    met = (share >= -1e-9) & (share <= 1.0 + 1e-9) & (edge_delta != 0.0)
     found = a[..., 1 - axis] + share * (b[..., 1 - axis] - a[..., 1 - axis])
     low = np.where(met, found, np.inf).min(axis=1)
     high = np.where(met, found, -np.inf).max(axis=1)

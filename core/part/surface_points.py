@@ -164,8 +164,8 @@ class SolidSurface:
 
         The edge of the picture is not an end of the part.
         """
-        beside = _differing_cells(self.inner_radii, self.outer_radii, _GAP, round_=False)
-        own, other = beside if face_direction > 0 else beside[::-1]
+        cell_pair = _differing_cells(self.inner_radii, self.outer_radii, _GAP, round_=False)
+        own, other = cell_pair if face_direction > 0 else cell_pair[::-1]
         nth, first, last = _uncovered_cells(self.inner_radii, self.outer_radii, own, other, _GAP)
         column, ray = own[0][nth], own[1][nth]
         inner = len(column)
@@ -217,8 +217,8 @@ class SolidSurface:
         """Return the change of the material thickness between the two neighbors of a cell."""
         if round_:
             return self.thickness_px[column, (ray + 1) % self.ray_count] - self.thickness_px[column, ray - 1]
-        ahead, behind = np.minimum(column + 1, len(self.z_px) - 1), np.maximum(column - 1, 0)
-        return self.thickness_px[ahead, ray] - self.thickness_px[behind, ray]
+        ahead, previous = np.minimum(column + 1, len(self.z_px) - 1), np.maximum(column - 1, 0)
+        return self.thickness_px[ahead, ray] - self.thickness_px[previous, ray]
 
     def _make_flanks(self) -> SurfacePatch:
         """Return the surface of each ray that the next ray on either side does not cover."""
@@ -264,7 +264,7 @@ def _sample_layer(
 
     Missing material is 0, and only shoulders become steps.
     """
-    own, beside, share, limit = _neighbor_columns(solid.column_edges, at, scale)
+    own, neighbor, share, limit = _neighbor_columns(solid.column_edges, at, scale)
     shape = len(at), solid.inner_radii.shape[2] * times
     filled = (
         np.flatnonzero((solid.outer_radii[layer] > solid.inner_radii[layer]).any(axis=1))
@@ -284,13 +284,13 @@ def _sample_layer(
     there = high > low
     low *= there
     high *= there
-    own, beside, share, limit = own[rows], beside[rows], share[rows], limit[rows]
-    both = there[own] & there[beside]
+    own, neighbor, share, limit = own[rows], neighbor[rows], share[rows], limit[rows]
+    both = there[own] & there[neighbor]
     found = []
     for r in (low, high):
         full = np.zeros(shape, np.float32) if layer else np.empty(shape, np.float32)
         full[rows[0] : rows[-1] + 1] = _interpolate_rays(
-            _mixed(r, own, beside, share, limit, both), there[own], times
+            _mixed(r, own, neighbor, share, limit, both), there[own], times
         )
         found.append(full)
     return found[0], found[1]
@@ -302,12 +302,12 @@ def _neighbor_columns(
     """Return, for each Z, its column, the nearest neighbor with its share, and the step limit in pixels."""
     middles = 0.5 * (edges[1:] + edges[:-1])
     own = np.clip(np.searchsorted(edges, at, side="right") - 1, 0, len(middles) - 1)
-    beside = np.clip(own + np.where(at > middles[own], 1, -1), 0, len(middles) - 1)
-    apart = np.abs(middles[beside] - middles[own])
+    neighbor = np.clip(own + np.where(at > middles[own], 1, -1), 0, len(middles) - 1)
+    apart = np.abs(middles[neighbor] - middles[own])
     share = np.abs(at - middles[own]) / np.maximum(apart, 1e-12) * (apart > 0.0)
     return (
         own,
-        beside,
+        neighbor,
         share.astype(np.float32)[:, None],
         (_SLOPE * apart * scale).astype(np.float32)[:, None],
     )
@@ -316,13 +316,13 @@ def _neighbor_columns(
 def _mixed(
     r: Float32Array,
     own: IntArray,
-    beside: IntArray,
+    neighbor: IntArray,
     share: Float32Array,
     limit: Float32Array,
     both: npt.NDArray[np.bool_],
 ) -> Float32Array:
     mine = r[own]
-    change = r[beside]
+    change = r[neighbor]
     change -= mine
     change *= both
     change *= np.abs(change) <= limit
@@ -395,10 +395,10 @@ def _free_in(
 ) -> tuple[IntArray, Float32Array, Float32Array]:
     one, two = (own[0][some], own[1][some]), (other[0][some], other[1][some])
     mine = np.stack([r[one] for r in low]), np.stack([r[one] for r in high])
-    beside = np.stack([r[two] for r in low]), np.stack([r[two] for r in high])
+    other_intervals = np.stack([r[two] for r in low]), np.stack([r[two] for r in high])
     if len(low) > 1:
-        mine, beside = sort_intervals(*mine), sort_intervals(*beside)
-    nth, first, last = _subtract_intervals(*mine, *beside, least)
+        mine, other_intervals = sort_intervals(*mine), sort_intervals(*other_intervals)
+    nth, first, last = _subtract_intervals(*mine, *other_intervals, least)
     return some[nth], first, last
 
 

@@ -86,11 +86,11 @@ def sweep_edge(
     the edge does not reach a radius less than ``below`` in them.
     """
     (z1, r1), (z0, r0) = (start, end) if start[0] <= end[0] else (end, start)
-    way = z0 - z1
-    if way <= _UPRIGHT:
+    z_travel_mm = z0 - z1
+    if z_travel_mm <= _UPRIGHT:
         z, r = edge.z + z1, edge.r + min(r0, r1)
     else:
-        at = int(edge.slope.searchsorted((r0 - r1) / way))  # the edge is tangent to the move
+        at = int(edge.slope.searchsorted((r0 - r1) / z_travel_mm))  # the edge is tangent to the move
         z = np.concatenate((edge.z[: at + 1] + z1, edge.z[at:] + z0))
         r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
     low, high = _ends_below(z, r, below)

@@ -51,12 +51,12 @@ def simplify_polyline(points: FloatArray, tolerance: float) -> FloatArray:
 
 def _distances_from_line(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
     """Return the distance of each point (n, 2) from the straight line between two points."""
-    way: FloatArray = end - start
-    length = float(np.hypot(*way))
+    line_vector: FloatArray = end - start
+    length = float(np.hypot(*line_vector))
     away = points - start
     if length == 0.0:
         return np.hypot(away[:, 0], away[:, 1])
-    off: FloatArray = np.abs(way[0] * away[:, 1] - way[1] * away[:, 0]) / length
+    off: FloatArray = np.abs(line_vector[0] * away[:, 1] - line_vector[1] * away[:, 0]) / length
     return off
 
 
@@ -363,8 +363,8 @@ class TurnedPart:
         """
         half = self.columns.step_mm / 2
         rise = np.abs(np.diff(r))
-        beside = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))
-        steps = np.flatnonzero(rise > _STEEP_RATIO * np.maximum(self.columns.step_mm, beside))
+        neighbor_rise = np.maximum(np.append(rise[1:], 0.0), np.insert(rise[:-1], 0, 0.0))
+        steps = np.flatnonzero(rise > _STEEP_RATIO * np.maximum(self.columns.step_mm, neighbor_rise))
         points = np.column_stack((z, r))
         upright = np.column_stack(
             (np.repeat(z[steps] + half, 2), np.column_stack((r[steps], r[steps + 1])).ravel())

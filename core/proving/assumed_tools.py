@@ -286,9 +286,9 @@ def _enters_before_cutting(feeds: Sequence[TipMove], moves: Sequence[TipMove]) -
 
     This rule is used if the retracts do not give a decision.
     """
-    behind = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
+    feeds_toward_chuck = [m for m in feeds if m.points[-1][0] < m.points[0][0] - _SQUARE]
     falls = sum(abs(m.points[-1][1]) - abs(m.points[0][1]) for m in feeds if m.points[-1][0] < -_SQUARE)
-    return len(behind) > 1 and falls < -1.0 and bool(moves) and not _to_centre(feeds)
+    return len(feeds_toward_chuck) > 1 and falls < -1.0 and bool(moves) and not _to_centre(feeds)
 
 
 def _shape(kind: ToolKind, use: ToolUse) -> ToolShape:
@@ -376,8 +376,8 @@ def _is_at_rear(moves: Sequence[TipMove]) -> bool:
     Facing slightly beyond the axis is ignored.
     """
     cuts = [move for move in moves if not move.is_fast]
-    behind = [r for move in cuts for z, r in move.points if z < -_SQUARE]
-    radii = behind or [r for move in cuts for _, r in move.points]
+    radii_past_face = [r for move in cuts for z, r in move.points if z < -_SQUARE]
+    radii = radii_past_face or [r for move in cuts for _, r in move.points]
     return bool(radii) and -min(radii) > max(radii)
 
 

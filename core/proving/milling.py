@@ -67,7 +67,7 @@ def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -
     shares = np.concatenate(
         ([start_fraction], at[(at > start_fraction) & (at < end_fraction)], [end_fraction])
     )
-    return np.column_stack([np.interp(shares, at, figures) for figures in path.T])
+    return np.column_stack([np.interp(shares, at, coordinates) for coordinates in path.T])
 
 
 def point_height_mm(shape: ToolShape) -> float:

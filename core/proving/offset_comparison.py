@@ -103,8 +103,8 @@ def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
     The nose radius at the other end belongs to the straight if it is within the tolerance of the profile.
     """
     before = math.dist(profile[k - 1], profile[k]) if k else math.inf
-    behind = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
-    return profile[k] if before >= behind else profile[k + 1]
+    next_length = math.dist(profile[k + 1], profile[k + 2]) if k + 2 < len(profile) else math.inf
+    return profile[k] if before >= next_length else profile[k + 1]
 
 
 def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) -> list[Pair]:

@@ -87,13 +87,13 @@ class StepCollector:
         """Return the reason why the part cannot be made, as a sentence, or an empty text."""
         if self._blocks <= MAX_MOVES:
             return ""
-        way = "use 'turndesk prove --stock' for longer programs"
+        hint = "use 'turndesk prove --stock' for longer programs"
         return Message(
             "The program has {blocks} blocks, but TurnDesk can simulate the part for at most "
             "{most_moves} blocks; {details}",
             blocks=self._blocks,
             most_moves=MAX_MOVES,
-            details=way,
+            details=hint,
         )
 
     def collected_steps(self) -> ProgramSteps | None:
@@ -493,10 +493,10 @@ def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, p
 
     A binary search is possible, because the number of pieces never decreases.
     """
-    before, behind = 0, last
-    while behind - before > 1:
-        middle = (before + behind) // 2
-        before, behind = (middle, behind) if at(middle).parted_piece_count < pieces else (before, middle)
+    before, upper = 0, last
+    while upper - before > 1:
+        middle = (before + upper) // 2
+        before, upper = (middle, upper) if at(middle).parted_piece_count < pieces else (before, middle)
     return before
 
 

@@ -90,11 +90,11 @@ def _phrases(
         )
     if clamping is None or not clamping.max_rpm:
         yield "maximum chuck speed (unknown: no max_rpm in [clamping])"
-    if gang and (beside := sorted(gang.keys() - shapes.keys())):
+    if gang and (undefined_tools := sorted(gang.keys() - shapes.keys())):
         yield (
             Message(
                 "{tools}: collisions on the gang plate while a neighboring tool cuts (no tool shape defined)",
-                tools=_names(beside),
+                tools=_names(undefined_tools),
             )
         )
 
@@ -284,13 +284,13 @@ class PartSimulation:
 
         A spindle that never turns in the program is assumed to be switched manually.
         """
-        behind, self._in_cut = self._in_cut, False
+        is_after_cut, self._in_cut = self._in_cut, False
         shape = self._tools.find_shape(self._tool)
         if not self._turned or move.rpm or shape is None:
             return False
         round_tool = shape.is_rotating
         if move.is_fast or (round_tool and shape.kind is ToolKind.TAP):
-            return behind
+            return is_after_cut
         met = [cutter.find_cut(part, start, end) for start, end in pairwise(move.points)]
         if max(each.depth_mm for each in met) > RAPID_TOLERANCE_MM and self._is_stationary(move.modal, shape):
             self.findings.report_stationary_cut(move.line, move.n, self._tool)

@@ -204,11 +204,11 @@ class ProgramTools:
             shape = self.find_shape(number)
             if shape is None or shape.kind is not ToolKind.PARTING:
                 continue
-            behind = (
+            edge_width_mm = (
                 shape.width * (1 + shape.direction[0]) / 2.0
             )  # width of the edge beyond the corner that is set
-            ways = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.is_fast]
-            deepest += [z1 - behind for _, r0, z1, r1 in ways if abs(r1) < abs(r0) - _PLUNGE]
+            feed_moves = [(*m.points[0], *m.points[-1]) for m in use.moves if not m.is_fast]
+            deepest += [z1 - edge_width_mm for _, r0, z1, r1 in feed_moves if abs(r1) < abs(r0) - _PLUNGE]
         return min(deepest, default=None)
 
     def find_uncut_feeds(self, stock: Stock | None) -> Iterator[tuple[int, int, str]]:
@@ -356,19 +356,19 @@ def _bar_radius(outside: Sequence[TipMove], bore: Sequence[TipMove], front: floa
     cuts.
     """
     feeds = [move for move in outside if not move.is_fast]
-    behind = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
-    along = [_bar_radius_for_move(m) for m in behind if _is_turning_move(m, front)]
+    cuts = [move for move in feeds if min(z for z, _ in move.points) < front - _SAME]
+    along = [_bar_radius_for_move(m) for m in cuts if _is_turning_move(m, front)]
     largest = max(along, default=math.inf) + _BORE_MARGIN_MM
     widest = max((r for r in _radii(bore) if r < largest), default=0.0)
-    sunk = [min(abs(r) for _, r in m.points) + _EXTRA_RADIUS_MM for m in behind if along and _is_plunge(m)]
-    begins = [max(abs(r) for _, r in move.points) - 2.0 * _EXTRA_RADIUS_MM for move in behind or feeds]
+    sunk = [min(abs(r) for _, r in m.points) + _EXTRA_RADIUS_MM for m in cuts if along and _is_plunge(m)]
+    begins = [max(abs(r) for _, r in move.points) - 2.0 * _EXTRA_RADIUS_MM for move in cuts or feeds]
     faced = _facing_start_radius(feeds, front)
     cut = max([*along, *sunk, widest] if along or widest else begins, default=_MIN_RADIUS_MM)
     if faced < math.inf:
         cut = min(max(cut, faced - 3.0 * _EXTRA_RADIUS_MM), faced)
     passed = [abs(r) for m in outside if m.is_fast for z, r in m.points if z < front - _SAME]
-    beside = [r for r in passed if r >= cut - _SAME]
-    return max(min([cut + _EXTRA_RADIUS_MM, *beside]), widest + _WALL if widest else 0.0, _MIN_RADIUS_MM)
+    rapid_radii = [r for r in passed if r >= cut - _SAME]
+    return max(min([cut + _EXTRA_RADIUS_MM, *rapid_radii]), widest + _WALL if widest else 0.0, _MIN_RADIUS_MM)
 
 
 def _is_turning_move(move: TipMove, front: float) -> bool:
@@ -429,5 +429,5 @@ def _bar_radius_for_move(move: TipMove) -> float:
 
 def _bore_radius(bore: Iterable[TipMove], front: float) -> float:
     """Return slightly less than the smallest radius that is cut in the bore, or 0."""
-    behind = [m for m in bore if not m.is_fast and min(z for z, _ in m.points) < front - _SAME]
-    return max(min((max(abs(r) for _, r in m.points) for m in behind), default=0.0) - _EXTRA_RADIUS_MM, 0.0)
+    cuts = [m for m in bore if not m.is_fast and min(z for z, _ in m.points) < front - _SAME]
+    return max(min((max(abs(r) for _, r in m.points) for m in cuts), default=0.0) - _EXTRA_RADIUS_MM, 0.0)

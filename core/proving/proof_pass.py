@@ -177,11 +177,11 @@ class ProgramTotals:
         _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
         return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
 
-    def _plane(self, block: Block, way: PlaneMove) -> float:
+    def _plane(self, block: Block, plane_move: PlaneMove) -> float:
         self._reach(block)
-        low, high = way.find_travel_range()
+        low, high = plane_move.find_travel_range()
         self.c_range.extend(float(low[2]), float(high[2]))
-        return way.length
+        return plane_move.length
 
     def _feeds(self, rpm: FloatArray, feed: FloatArray, per_rev: FloatArray) -> None:
         path_speed = np.where(per_rev > 0, feed * np.abs(rpm) / 60, feed)
@@ -317,8 +317,8 @@ class ProofPass:
         """Return the report of the pass after the whole program has been added."""
         self._evaluate_pending()
         beyond = list(self._beyond.values())[:MAX_FINDINGS]
-        told = map(_weaken_to_warning, timeline.diagnostics)
-        found = [*told, *beyond, *self._checks.findings]
+        warnings = map(_weaken_to_warning, timeline.diagnostics)
+        found = [*warnings, *beyond, *self._checks.findings]
         interpreter, last, tally = timeline.interpreter, self.last_block, self._tally
         end = self.last_moving_block  # in its own frame, because M30 removes the work shift without a motion
         return ProofReport(

@@ -202,8 +202,8 @@ def calculate_velocity(
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)
     if len(times) > 2 * k:
-        way, took = position[2 * k :] - position[: -2 * k], times[2 * k :] - times[: -2 * k]
-        found[k:-k] = way / took
+        position_change, took = position[2 * k :] - position[: -2 * k], times[2 * k :] - times[: -2 * k]
+        found[k:-k] = position_change / took
     return found
 
 
@@ -220,10 +220,10 @@ def calculate_acceleration(
     k = _half(times, span_s)
     found = np.full(len(times), np.nan)
     if len(times) > 2 * k:
-        ahead, behind = times[2 * k :] - times[k:-k], times[k:-k] - times[: -2 * k]
+        ahead, first_half_s = times[2 * k :] - times[k:-k], times[k:-k] - times[: -2 * k]
         after = (position[2 * k :] - position[k:-k]) / ahead
-        before = (position[k:-k] - position[: -2 * k]) / behind
-        found[k:-k] = 2.0 * (after - before) / (ahead + behind)
+        before = (position[k:-k] - position[: -2 * k]) / first_half_s
+        found[k:-k] = 2.0 * (after - before) / (ahead + first_half_s)
     return found
 
 

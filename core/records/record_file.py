@@ -45,7 +45,7 @@ def save_record(record: ScopeRecord, path: Path) -> None:
 
     Raises RecordError if the file cannot be written.
     """
-    told = {
+    header = {
         "version": _VERSION,
         "started": record.start_time_utc_s,
         "rate": record.sampling_rate_hz,
@@ -53,7 +53,7 @@ def save_record(record: ScopeRecord, path: Path) -> None:
         "channels": [list(channel) for channel in record.channels],
     }
     columns = {f"column{i}": _packed(record, channel) for i, channel in enumerate(record.channels)}
-    columns |= {"times": record.times_s, _ABOUT: np.frombuffer(json.dumps(told).encode(), dtype=np.uint8)}
+    columns |= {"times": record.times_s, _ABOUT: np.frombuffer(json.dumps(header).encode(), dtype=np.uint8)}
     unfinished = path.with_name(path.name + ".part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -117,8 +117,8 @@ def _read(path: Path, data: io.BytesIO) -> ScopeRecord:
                 ),
                 "not-a-record",
             )
-        told = json.loads(archive[_ABOUT].tobytes())
-        version = told["version"]
+        header = json.loads(archive[_ABOUT].tobytes())
+        version = header["version"]
         if version > _VERSION:
             raise RecordError(
                 Message(
@@ -129,7 +129,7 @@ def _read(path: Path, data: io.BytesIO) -> ScopeRecord:
                 ),
                 "newer-version",
             )
-        return _record(told, lambda name: archive[name])
+        return _record(header, lambda name: archive[name])
 
 
 def _check_size(data: io.BytesIO) -> None:
@@ -148,13 +148,13 @@ def _check_size(data: io.BytesIO) -> None:
         )
 
 
-def _record(told: dict[str, object], column: Callable[[str], object]) -> ScopeRecord:
+def _record(header: dict[str, object], column: Callable[[str], object]) -> ScopeRecord:
     """Return the record with the given description and columns.
 
     Raises InconsistentRecordError if they are inconsistent, and ValueError, KeyError or TypeError if they
     are malformed.
     """
-    channels, about = told["channels"], told["about"]
+    channels, about = header["channels"], header["about"]
     if not isinstance(channels, list) or not isinstance(about, dict):
         raise InconsistentRecordError("the description in the file has an unknown format")
     made = tuple(Channel(str(name), str(unit), bool(logic)) for name, unit, logic in channels)
@@ -172,7 +172,7 @@ def _record(told: dict[str, object], column: Callable[[str], object]) -> ScopeRe
                 )
             )
         columns[channel.name] = np.where(found == _UNKNOWN, np.nan, found) if channel.logic else found
-    started, rate = told["started"], told["rate"]
+    started, rate = header["started"], header["rate"]
     if not isinstance(started, int | float) or not isinstance(rate, int | float):
         raise InconsistentRecordError("the start time of the record is missing")
     words = {str(name): str(text) for name, text in about.items()}

@@ -125,11 +125,11 @@ class RowBuffer:
 
     def __init__(self, capacity: int, width: int, memory: memoryview | None = None) -> None:
         self.capacity = capacity
-        figures = (
+        values = (
             np.zeros(calculate_buffer_size(capacity, width) // 8) if memory is None else np.frombuffer(memory)
         )
-        self._counts = figures[:2].view(np.int64)
-        self.array: FloatArray = figures[2:].reshape(
+        self._counts = values[:2].view(np.int64)
+        self.array: FloatArray = values[2:].reshape(
             capacity, width + 1
         )  # the last column is the row's number
 
@@ -318,16 +318,16 @@ class _Source:
             return self._samples[:, 1 + 2 * axes + index].copy()
         return (demand if what == "demand" else actual).copy()
 
-    def _of_machine(self, name: str, behind: int) -> FloatArray:
+    def _of_machine(self, name: str, first_column: int) -> FloatArray:
         if name == "lateness":
             return self._worst(1 + TICK_CHANNELS.index(name))
-        told = np.full(len(self._samples), np.nan)
+        values = np.full(len(self._samples), np.nan)
         if name in SAMPLE_CHANNELS:
-            told = self._samples[:, behind + SAMPLE_CHANNELS.index(name)].copy()
+            values = self._samples[:, first_column + SAMPLE_CHANNELS.index(name)].copy()
         if name in TICK_CHANNELS:
-            missing = np.isnan(told)
-            told[missing] = self._select_tick_values(1 + TICK_CHANNELS.index(name))[missing]
-        return told
+            missing = np.isnan(values)
+            values[missing] = self._select_tick_values(1 + TICK_CHANNELS.index(name))[missing]
+        return values
 
     def _bit(self, first: int, index: int) -> FloatArray:
         word = self._select_tick_values(first + index // _BITS)
@@ -355,5 +355,5 @@ class _Source:
         """Return the value of the latest tick at each sample, or NaN before the first tick."""
         if not len(self._ticks):
             return np.full(len(self._seen), np.nan)
-        figures = self._ticks[np.maximum(self._seen, 0), column]
-        return np.where(self._seen >= 0, figures, np.nan)
+        values = self._ticks[np.maximum(self._seen, 0), column]
+        return np.where(self._seen >= 0, values, np.nan)

@@ -43,7 +43,7 @@ _CHUNK = 1 << 20
 
 
 def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
-    told = {
+    description = {
         "axes": dict(recorded.is_rotary_by_axis),
         "inputs": recorded.inputs,
         "outputs": recorded.outputs,
@@ -54,7 +54,7 @@ def _head(recorded: RingLayout, ring: ScopeRing) -> bytes:
         "lasts": recorded.duration_s,
         "rooms": [ring.samples.capacity, ring.ticks.capacity],
     }
-    text = json.dumps(told).encode()
+    text = json.dumps(description).encode()
     size = -(-(_START.size + len(text) + 2 * _COUNTS.size) // _PAGE) * _PAGE
     head = _START.pack(_MAGIC, _VERSION, len(text), size) + text
     return head + bytes(size - len(head))
@@ -249,18 +249,18 @@ def _described(path: Path, start: bytes, read: Callable[[int], bytes]) -> _Found
     if not _START.size + length + 2 * _COUNTS.size <= head <= MAX_RECORD_BYTES:
         raise InconsistentRecordError("the file header has an invalid length")
     try:
-        told = json.loads(read(length))
+        description = json.loads(read(length))
         recorded = RingLayout(
-            {str(name): bool(rotary) for name, rotary in told["axes"].items()},
-            tuple(map(str, told["inputs"])),
-            tuple(map(str, told["outputs"])),
-            float(told["rate"]),
-            float(told["began"]),
-            str(told["machine"]),
-            tuple(map(str, told["states"])),
-            float(told["lasts"]),
+            {str(name): bool(rotary) for name, rotary in description["axes"].items()},
+            tuple(map(str, description["inputs"])),
+            tuple(map(str, description["outputs"])),
+            float(description["rate"]),
+            float(description["began"]),
+            str(description["machine"]),
+            tuple(map(str, description["states"])),
+            float(description["lasts"]),
         )
-        samples, ticks = (int(room) for room in told["rooms"])
+        samples, ticks = (int(room) for room in description["rooms"])
     except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         raise RecordError(
             Message("{path} is damaged at the start and cannot be read", path=path), "damaged"

@@ -52,7 +52,7 @@ def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
     The result contains one message for each row. A row is restored if its last history entry matches the
     saved checksum. It is also restored if this entry equals the row, so that only the checksum is damaged.
     """
-    told: list[str] = []
+    messages: list[str] = []
     connection.execute("DELETE FROM row_sums WHERE typeof(key) = 'blob'")  # no table has a key of this type
     for table, key in _broken(connection, KEY_COLUMNS):
         row = find_last_entered_values(
@@ -66,7 +66,7 @@ def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
             marks = ", ".join("?" * len(row))
             connection.execute(f"DELETE FROM {table} WHERE {KEY_COLUMNS[table]} = ?", (key,))
             connection.execute(f"INSERT INTO {table} VALUES ({marks})", row_checksums.decode_values(row))
-            told.append(
+            messages.append(
                 Message(
                     "{table} was damaged in the data store; the last values entered were restored "
                     "from the history",
@@ -74,8 +74,8 @@ def repair_rows(connection: sqlite3.Connection) -> tuple[str, ...]:
                 )
             )
         elif table in _DISCARD_FUNCTIONS:
-            told.append(_discard_row(connection, table, key))
-    return tuple(told)
+            messages.append(_discard_row(connection, table, key))
+    return tuple(messages)
 
 
 def _begin_anew(connection: sqlite3.Connection, program: RowKey) -> str:
@@ -92,7 +92,7 @@ def _retire_damaged_feature(connection: sqlite3.Connection, feature: RowKey) -> 
     """
     row = row_checksums.read_row(connection, "part_features", feature)
     which = Message("{row} {row2}", row=_shown(row[1]), row2=_shown(row[2])) if row else feature
-    told = Message(
+    message = Message(
         "{which} was damaged in the data store and was removed from the list of "
         "measured features; enter the feature again",
         which=make_row_label("part_features", which),
@@ -111,12 +111,12 @@ def _retire_damaged_feature(connection: sqlite3.Connection, feature: RowKey) -> 
     except sqlite3.IntegrityError:  # a value is outside its bounds
         retired = 0
     if retired:
-        return told
+        return message
     gone = connection.execute("DELETE FROM part_readings WHERE feature = ?", (feature,)).rowcount
     connection.execute("DELETE FROM part_features WHERE id = ?", (feature,))
     return Message(
         "{details}. The readings of this feature (number of readings: {gone}) were also lost",
-        details=told,
+        details=message,
         gone=gone,
     )
 
@@ -129,10 +129,10 @@ def _discard_row(connection: sqlite3.Connection, table: str, key: RowKey) -> str
 
     If this deletes the row, its checksum is deleted too.
     """
-    told = _DISCARD_FUNCTIONS[table](connection, key)
+    message = _DISCARD_FUNCTIONS[table](connection, key)
     if row_checksums.read_row(connection, table, key) is None:
         connection.execute("DELETE FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
-    return told
+    return message
 
 
 def _shown(value: row_checksums.ColumnValue) -> str:

@@ -66,9 +66,9 @@ def count_lost_changes(log: Path, index: Path) -> int:
         index.read_bytes()[: _FRAME_COUNT_OFFSET + _FRAME_COUNT_STRUCT.size], _FRAME_COUNT_OFFSET
     )[0]
     before = frames[taken - 1].sums if taken else sums
-    behind = frames[taken:]
-    ends = [at for at, frame in enumerate(behind) if frame.is_commit and _has_equal_salt(frame.salts, salts)]
-    if len(ends) == 1 and _is_torn(behind[: ends[0] + 1], before, salts, _order(magic)):
+    tail = frames[taken:]
+    ends = [at for at, frame in enumerate(tail) if frame.is_commit and _has_equal_salt(frame.salts, salts)]
+    if len(ends) == 1 and _is_torn(tail[: ends[0] + 1], before, salts, _order(magic)):
         return 0
     return len(ends)
 

@@ -186,7 +186,7 @@ def read_row(connection: sqlite3.Connection, table: str, key: RowKey) -> RowValu
 def read_saved_checksum(connection: sqlite3.Connection, table: str, key: RowKey) -> str:
     """Return the saved checksum of a row, or an empty text if the row has no checksum."""
     found = query_raw_rows(connection, "SELECT sha256 FROM row_sums WHERE tbl = ? AND key = ?", (table, key))
-    return "".join(_digest(told) for (told,) in found)
+    return "".join(_digest(raw_sum) for (raw_sum,) in found)
 
 
 def list_checksummed_columns(connection: sqlite3.Connection, table: str) -> tuple[str, ...]:
@@ -272,7 +272,7 @@ def _key(value: ColumnValue) -> RowKey:
 
 def _sums(connection: sqlite3.Connection, table: str, since: int | None = None) -> dict[RowKey, str]:
     asked = "SELECT key, sha256 FROM row_sums WHERE tbl = ?1 AND (?2 IS NULL OR key >= ?2)"
-    return {_key(key): _digest(told) for key, told in query_raw_rows(connection, asked, (table, since))}
+    return {_key(key): _digest(raw_sum) for key, raw_sum in query_raw_rows(connection, asked, (table, since))}
 
 
 def _digest(value: ColumnValue) -> str:

@@ -194,11 +194,11 @@ def _repair_damage(connection: sqlite3.Connection, repair_messages: tuple[str, .
     """
     try:
         connection.execute("BEGIN IMMEDIATE")
-        told = (*repair_messages, *damaged_rows.repair_rows(connection))
-        event_log.add_events(connection, (EventRow(get_utc_now_text(), "warning", text) for text in told))
+        messages = (*repair_messages, *damaged_rows.repair_rows(connection))
+        event_log.add_events(connection, (EventRow(get_utc_now_text(), "warning", text) for text in messages))
         connection.execute("COMMIT")
     except sqlite3.Error:
         with suppress(sqlite3.Error):
             connection.rollback()
         return repair_messages
-    return told
+    return messages

@@ -277,9 +277,9 @@ class StoreWriter:
         try:
             self._in_transaction(self._unwritten.write_all)
         except Exception as error:  # noqa: BLE001 - whatever it is becomes the answer; the thread goes on
-            told = self._failed(error)
-            self._backlog = self._unwritten.count_entries(self._trouble or str(told))
-            self._tell(lambda future: future.set_exception(told))
+            failure = self._failed(error)
+            self._backlog = self._unwritten.count_entries(self._trouble or str(failure))
+            self._tell(lambda future: future.set_exception(failure))
             return
         self._unwritten.clear()
         self._trouble, self._backlog = "", None
@@ -324,8 +324,8 @@ class StoreWriter:
             )  # the disk has no fault
         self._trouble = str(why(self._path, error))
         cause = find_cause(self._path, error)
-        told = StoreError(
+        failure = StoreError(
             Message("nothing was stored: {problem}. Then make the entry again", problem=self._trouble),
             cause.error_code,
         )
-        return StoreError(self._trouble, cause.error_code) if cause is StoreErrorCause.DAMAGED else told
+        return StoreError(self._trouble, cause.error_code) if cause is StoreErrorCause.DAMAGED else failure

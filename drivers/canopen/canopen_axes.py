@@ -215,13 +215,13 @@ class CanopenAxes:
     # --- inside -------------------------------------------------------------------------------------------
 
     def _supervise(self) -> None:
-        trouble = (
+        fault_text = (
             self._bus.failure or self.other_device_fault or self.follower.failure or self.drives.supervise()
         )
-        trouble = trouble or (self.active_homing.failure if self.active_homing is not None else "")
-        if trouble and not self.fault:
-            self._trip(trouble)
-        elif self._on and not self._powered() and not trouble:
+        fault_text = fault_text or (self.active_homing.failure if self.active_homing is not None else "")
+        if fault_text and not self.fault:
+            self._trip(fault_text)
+        elif self._on and not self._powered() and not fault_text:
             self._off(DriveState.SWITCH_ON_DISABLED)  # The power was removed by E-stop or STO.
             self.drives.clear_home()
 

@@ -209,7 +209,7 @@ class CanopenMachine:
         ):
             return ()
         schedule = follower.schedule
-        told = Message(
+        delay_text = Message(
             "setpoints were late {gaps} times, by up to {worst} ms",
             gaps=follower.gap_count,
             worst=f"{1000 * schedule.max_delay_s:.1f}",
@@ -219,7 +219,7 @@ class CanopenMachine:
             Message(
                 "{details}, and the axes waited for the setpoints; check that the driver host has "
                 "real-time priority",
-                details=told,
+                details=delay_text,
             ),
         )
 

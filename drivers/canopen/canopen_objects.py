@@ -118,8 +118,8 @@ def load_drive_dictionary(node: CanNode) -> tuple[ObjectDictionary, DriveProfile
         profile = find_profile(node.drive, None, None)
         return build_drive_dictionary(profile), profile
     found = load_dictionary(node.name, node.eds, build_drive_dictionary)
-    told = found.device_information
-    return found, find_profile(node.drive, told.vendor_number, told.product_name)
+    device_info = found.device_information
+    return found, find_profile(node.drive, device_info.vendor_number, device_info.product_name)
 
 
 def load_dictionary(name: str, eds: str, build_standard: Callable[[], ObjectDictionary]) -> ObjectDictionary:

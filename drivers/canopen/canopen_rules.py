@@ -72,8 +72,8 @@ def calculate_cyclic_load(
     ``slow_divisor``-th SYNC, each axis drive sends a second reply, and each of the ``other_count`` other
     devices exchanges two frames.
     """
-    told = get_max_frame_bits(_COMMAND) + get_max_frame_bits(_ANSWER)
-    each = get_max_frame_bits(0) + axis_count * told
+    exchange_bits = get_max_frame_bits(_COMMAND) + get_max_frame_bits(_ANSWER)
+    each = get_max_frame_bits(0) + axis_count * exchange_bits
     rare = axis_count * get_max_frame_bits(_MORE) + other_count * 2 * get_max_frame_bits(_MORE)
     return BusLoad(each, rare / slow_divisor, bitrate * sync_period_s)
 

@@ -61,13 +61,13 @@ class NodeSetup:
         """
         if not self.missing_objects:
             return ()
-        told = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.missing_objects.items()))
+        objects = "; ".join(f"{index:04X}h {what}" for index, what in sorted(self.missing_objects.items()))
         return (
             Message(
                 "{name}: node {node} lacks these objects: {details}",
                 name=self._name,
                 node=self.node.id,
-                details=told,
+                details=objects,
             ),
         )
 

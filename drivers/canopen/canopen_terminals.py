@@ -235,12 +235,12 @@ class CanopenIO:
         """Supervise the modules, send the outputs, and return the first fault, or an empty text without a
         fault.
         """
-        trouble: str = ""
+        fault_text: str = ""
         for module in self.modules.values():
             module.supervise()
-            trouble = trouble or module.failure
+            fault_text = fault_text or module.failure
             module.send_outputs(now)
-        return trouble
+        return fault_text
 
     def clear_fault(self) -> None:
         """Configure all modules again if a module has restarted or did not respond.
@@ -253,12 +253,12 @@ class CanopenIO:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return the states of all inputs by name; True means active."""
-        heard = (
+        raw_inputs = (
             *(bytes(module.inputs) for module in self.modules.values()),
             *(drive.digital_inputs for drive in self._drives.values()),
         )
-        if heard != self._heard:
-            self._heard = heard
+        if raw_inputs != self._heard:
+            self._heard = raw_inputs
             self._inputs = {name: self._read(where) for name, where in self._config.inputs.items()}
         return self._inputs
 

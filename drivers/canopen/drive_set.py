@@ -307,13 +307,13 @@ class DriveSet:
 
     def supervise(self) -> str:
         """Supervise the drives, and return the first fault, or an empty text without a fault."""
-        trouble: str = ""
+        fault_text: str = ""
         for axis in self.axes:
             axis.drive.supervise(3.0 * self._bus.config.heartbeat)
-            trouble = trouble or axis.drive.failure
+            fault_text = fault_text or axis.drive.failure
             if axis.drive.has_restarted:
                 axis.is_homed = axis.config.absolute
-        return trouble
+        return fault_text
 
     def update_motion(self, now: float) -> None:
         """Determine which axes move by comparing their positions in two replies.

@@ -109,9 +109,9 @@ class ProfiledFollower(SetpointFollower):
         """
         dt = segments.dt[-1]
         end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
-        way = end - segments.p[0]
-        length = float(np.linalg.norm(way))
-        along = way / length if length > 0.0 else way
+        displacement = end - segments.p[0]
+        length = float(np.linalg.norm(displacement))
+        along = displacement / length if length > 0.0 else displacement
         off = segments.p - segments.p[0]
         off = off - np.outer(off @ along, along)
         limit = max(axis.config.count for axis in self._axes)

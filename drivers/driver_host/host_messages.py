@@ -96,9 +96,9 @@ def parse_segments(numbers: FloatArray, axes: int) -> Segments:
 
 def encode_cam(cam: Cam) -> Message:
     """Return a request that makes the axes follow the spindle on a cam."""
-    way = flatten_segments(cam.way)
-    head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(way)}
-    return Message(head, np.concatenate([way, flatten_segments(cam.following_segments)]))
+    path_numbers = flatten_segments(cam.way)
+    head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(path_numbers)}
+    return Message(head, np.concatenate([path_numbers, flatten_segments(cam.following_segments)]))
 
 
 def number(head: Mapping[str, object], key: str) -> float:
@@ -129,11 +129,11 @@ def decode_cam(message: Message, axes: int) -> Cam:
     Raises DriverError if the cam is invalid.
     """
     split = int(number(message.head, "way"))
-    way, then = message.numbers[:split], message.numbers[split:]
+    path_numbers, then = message.numbers[:split], message.numbers[split:]
     return Cam(
         number(message.head, "zero"),
         number(message.head, "sign"),
-        parse_segments(way, axes),
+        parse_segments(path_numbers, axes),
         parse_segments(then, axes) if len(then) else None,
     )
 

@@ -201,8 +201,8 @@ class HostSamples(_HostPort):
         Batches of the wrong length are ignored.
         """
         waiting = self._line.sample_batches
-        told = [waiting.popleft() for _ in range(len(waiting))]
-        whole = [rows.reshape(-1, self._width) for rows in told if not len(rows) % self._width]
+        batches = [waiting.popleft() for _ in range(len(waiting))]
+        whole = [rows.reshape(-1, self._width) for rows in batches if not len(rows) % self._width]
         return np.concatenate(whole) if whole else np.empty((0, self._width))
 
 

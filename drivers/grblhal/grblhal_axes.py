@@ -151,8 +151,8 @@ class GrblAxes:
 
         If homing is enabled in the controller, its report decides, otherwise the machine file.
         """
-        told = self._c.is_homed(name)
-        known = self._known[name] if told is None or name not in self._wired else told
+        is_homed = self._c.is_homed(name)
+        known = self._known[name] if is_homed is None or name not in self._wired else is_homed
         return known and self._c.is_position_reliable and self._homing != name
 
     def _places(self) -> tuple[float, ...]:

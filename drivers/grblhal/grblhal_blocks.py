@@ -235,10 +235,10 @@ class GrblBlocks:
 
         Return inf for a move of zero length.
         """
-        way = math.hypot(dx, dz)
+        distance_mm = math.hypot(dx, dz)
         shares = {"X": abs(dx), "Z": abs(dz)}
-        told = ((max_speed(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired_axes)
-        return min((speed * way / share for speed, share in told if share), default=math.inf)
+        axis_limits = ((max_speed(axis), shares.get(axis.name, 0.0)) for axis in self._c.wired_axes)
+        return min((speed * distance_mm / share for speed, share in axis_limits if share), default=math.inf)
 
     def _demand_ready(self) -> None:
         why = self.describe_start_refusal()

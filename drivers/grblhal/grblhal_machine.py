@@ -154,11 +154,11 @@ class GrblMachine:
     def _list_differences(self) -> list[str]:
         """Return a warning for each controller setting that differs from the machine file."""
         c = self.controller
-        told: list[str] = []
+        warnings: list[str] = []
         for axis in c.wired_axes:
             speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
             if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
-                told.append(
+                warnings.append(
                     Message(
                         "{axis}: the controller allows {speed} mm/min, but the machine file specifies {vmax} "
                         "mm/min",
@@ -168,7 +168,7 @@ class GrblMachine:
                     )
                 )
             if 0.0 < accel < 0.99 * axis.amax:
-                told.append(
+                warnings.append(
                     Message(
                         "{axis}: the controller decelerates at {accel} mm/s² instead of {amax} mm/s²",
                         axis=axis.name,
@@ -177,14 +177,14 @@ class GrblMachine:
                     )
                 )
         if c.config.has_own_spindle and 0.0 < self.spindle.max_controller_rpm < c.config.rpm_max:
-            told.append(
+            warnings.append(
                 Message(
                     "spindle: $30 allows {highest} rpm, but the machine file specifies {rpm_max} rpm",
                     highest=f"{self.spindle.max_controller_rpm:g}",
                     rpm_max=f"{c.config.rpm_max:g}",
                 )
             )
-        return told
+        return warnings
 
     def _list_homing_warnings(self) -> list[str]:
         """Return a warning if axes need a home switch, but homing is disabled in the controller."""
@@ -212,22 +212,22 @@ class GrblMachine:
             f"{name} ({each.terminal})": self.io.describe_missing(name)
             for name, each in config.outputs.items()
         }
-        told = _group_texts(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
+        warnings = _group_texts(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
         inputs = {
             f"{name} ({config.inputs[name].terminal})": why
             for name, why in self.controller_inputs.list_missing().items()
         }
-        told += _group_texts(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
-        told += self._list_differences() + self._list_homing_warnings()
+        warnings += _group_texts(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
+        warnings += self._list_differences() + self._list_homing_warnings()
         estop = self.controller.config.inputs.get(ESTOP)
         if estop is not None and estop.terminal == HARDWARE:
-            told.append(
+            warnings.append(
                 "the E-stop acts only on the hardware: the controller does not detect it, and the "
                 "screen does not show its state"
             )
         if "thread" not in self.block_controller.capabilities:
-            told.append("the controller does not report a spindle encoder, so threading is rejected")
-        return told
+            warnings.append("the controller does not report a spindle encoder, so threading is rejected")
+        return warnings
 
 
 def _group_texts(items: Mapping[str, str], one: str, several: str) -> list[str]:

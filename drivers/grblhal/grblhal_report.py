@@ -164,13 +164,13 @@ def parse_identity(lines: Iterable[str]) -> ControllerIdentity:
 
     Raises DriverError if the device is not grblHAL or its buffer is too small.
     """
-    told: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for line in lines:
         found = re.fullmatch(r"\[([A-Z ]+):(.*)\]", line)
         if found:
-            told.setdefault(found[1], found[2])
-    letters, *sizes = told.get("OPT", "").split(",")
-    if "VER" not in told or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
+            fields.setdefault(found[1], found[2])
+    letters, *sizes = fields.get("OPT", "").split(",")
+    if "VER" not in fields or len(sizes) < 2 or not all(size.isdecimal() for size in sizes[:2]):
         raise DriverError(
             "the connected device is not grblHAL: its response to $I contains neither [VER:…] "
             "nor [OPT:…,blocks,bytes,…]",
@@ -184,9 +184,9 @@ def parse_identity(lines: Iterable[str]) -> ControllerIdentity:
             buffer=buffer,
             least_buffer=_MIN_BUFFER_SIZE,
         )
-    axes = told.get("AXS", "3:XYZ").partition(":")[2]
-    options = frozenset(told.get("NEWOPT", "").split(",")) - {""}
-    ports = [int(port) if port.isdecimal() else 0 for port in told.get("AUX IO", "0,0").split(",")]
+    axes = fields.get("AXS", "3:XYZ").partition(":")[2]
+    options = frozenset(fields.get("NEWOPT", "").split(",")) - {""}
+    ports = [int(port) if port.isdecimal() else 0 for port in fields.get("AUX IO", "0,0").split(",")]
     inputs, outputs = (*ports, 0, 0)[:2]
-    signals = told.get("SIGNALS")
-    return ControllerIdentity(told["VER"], blocks, buffer, axes, options, inputs, outputs, letters, signals)
+    signals = fields.get("SIGNALS")
+    return ControllerIdentity(fields["VER"], blocks, buffer, axes, options, inputs, outputs, letters, signals)

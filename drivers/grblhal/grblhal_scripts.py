@@ -87,21 +87,21 @@ def query_line(
 def send_modes(controller: GrblController) -> Script:
     """Send the required modes, end other modes that another host has left active, and verify the result."""
     yield from query_line(controller, "".join(grblhal_codes.REQUIRED_MODES))
-    told = yield from _read_modes(controller)
+    modes = yield from _read_modes(controller)
     cures = dict.fromkeys(
         grblhal_codes.MODE_RESETS[_mode_stem(word)]
-        for word in told
+        for word in modes
         if _mode_stem(word) in grblhal_codes.MODE_RESETS
     )
     for cure in cures:
         yield from query_line(controller, cure)
-    told = (yield from _read_modes(controller)) if cures else told
+    modes = (yield from _read_modes(controller)) if cures else modes
     missing = [
         mode
         for mode in grblhal_codes.REQUIRED_MODES
-        if mode not in told and mode not in grblhal_codes.UNREPORTED_MODES
+        if mode not in modes and mode not in grblhal_codes.UNREPORTED_MODES
     ]
-    kept = [word for word in told if _mode_stem(word) in grblhal_codes.MODE_RESETS]
+    kept = [word for word in modes if _mode_stem(word) in grblhal_codes.MODE_RESETS]
     if missing or kept:
         template = (
             "{wrong}; the controller reports [GC:{details}]; check that the controller is in lathe mode "
@@ -114,7 +114,7 @@ def send_modes(controller: GrblController) -> Script:
             if missing
             else Message("the controller stays in mode {saved}", saved=" ".join(kept))
         )
-        raise ScriptError(template, wrong=wrong, details=" ".join(told))
+        raise ScriptError(template, wrong=wrong, details=" ".join(modes))
 
 
 def _mode_stem(word: str) -> str:
@@ -124,8 +124,8 @@ def _mode_stem(word: str) -> str:
 
 def _read_modes(c: GrblController) -> Generator[ScriptStep, None, list[str]]:
     """Request the parser state and return all its words, including words that the driver does not use."""
-    told = " ".join(line for line in (yield from query_line(c, "$G")) if line.startswith("[GC:"))
-    return told.removeprefix("[GC:").rstrip("]").split()
+    modes_text = " ".join(line for line in (yield from query_line(c, "$G")) if line.startswith("[GC:"))
+    return modes_text.removeprefix("[GC:").rstrip("]").split()
 
 
 def require_hardware(controller: GrblController, identity: ControllerIdentity) -> None:
@@ -301,9 +301,9 @@ def check_restart(controller: GrblController) -> Script:
     by = controller.clock.now() + _MODES_TIMEOUT_S
     controller.request_modes()
     yield _ready_by(controller, lambda: controller.reported_modes != "", by), REPLY_TIMEOUT_S, ""
-    told = controller.reported_modes.removeprefix("[GC:").rstrip("]").split()
+    modes = controller.reported_modes.removeprefix("[GC:").rstrip("]").split()
     places = controller.report.position if controller.report is not None else None
-    if all(mode in told for mode in _RESET_MODES) or any(abs(place) > _AT_ZERO for place in places or ()):
+    if all(mode in modes for mode in _RESET_MODES) or any(abs(place) > _AT_ZERO for place in places or ()):
         return
     controller.has_restarted = True
     controller.home_origin.clear()

@@ -49,10 +49,10 @@ class GrblEncoder:
         At a reported speed of 0, the previous sign remains valid, for example while the spindle coasts.
         While the controller is silent, the speed that the drive reports is returned.
         """
-        way, report = self.get_reported_rpm(), self._c.report
+        reported_rpm, report = self.get_reported_rpm(), self._c.report
         if self._c.is_silent:
-            return way
-        self._sign = math.copysign(1.0, way) if way else self._sign
+            return reported_rpm
+        self._sign = math.copysign(1.0, reported_rpm) if reported_rpm else self._sign
         return self._sign * abs(report.measured or 0.0) if report is not None else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
@@ -218,14 +218,14 @@ class GrblSpindle:
         the reports is the speed after this limit.
         """
         c = self._c
-        now, told = c.clock.now(), c.report.speeds if c.report is not None else None
+        now, reported_speeds = c.clock.now(), c.report.speeds if c.report is not None else None
         share = c.overrides[2] / 100.0 if c.overrides is not None and len(c.overrides) > 2 else None
         said = self._runs and self._word is not None and self._word.is_done and c.state != "Hold"
-        if not said or told is None or share is None or len(told) < 2:
+        if not said or reported_speeds is None or share is None or len(reported_speeds) < 2:
             self._unlike_since = None
             return
         expected = abs(self._said) * share
-        if abs(told[1] - expected) <= 0.02 * expected + 2.0:
+        if abs(reported_speeds[1] - expected) <= 0.02 * expected + 2.0:
             self._unlike_since = None
         elif self._unlike_since is None:
             self._unlike_since = now
@@ -235,7 +235,7 @@ class GrblSpindle:
                 "because the controller limits the speed ($30, $31; a changed setting may take "
                 "effect only after the controller restarts)",
                 "controller-refuses",
-                details=f"{told[1]:g}",
+                details=f"{reported_speeds[1]:g}",
                 expected=f"{expected:.0f}",
             )
 

@@ -130,15 +130,15 @@ class GrblIO:
         A coolant output has the reported state, starting 1 s after its last command. An auxiliary output
         has the commanded state, because the controller does not report it.
         """
-        told = self._c.reported_accessories
+        accessory_report = self._c.reported_accessories
         shown = {name: on for name, on in self._wanted.items() if not self.describe_missing(name)}
         for name, output in self._c.config.outputs.items():
             letter = ACCESSORY_LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
-            if letter is None or told is None or said_at is None or name in self._asks:
+            if letter is None or accessory_report is None or said_at is None or name in self._asks:
                 continue
-            if told[0] > said_at + _OBEY_TIME_S and self._sent.get(name) == self._wanted[name]:
-                shown[name] = letter in told[1]
+            if accessory_report[0] > said_at + _OBEY_TIME_S and self._sent.get(name) == self._wanted[name]:
+                shown[name] = letter in accessory_report[1]
         return shown
 
     def write(self, name: str, on: bool) -> None:

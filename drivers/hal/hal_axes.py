@@ -113,9 +113,9 @@ class HalAxes:
         axes, config = len(self._driven), self.config
         turning, telling = bool(config.spindle.pins.position), bool(config.spindle.pins.velocity)
         width = 1 + 2 * axes + turning + telling + len(self._marks) + (self.touch_input is not None)
-        for told in self._link.pop_sample_rows():
-            for at in range(0, len(told) - width + 1, width):
-                self._sample(told[at : at + width], axes, turning=turning, telling=telling)
+        for sample_numbers in self._link.pop_sample_rows():
+            for at in range(0, len(sample_numbers) - width + 1, width):
+                self._sample(sample_numbers[at : at + width], axes, turning=turning, telling=telling)
 
     def _sample(self, row: Sequence[float], axes: int, *, turning: bool, telling: bool) -> None:
         t = row[0]
@@ -175,12 +175,12 @@ class HalAxes:
         The method raises no errors; errors become the fault.
         """
         self.process_samples()
-        told = self._link.last_report
-        trouble = self._link.failure_reason or parse_bridge_fault(told)
-        if trouble and not self.fault:
-            self.fault = trouble
+        report = self._link.last_report
+        fault_text = self._link.failure_reason or parse_bridge_fault(report)
+        if fault_text and not self.fault:
+            self.fault = fault_text
             self._forget()
-        if self._on and self._link.is_executed(self._order) and told.get("on") is not True:
+        if self._on and self._link.is_executed(self._order) and report.get("on") is not True:
             self._handle_power_loss()
         self._process_bridge_state()
         self._home_on()
@@ -188,12 +188,12 @@ class HalAxes:
 
     def _process_bridge_state(self) -> None:
         """Update the queue after the bridge has ended a cam or has braked."""
-        told = self._link.last_report
-        if self.queue.is_engaged and told.get("geared") is False and "left" in told:
-            left = told["left"]
+        report = self._link.last_report
+        if self.queue.is_engaged and report.get("geared") is False and "left" in report:
+            left = report["left"]
             if isinstance(left, float | int):
                 self.queue.end_cam(float(left))
-        count, numbers = number(told, "brakings"), told.get("braked")
+        count, numbers = number(report, "brakings"), report.get("braked")
         if count > self._brakings and isinstance(numbers, list) and numbers:
             self._brakings = count
             raw = pieces_told([float(each) for each in numbers], len(self._driven))
@@ -250,14 +250,14 @@ class HalAxes:
         self._check(cam.way._replace(v=cam.way.v * abs(self.spindle_rev_per_s) / 1.1))
         phase = SpindlePhaseFilter(t, turns, self.spindle_rev_per_s)
         self.queue.engage_cam(cam, phase, self._now())
-        way = convert_segments(cam.way, len(self.axes))
+        path = convert_segments(cam.way, len(self.axes))
         then = (
             convert_segments(cam.following_segments, len(self.axes))
             if cam.following_segments is not None
             else []
         )
         self._send(
-            "mesh", [*way, *then], zero=cam.start_revolutions + self.index_rev, sign=cam.sign, way=len(way)
+            "mesh", [*path, *then], zero=cam.start_revolutions + self.index_rev, sign=cam.sign, way=len(path)
         )
 
     def geared(self) -> GearState | None:
@@ -328,13 +328,13 @@ class HalAxes:
         """
         require_axis(axis, self.axes)
         index = self.axes.index(axis)
-        figures = self.config.axes[index]
-        if figures.absolute or figures.pins is None:
+        axis_config = self.config.axes[index]
+        if axis_config.absolute or axis_config.pins is None:
             return
         self._need_power()
         require_standstill(axis, self.sample().moving)
         self._homed[index] = False
-        self.active_homing = HalHoming(figures, index, self)
+        self.active_homing = HalHoming(axis_config, index, self)
 
     def clear_fault(self) -> None:
         """Clear the fault without switching on the drives.

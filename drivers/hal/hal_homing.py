@@ -173,19 +173,19 @@ class HalHoming:
             if self._axis.home_method in PRESENT_POSITION_METHODS or place[self.axis_index] == 0.0:
                 self._enter(_Step.DONE, now)
             else:
-                way = -place[self.axis_index]
-                self._go(math.copysign(1.0, way), self._axis.home_speed, _Step.PARK, now, abs(way))
+                travel = -place[self.axis_index]
+                self._go(math.copysign(1.0, travel), self._axis.home_speed, _Step.PARK, now, abs(travel))
 
     def _park(self, now: float, rests: bool) -> None:
         if rests and now > self._since + _STOP_TIME_S:
             self._enter(_Step.DONE, now)
 
-    def _go(self, way: float, speed: float, step: _Step, now: float, length: float = 0.0) -> None:
+    def _go(self, direction: float, speed: float, step: _Step, now: float, length: float = 0.0) -> None:
         low, high = self._axis.travel or (-180.0, 180.0)
         length = length or _TRAVEL_FACTOR * (high - low)
         place, _ = self._slides.demand_at(now)
         begins = now + self._slides.commit + 0.005
-        to = place[self.axis_index] + way * length
+        to = place[self.axis_index] + direction * length
         segments = plan_straight_move(
             begins, place, self.axis_index, target=to, speed=speed, accel=self._axis.amax
         )

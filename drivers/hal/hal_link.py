@@ -200,13 +200,13 @@ class HalLink:
 
     def read_bit(self, name: str) -> bool:
         """Return a bit of the bridge by the name of its pin, or False for an unknown pin."""
-        told, at = self.last_report.get("bits"), self._bits.get(name)
-        return isinstance(told, list) and at is not None and told[at] is True
+        bits, at = self.last_report.get("bits"), self._bits.get(name)
+        return isinstance(bits, list) and at is not None and bits[at] is True
 
     def read_number(self, name: str) -> float:
         """Return a number of the bridge by the name of its pin, or 0 for an unknown pin."""
-        told, at = self.last_report.get("figures"), self._figures.get(name)
-        return float(told[at]) if isinstance(told, list) and at is not None else 0.0
+        numbers, at = self.last_report.get("figures"), self._figures.get(name)
+        return float(numbers[at]) if isinstance(numbers, list) and at is not None else 0.0
 
     def pop_sample_rows(self) -> Iterator[Sequence[float]]:
         """Remove and yield the received samples."""

@@ -36,15 +36,15 @@ class HalTerminals:
 
     def inputs(self) -> Mapping[str, bool]:
         """Return all inputs by name, with True for an active input."""
-        told = self._link.last_report.get("in")
-        raw = told if isinstance(told, list) else [False] * len(self._config.inputs)
+        reported_states = self._link.last_report.get("in")
+        raw = reported_states if isinstance(reported_states, list) else [False] * len(self._config.inputs)
         wired = zip(self._config.inputs.items(), raw, strict=True)
         return {name: on is not each.active_low for (name, each), on in wired}
 
     def outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name with the states of their HAL pins."""
-        told = self._link.last_report.get("is")
-        real = told if isinstance(told, list) else [False] * len(self._config.outputs)
+        reported_states = self._link.last_report.get("is")
+        real = reported_states if isinstance(reported_states, list) else [False] * len(self._config.outputs)
         found = {name: on is True for name, on in zip(self._config.outputs, real, strict=True)}
         for name, (on, order) in list(self._written.items()):
             if self._link.is_executed(order):
@@ -93,10 +93,10 @@ class HalTerminals:
 
         The result is 0 if the pin is not connected.
         """
-        told, names = self._link.last_report.get("analog"), list(self._config.pots)
-        if not isinstance(told, list) or name not in names:
+        values, names = self._link.last_report.get("analog"), list(self._config.pots)
+        if not isinstance(values, list) or name not in names:
             return 0.0
-        return float(told[names.index(name)])
+        return float(values[names.index(name)])
 
 
 class HalSamples:
@@ -199,5 +199,5 @@ def _create_spindle_c(
     number = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
     if number is None:
         return None
-    told = "spindle.in_position_mode" if config.spindle.pins.in_position_mode else ""
-    return HalSpindleCAxis(axes, spindle, link, number, told)
+    mode_pin_path = "spindle.in_position_mode" if config.spindle.pins.in_position_mode else ""
+    return HalSpindleCAxis(axes, spindle, link, number, mode_pin_path)

@@ -103,9 +103,9 @@ def _is_locked(folder: Path) -> bool:
 def _is_running(folder: Path) -> bool:
     """Return whether a process that was started with this folder is still running."""
     name = os.fsencode(str(folder))
-    for told in Path("/proc").glob("[0-9]*/cmdline"):
+    for cmdline_path in Path("/proc").glob("[0-9]*/cmdline"):
         with suppress(OSError):
-            if name in told.read_bytes():
+            if name in cmdline_path.read_bytes():
                 return True
     return False
 
@@ -351,11 +351,11 @@ class HalSession:
             lines = (self._folder / "halrun.log").read_text(encoding="utf-8", errors="replace").splitlines()
         except OSError:
             lines = []
-        told = [line.strip() for line in lines if line.strip() and not line.startswith("Note:")]
+        output_lines = [line.strip() for line in lines if line.strip() and not line.startswith("Note:")]
         for words, plain in _HALRUN_MESSAGES.items():
-            if any(words in line for line in told):
+            if any(words in line for line in output_lines):
                 return plain
-        return " / ".join(told[-3:]).replace(f"{self._folder}/", "")
+        return " / ".join(output_lines[-3:]).replace(f"{self._folder}/", "")
 
     # --- the link -----------------------------------------------------------------------------------------
 

@@ -334,9 +334,9 @@ class HalSpindleCAxis:
 
     def _engage_c(self) -> None:
         """Engage C when HAL plays its setpoint at the spindle position and the drive follows it."""
-        told = self._link.last_report.get("c_at") if self._link.is_executed(self._order) else None
-        if isinstance(told, float | int) and (not self._told or self._link.read_bit(self._told)):
-            self._hold_at(float(told))
+        c_position = self._link.last_report.get("c_at") if self._link.is_executed(self._order) else None
+        if isinstance(c_position, float | int) and (not self._told or self._link.read_bit(self._told)):
+            self._hold_at(float(c_position))
         elif self._late(_CHANGE):
             self._fail("the signal hal.spindle.in_position_mode does not turn on")
 
@@ -347,11 +347,11 @@ class HalSpindleCAxis:
         if abs(off) <= self._axes.config.axes[self._axis].count:
             self._enter(HalSpindleCStep.ENGAGED)
             return
-        figures, now = self._axes.config.axes[self._axis], self._axes.now()
+        axis_config, now = self._axes.config.axes[self._axis], self._axes.now()
         place, _ = self._axes.demand_at(now)
-        speed, begins = _SLOW * figures.vmax, now + self._axes.commit + 0.005
+        speed, begins = _SLOW * axis_config.vmax, now + self._axes.commit + 0.005
         self._axes.splice_homing(
-            plan_straight_move(begins, place, self._axis, target=count, speed=speed, accel=figures.amax)
+            plan_straight_move(begins, place, self._axis, target=count, speed=speed, accel=axis_config.amax)
         )
         self._enter(HalSpindleCStep.TURN_TO_POSITION)
 

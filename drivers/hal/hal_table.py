@@ -329,8 +329,8 @@ def _check_spindle_pins(file: MachineFileReading) -> Iterator[FileFinding]:
         )
     if said["speed_abs"] and not (said["forward"] or said["on"]):
         yield FileFinding(f"{_SPINDLE}.forward", "", "missing; an unsigned speed also requires a direction")
-    told = said["position"] or said["velocity"] or said["at_speed"]
-    if values.has_text("spindle.driver", "hal") and not told:
+    feedback_pin = said["position"] or said["velocity"] or said["at_speed"]
+    if values.has_text("spindle.driver", "hal") and not feedback_pin:
         yield FileFinding(
             f"{_SPINDLE}.velocity", "", "missing; expected position, velocity or at_speed as spindle feedback"
         )

@@ -391,13 +391,13 @@ class AxisDrive:
 
     def _search_home(self, dt: float) -> None:
         """Move to the home switch at the first homing speed, and set the reference after a standstill."""
-        way = self.servo_axis.switch - self.setpoint_position
+        remaining_travel = self.servo_axis.switch - self.setpoint_position
         speed = (
             max(self.values.get((od.HOME_SPEEDS, 1), 0), 1) * self.velocity_scale * self.servo_axis.axis.count
         )
-        self.setpoint_velocity = math.copysign(min(speed, abs(way) / dt), way)
+        self.setpoint_velocity = math.copysign(min(speed, abs(remaining_travel) / dt), remaining_travel)
         self.setpoint_position += self.setpoint_velocity * dt
-        if abs(way) > 1e-9:
+        if abs(remaining_travel) > 1e-9:
             return
         self.setpoint_velocity = 0.0
         self._settled += dt

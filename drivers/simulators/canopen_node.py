@@ -159,34 +159,34 @@ class DeviceNode:
 
     def handle_frame(self, can_id: int, data: bytes) -> None:
         """Handle one received frame that the node accepts."""
-        told = self._get_communication()
+        communication = self._get_communication()
         if self.is_silent:
             return
         if can_id == 0 and len(data) >= 2 and data[1] in {0, self.node_id}:
             self._command(data[0])
         elif can_id == 0x600 + self.node_id and self.state != _STOPPED:
             self.local_node.sdo.on_request(can_id, bytearray(data), self.time_s)
-        elif can_id == told.monitored_id:
+        elif can_id == communication.monitored_id:
             self._host_heard = self.time_s
         elif self.state == _OPERATIONAL:
-            self._process_data(can_id, data, told)
+            self._process_data(can_id, data, communication)
 
     def update(self, now: float) -> None:
         """Send the heartbeat when it is due, and check the heartbeat and the setpoints of the host."""
         self.time_s = now
-        told = self._get_communication()
-        if told.heartbeat_s and now >= self._next_beat and not self.is_silent:
-            self._next_beat = now + told.heartbeat_s
+        communication = self._get_communication()
+        if communication.heartbeat_s and now >= self._next_beat and not self.is_silent:
+            self._next_beat = now + communication.heartbeat_s
             self.network.send_message(0x700 + self.node_id, bytes([self.state]))
         if (
-            told.heartbeat_timeout_s
+            communication.heartbeat_timeout_s
             and self._host_heard is not None
-            and now - self._host_heard > told.heartbeat_timeout_s
+            and now - self._host_heard > communication.heartbeat_timeout_s
         ):
             self._host_heard = None
             self.send_emergency(0x8130)
             self.device.handle_host_loss()
-        self._check_setpoints(now, told)
+        self._check_setpoints(now, communication)
 
     def _check_setpoints(self, now: float, communication: _Communication) -> None:
         """Treat the host as lost if SYNC or the first RPDO is missing for longer than configured."""
@@ -220,15 +220,15 @@ class DeviceNode:
         elif code in {_RESET, _RESET_COMMUNICATION}:
             self.boot_up()
 
-    def _process_data(self, can_id: int, data: bytes, told: _Communication) -> None:
+    def _process_data(self, can_id: int, data: bytes, communication: _Communication) -> None:
         if can_id == 0x80:
             self._syncs, self._sync_at = self._syncs + 1, self.time_s
             for _, (entries, waiting) in sorted(self._waiting.items()):
                 self._apply(entries, waiting)
             self._waiting.clear()
-            self._answer(told)
-        elif can_id in told.received_pdos:
-            number, waits, entries = told.received_pdos[can_id]
+            self._answer(communication)
+        elif can_id in communication.received_pdos:
+            number, waits, entries = communication.received_pdos[can_id]
             self._told_at = self._told_at if number else self.time_s
             if waits:
                 self._waiting[number] = entries, data
@@ -244,8 +244,8 @@ class DeviceNode:
                 self.device.write(index, sub, int.from_bytes(part, "little", signed=signed))
             at += size
 
-    def _answer(self, told: _Communication) -> None:
-        for cob, kind, entries in told.sent_pdos:
+    def _answer(self, communication: _Communication) -> None:
+        for cob, kind, entries in communication.sent_pdos:
             if self._syncs % kind == 0:
                 self.network.send_message(cob, b"".join([self._encode_value(*entry) for entry in entries]))
 

@@ -193,12 +193,12 @@ class ReportGenerator:
         return text
 
     def _overrides(self, full: bool, busy: bool) -> bool:
-        told = full or self.overrides_due or self.reports_until_overrides == 0
+        is_due = full or self.overrides_due or self.reports_until_overrides == 0
         self.reports_until_overrides = (
-            (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if told else self.reports_until_overrides - 1
+            (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if is_due else self.reports_until_overrides - 1
         )
         self.overrides_due = False
-        return told
+        return is_due
 
     def _offsets(self, full: bool, overrides: bool, busy: bool) -> bool:
         wanted = full or self.offsets_due or self.reports_until_offsets == 0
@@ -235,8 +235,8 @@ def _extras(m: GrblFirmware, offsets: bool, overrides: bool, full: bool) -> str:
     text += f"|Ov:{m.feed_percent},{m.rapid_percent},{m.spindle_percent}" if overrides else ""
     accessories = "" if not m.commanded_rpm else "S" if m.commanded_rpm > 0.0 else "C"
     accessories += "F" * m.output_states.get("flood", False) + "M" * m.output_states.get("mist", False)
-    told = full or m.report_generator.accessories_due or (overrides and accessories)
-    text += f"|A:{accessories}" if told else ""
+    has_accessories = full or m.report_generator.accessories_due or (overrides and accessories)
+    text += f"|A:{accessories}" if has_accessories else ""
     if not full:
         return text
     homed = f"|H:{int(m.homed_axes & 5 == 5)}" + (f",{m.homed_axes}" if int(m.registers[22]) & 2 else "")

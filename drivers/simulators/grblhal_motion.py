@@ -46,8 +46,8 @@ class PlannedBlock:
             return self.path.direction
         first = min(max(distance_mm - _HEADING_STEP_MM, 0.0), max(self.length_mm - _HEADING_STEP_MM, 0.0))
         (x0, z0), (x1, z1) = self.path(first), self.path(min(first + _HEADING_STEP_MM, self.length_mm))
-        way = math.hypot(x1 - x0, z1 - z0) or 1.0
-        return (x1 - x0) / way, (z1 - z0) / way
+        chord_mm = math.hypot(x1 - x0, z1 - z0) or 1.0
+        return (x1 - x0) / chord_mm, (z1 - z0) / chord_mm
 
 
 class _Line:
@@ -217,8 +217,8 @@ class GrblMotion:
         accel = self._limit_in_direction(_ACCELERATION, ((x1 - x0) / turn, (z1 - z0) / turn))
         return math.sqrt(accel * self._registers[11] * half / (1.0 - half))
 
-    def _go(self, way: float) -> None:
-        self._s, self.total_travel_mm = self._s + way, self.total_travel_mm + way
+    def _go(self, distance_mm: float) -> None:
+        self._s, self.total_travel_mm = self._s + distance_mm, self.total_travel_mm + distance_mm
         while self.block_queue and self._s >= self.block_queue[0].length_mm - 1e-9:
             done = self.block_queue.popleft()
             self._s = max(self._s - done.length_mm, 0.0)

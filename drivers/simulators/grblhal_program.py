@@ -165,9 +165,9 @@ def execute_system_command(controller: ProgramController, line: str, modes: str)
         return _home(controller, command.removeprefix("$H"))
     if command == "$X":
         return _unlock(controller)
-    told = _told(controller, line, modes)
-    if told:
-        controller.send_text("".join(f"{text}\r\n" for text in told))
+    report_lines = _told(controller, line, modes)
+    if report_lines:
+        controller.send_text("".join(f"{text}\r\n" for text in report_lines))
         return 0
     found = re.fullmatch(r"\$(\d+)=(.*)", line)
     if found is None:
@@ -310,9 +310,9 @@ class LineInterpreter:
         if "F" not in words:
             return 22
         target = self._target(words)
-        length, way = make_line_path(self.end_position, target)
+        length, path = make_line_path(self.end_position, target)
         self.end_position = target
-        machine.queue_block(PlannedBlock(0, length, words["F"] / 60.0, way, is_jog=True))
+        machine.queue_block(PlannedBlock(0, length, words["F"] / 60.0, path, is_jog=True))
         return 0
 
     def _carry_out(self, line: str) -> None:
@@ -374,9 +374,9 @@ class LineInterpreter:
         """Command the spindle; the line waits for the speed only after a start, stop or reversal."""
         machine = self._m
         before = math.copysign(1.0, machine.programmed_rpm) if machine.programmed_rpm else 0.0
-        way = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
-        machine.command_spindle(way * rpm)
-        if way != before:
+        direction = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
+        machine.command_spindle(direction * rpm)
+        if direction != before:
             self.active_wait = create_spindle_wait(machine, spindle_on=code != "M5")
 
     def _target(self, words: dict[str, float]) -> Position:
@@ -414,19 +414,19 @@ class LineInterpreter:
         return 43 if feed > 0.9 * machine.registers[112] else 0
 
     def _hand_over(self, motion: str, shape: Shape, words: dict[str, float]) -> None:
-        length, way = shape
+        length, path = shape
         number = int(words.get("N", 0))
         if motion == "G33":
             self._cuts = True
             self._m.spindle_percent = 100
             self._m.command_spindle(self._m.programmed_rpm)
-            block = PlannedBlock(number, length, words.get("K", 0.0), way, is_per_rev=True, is_thread=True)
+            block = PlannedBlock(number, length, words.get("K", 0.0), path, is_per_rev=True, is_thread=True)
         elif motion == "G0":
-            block = PlannedBlock(number, length, 1e9, way, is_rapid=True)
+            block = PlannedBlock(number, length, 1e9, path, is_rapid=True)
         else:
             per_rev = self.modes.feed_mode == "G95"
             block = PlannedBlock(
-                number, length, self._f if per_rev else self._f / 60.0, way, is_per_rev=per_rev
+                number, length, self._f if per_rev else self._f / 60.0, path, is_per_rev=per_rev
             )
         self._m.queue_block(block)
 

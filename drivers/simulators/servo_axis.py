@@ -289,9 +289,9 @@ class AxisWear:
     def move_slide(self, p: float, v: float) -> None:
         """Move the slide with the motor, which is at position ``p`` with velocity ``v``."""
         play = 0.5 * self.gib
-        behind = p - self.slide_position
-        if abs(behind) > play * (1.0 + 2.0 * _STICK_FRACTION if abs(v) < _STICK_SLIP_SPEED else 1.0):
-            self.slide_position = p - math.copysign(play, behind)
+        slide_lag = p - self.slide_position
+        if abs(slide_lag) > play * (1.0 + 2.0 * _STICK_FRACTION if abs(v) < _STICK_SLIP_SPEED else 1.0):
+            self.slide_position = p - math.copysign(play, slide_lag)
 
 
 # --- Closed-form response of the servo to setpoints of constant acceleration.

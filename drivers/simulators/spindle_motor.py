@@ -173,22 +173,22 @@ class SpindleMotor:
         order = self._orient
         if order is None or self.time_s < self._begins or self._even or self.faults.fault_text:
             return 0.0
-        way = order.get_revolutions_to_angle(self.revolutions)
-        return math.copysign(self.config.orient_rpm, way) if way else 0.0
+        travel_rev = order.get_revolutions_to_angle(self.revolutions)
+        return math.copysign(self.config.orient_rpm, travel_rev) if travel_rev else 0.0
 
     def _turn_to_angle(self, now: float) -> None:
         """Turn toward the commanded angle at a constant speed, without simulating the acceleration."""
         order, begins = self._orient, max(self.time_s, self._begins)
         if order is None or self._even or self.faults.fault_text or now <= begins:
             return
-        way = order.get_revolutions_to_angle(self.revolutions)
+        travel_rev = order.get_revolutions_to_angle(self.revolutions)
         done = self.config.orient_rpm / 60.0 * (now - begins)
-        if done >= abs(way):
+        if done >= abs(travel_rev):
             self.revolutions = (
-                round(self.revolutions + way - order.angle_deg / 360.0) + order.angle_deg / 360.0
+                round(self.revolutions + travel_rev - order.angle_deg / 360.0) + order.angle_deg / 360.0
             )
         else:
-            self.revolutions += math.copysign(done, way)
+            self.revolutions += math.copysign(done, travel_rev)
 
     def advance_to(self, now: float) -> None:
         """Advance the spindle to time ``now``, and execute the commands that become due."""

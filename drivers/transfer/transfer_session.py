@@ -191,21 +191,21 @@ class ReceiveTransfer(_Transfer):
 
     def _receive(self) -> ReceivedText:
         incoming, clock = ProgramParser(self._settings), self._clock
-        heard = asked = clock.now()
+        receive_time_s = asked = clock.now()
         self._ask()
         while incoming.phase is not ReceptionPhase.COMPLETE:
             self._go_on()
             come = self._wire.receive(CYCLE_S)
             now = clock.now()
             if come:
-                heard = now
+                receive_time_s = now
                 self._take(incoming, come)
             elif incoming.phase is ReceptionPhase.WAITING:
-                if now - max(asked, heard) >= DC1_REPEAT_S:
+                if now - max(asked, receive_time_s) >= DC1_REPEAT_S:
                     asked = now
                     self._ask()
-            elif now - heard >= FINAL_SILENCE_S:
-                self._finish_after_silence(incoming, is_silent=now - heard >= END_SILENCE_S)
+            elif now - receive_time_s >= FINAL_SILENCE_S:
+                self._finish_after_silence(incoming, is_silent=now - receive_time_s >= END_SILENCE_S)
         self._say(DC3)
         return incoming.build_program()
 

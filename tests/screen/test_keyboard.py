@@ -101,13 +101,13 @@ def test_a_press_right_behind_its_release_is_a_repeat(watched: Hands) -> None:
 class Server:
     """An X server that tells repeats as presses, and which keys are down."""
 
-    tells_repeats = True
+    reports_repeats = True
     held: frozenset[int] = frozenset({int(Key.Key_S)})
 
-    def keys(self) -> frozenset[int]:
+    def read_keys(self) -> frozenset[int]:
         return self.held
 
-    def buttons(self) -> bool:
+    def has_button_down(self) -> bool:
         return False
 
 

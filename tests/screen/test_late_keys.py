@@ -124,12 +124,12 @@ def test_a_switch_pressed_twice_is_switched_twice(stall: Stall) -> None:
 
 def test_a_shift_that_was_down_then_counts(stall: Stall) -> None:
     class Server:
-        tells_repeats = True
+        reports_repeats = True
 
-        def keys(self) -> frozenset[int]:
+        def read_keys(self) -> frozenset[int]:
             return frozenset()  # all were let go by now
 
-        def buttons(self) -> bool:
+        def has_button_down(self) -> bool:
             return False
 
     keyboard = stall.hands.window.keyboard_filter
@@ -148,7 +148,7 @@ def test_repeats_of_a_key_that_was_held_in_the_stall_are_none(stall: Stall) -> N
     stall.ends()
     for ms in range(100, 600, 40):
         send(hands, Key.Key_A, text="a", at=round(1000 * stall.begun) + ms, repeat=ms > 100)
-    assert hands.frame.current_page.model.find.text == "a"  # type: ignore[attr-defined]
+    assert hands.frame.current_page.model.search_field.text == "a"  # type: ignore[attr-defined]
 
 
 def test_a_touch_on_what_is_still_shown_is_done(stall: Stall) -> None:

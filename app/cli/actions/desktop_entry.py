@@ -57,9 +57,9 @@ def _entry_paths() -> tuple[Path, Path, Path, Path]:
 
 def _command() -> str:
     """Return the command that starts this installation."""
-    beside = Path(sys.executable).with_name(ENTRY_NAME)
-    if beside.exists():
-        return _quote_word(str(beside))
+    entry_path = Path(sys.executable).with_name(ENTRY_NAME)
+    if entry_path.exists():
+        return _quote_word(str(entry_path))
     return Message("{executable} -m app.cli.main", executable=_quote_word(sys.executable))
 
 

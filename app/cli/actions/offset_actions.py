@@ -79,12 +79,12 @@ def _show(args: argparse.Namespace) -> int:
     with open_store(read_only=True) as store:
         rows = {kind: store.offsets.get_table(kind).read_rows() for kind in OffsetKind}
     if args.json:
-        told = {
+        tables_json = {
             kind.value: {n: _convert_to_inches(kind, row) for n, row in table.items()}
             for kind, table in rows.items()
             if table or kind in {OffsetKind.TOOL, OffsetKind.SECONDARY}
         }
-        sys.stdout.write(json.dumps(told) + "\n")
+        sys.stdout.write(json.dumps(tables_json) + "\n")
         return EXIT_OK
     lines = [_line(_name(kind, n), row) for kind, table in rows.items() for n, row in table.items()]
     sys.stdout.write("".join(f"{line}\n" for line in lines) or "no offsets are set\n")
@@ -121,15 +121,15 @@ def _line(name: str, row: OffsetRow) -> str:
 
 def _format_shape(row: ShapeRow) -> str:
     """Return the specified fields of a shape in the syntax in which they are entered."""
-    told = [f"{row.kind} {row.hand}"]
+    field_texts = [f"{row.kind} {row.hand}"]
     values: list[FieldValue] = list(row)
     for field, value in zip(FIELDS_BY_KIND[OffsetKind.SHAPE].values(), values, strict=True):
         if value and not field.choices:
-            told.append(
+            field_texts.append(
                 f"{field.name}="
                 f"{format_value(_convert_type(field, value)) if not isinstance(value, str) else value}"
             )
-    return "  ".join(told)
+    return "  ".join(field_texts)
 
 
 def _format_details(row: ToolRow) -> str:
@@ -344,8 +344,8 @@ def _clear(args: argparse.Namespace) -> int:
     if not count:
         sys.stdout.write(f"{letter} was not set, so there was nothing to clear\n")
     else:
-        told = _CLEARED.get(letter, letter)
-        sys.stdout.write(f"{told} cleared: {int(count)}; 'turndesk offsets undo' restores them\n")
+        cleared_name = _CLEARED.get(letter, letter)
+        sys.stdout.write(f"{cleared_name} cleared: {int(count)}; 'turndesk offsets undo' restores them\n")
     return EXIT_OK
 
 

@@ -92,11 +92,11 @@ def catch_interrupts() -> Iterator[None]:
     """Save each interrupt that Python drops inside the block for the next call of ``raise_interrupt``."""
     before = sys.unraisablehook
 
-    def keep(told: UnraisableHookArgs) -> None:
-        if issubclass(told.exc_type, KeyboardInterrupt):
-            _dropped.append(told.exc_type)
+    def keep(hook_args: UnraisableHookArgs) -> None:
+        if issubclass(hook_args.exc_type, KeyboardInterrupt):
+            _dropped.append(hook_args.exc_type)
         else:
-            before(told)
+            before(hook_args)
 
     _dropped.clear()
     sys.unraisablehook = keep

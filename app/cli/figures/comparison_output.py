@@ -105,10 +105,10 @@ def _row(pair: Json, scale: float) -> str:
     assert isinstance(reach, list)
     along = "Z" if pair["kind"] in {"diameter", "bore"} else "r"
     name = f"{pair['kind']} {along} {reach[0] * scale:.3f}…{reach[1] * scale:.3f}"
-    figures = [_figure(pair[key], scale) for key in ("here", "there")]
+    size_texts = [_figure(pair[key], scale) for key in ("here", "there")]
     difference = pair["difference"]
     change = f"{difference * scale:+12.4f}" if isinstance(difference, float) else "     not both"
-    return f"    {name:28s}{figures[0]}{figures[1]}{change}\n"
+    return f"    {name:28s}{size_texts[0]}{size_texts[1]}{change}\n"
 
 
 def _figure(value: object, scale: float) -> str:

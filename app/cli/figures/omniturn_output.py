@@ -77,10 +77,10 @@ def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_place
     digits, point = _digit_table(count), _DIGITS - decimal_places
     for at in range(point - 1):
         digits[at] *= count >= 10 ** (_DIGITS - 1 - at)
-    nought = np.ones(len(count), bool)
+    is_trailing_zero = np.ones(len(count), bool)
     for at in range(_DIGITS - 1, point, -1):
-        nought &= digits[at] == _ZERO
-        digits[at] *= ~nought
+        is_trailing_zero &= digits[at] == _ZERO
+        digits[at] *= ~is_trailing_zero
     text = np.empty((_DIGITS + 3, len(count)), np.uint8)
     text[0] = np.where(negative, _MINUS, _NOTHING)
     text[1 : point + 1], text[point + 1], text[point + 2 : -1], text[-1] = (
@@ -239,14 +239,14 @@ def _plane_json(block: Block) -> Json:
 
     In the side plane of the part, the Z value is a diameter.
     """
-    way = block.plane
-    if way is None:
+    plane_move = block.plane
+    if plane_move is None:
         return dict.fromkeys(("px", "py", "pz", "pcx", "pcy"))
-    x, y, z = way.end
+    x, y, z = plane_move.end
     return {
         "px": to_inches(x),
         "py": to_inches(y),
-        "pz": to_inches(2 * z if way.is_on_side_plane else z),
-        "pcx": None if way.center is None else to_inches(way.center[0]),
-        "pcy": None if way.center is None else to_inches(way.center[1]),
+        "pz": to_inches(2 * z if plane_move.is_on_side_plane else z),
+        "pcx": None if plane_move.center is None else to_inches(plane_move.center[0]),
+        "pcy": None if plane_move.center is None else to_inches(plane_move.center[1]),
     }

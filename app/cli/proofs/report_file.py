@@ -143,10 +143,10 @@ def _report_path(args: argparse.Namespace) -> Path:
     path = Path(args.report)
     ending = path.suffix.lower()
     if ending not in _HTML | _PDF:
-        way = Message("name the report {stem}.html or {stem2}.pdf", stem=path.stem, stem2=path.stem)
+        remedy = Message("name the report {stem}.html or {stem2}.pdf", stem=path.stem, stem2=path.stem)
         raise CommandError(
             Message(
-                "--report {path}: a report must be an HTML or PDF file; {details}", path=path, details=way
+                "--report {path}: a report must be an HTML or PDF file; {details}", path=path, details=remedy
             ),
             "report-ending",
         )

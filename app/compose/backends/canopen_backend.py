@@ -259,13 +259,13 @@ def list_startup_objects(machine: Machine) -> dict[str, ObjectValues]:
     except ImportError as error:
         raise DriverError(describe_missing_library(error)) from error
     config = create_canopen_config(machine)
-    told: dict[str, ObjectValues] = {}
+    objects_by_node: dict[str, ObjectValues] = {}
     for axis in config.axes:
         if axis.node is not None:
             family = replace(axis, profile=load_drive_dictionary(axis.node)[1])
-            told[axis.name] = (*build_axis_objects(family, config.bus), *axis.node.sdo)
+            objects_by_node[axis.name] = (*build_axis_objects(family, config.bus), *axis.node.sdo)
     if config.spindle is not None:
-        told["spindle"] = (*build_stop_objects(config.bus), *config.spindle.node.sdo)
-    return told | {
+        objects_by_node["spindle"] = (*build_stop_objects(config.bus), *config.spindle.node.sdo)
+    return objects_by_node | {
         module.name: (*build_monitoring_objects(config.bus), *module.sdo) for module in config.modules
     }

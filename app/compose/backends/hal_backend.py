@@ -56,8 +56,8 @@ def create_hal_config(machine: Machine) -> HalConfig:
 
 def _hal_path(machine: Machine, name: str) -> Path:
     """Return the path of the HAL file, which is in the machine file's folder or is a shipped file."""
-    beside = Path(machine.source).parent / name
-    return resources.hal_file(name) if not Path(machine.source).exists() else beside.resolve()
+    local_path = Path(machine.source).parent / name
+    return resources.hal_file(name) if not Path(machine.source).exists() else local_path.resolve()
 
 
 def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:

@@ -58,11 +58,11 @@ def _check_nodes(machine: Machine, clock: Clock, results: CheckResults) -> None:
     survey = find_backend(machine).survey_nodes
     if survey is None or is_simulated(machine):
         return
-    for name, at, trouble, detail in survey(machine, clock):
-        state = "no answer" if "no answer" in trouble else "wrong" if trouble else "ok"
+    for name, at, error_text, detail in survey(machine, clock):
+        state = "no answer" if "no answer" in error_text else "wrong" if error_text else "ok"
         results.rows.append(CheckRow(name, at, state, detail))
-        if trouble:
-            results.faults.append(trouble)
+        if error_text:
+            results.faults.append(error_text)
 
 
 def _ask_ports(machine: Machine, clock: Clock, answers: CheckResults) -> None:
@@ -72,8 +72,8 @@ def _ask_ports(machine: Machine, clock: Clock, answers: CheckResults) -> None:
             _wait_until_settled(clock, connected.ports, machine)
         measured = _measured_names(machine, connected)
         rows = [row.mark_unchecked(measured) for row in _rows(machine, connected)]
-        told = {row.detail for row in rows}
-        answers.warnings += [each for each in connected.ports.warnings if each not in told]
+        row_details = {row.detail for row in rows}
+        answers.warnings += [each for each in connected.ports.warnings if each not in row_details]
     finally:
         connected.close()
     if (word := find_backend(machine).device_name) in measured:
@@ -156,10 +156,10 @@ def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[CheckRow]:
 
 def _spindle(machine: Machine, ports: MachinePorts) -> CheckRow:
     fault, spindle = ports.spindle.read_fault(), ports.spindle
-    told = Message("{speed} rpm", speed=f"{spindle.speed():.0f}")
+    detail = Message("{speed} rpm", speed=f"{spindle.speed():.0f}")
     if isinstance(spindle, InverterSpindle):
-        told = Message("{details}, {status}", details=told, status=spindle.describe_status())
-    return CheckRow("spindle", _node_address(machine, "spindle"), "fault" if fault else "ok", fault or told)
+        detail = Message("{details}, {status}", details=detail, status=spindle.describe_status())
+    return CheckRow("spindle", _node_address(machine, "spindle"), "fault" if fault else "ok", fault or detail)
 
 
 def _hands(station: StationState) -> str:

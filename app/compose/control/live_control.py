@@ -142,9 +142,9 @@ class LiveControl:
         Return False if the control responds again, or if the screen closes.
         """
         self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
-        heard = client.heard_at
+        last_response_at = client.heard_at
         while client.silent_for < HANGS and not client.is_lost:
-            if client.heard_at != heard:
+            if client.heard_at != last_response_at:
                 self._say(tr("THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED"))
                 return False
             if self._closing.wait(_LOOK):

@@ -60,22 +60,22 @@ class LeftEvents(NamedTuple):
 def save_events(folder: Path, left: LeftEvents) -> None:
     """Save the events that no screen has confirmed. A disk error is logged."""
     program, rows, origins = left
-    told = [[*row[:5], pack_message(row.text), *origin] for row, origin in zip(rows, origins, strict=True)]
+    events = [[*row[:5], pack_message(row.text), *origin] for row, origin in zip(rows, origins, strict=True)]
     try:
-        write_atomically(folder / EVENTS_FILE, json.dumps([program, told]).encode())
+        write_atomically(folder / EVENTS_FILE, json.dumps([program, events]).encode())
     except OSError as error:
-        _log.warning("%d events cannot be kept in %s: %s", len(told), folder / EVENTS_FILE, error)
+        _log.warning("%d events cannot be kept in %s: %s", len(events), folder / EVENTS_FILE, error)
 
 
 def pop_events(folder: Path) -> LeftEvents:
     """Return the events that no screen has confirmed, and delete their file."""
     path = folder / EVENTS_FILE
     try:
-        program, told = json.loads(path.read_bytes())
+        program, events = json.loads(path.read_bytes())
         left = LeftEvents(
             str(program),
-            tuple(_row(*each[:6]) for each in told),
-            tuple(EventOrigin(str(control), int(number)) for *_, control, number in told),
+            tuple(_row(*each[:6]) for each in events),
+            tuple(EventOrigin(str(control), int(number)) for *_, control, number in events),
         )
     except FileNotFoundError:
         return LeftEvents()

@@ -45,9 +45,9 @@ def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[Key
     record = persistence.read_setting(get_settings_key(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
-    told = compare_machine_files(record[_TEXT], machine.text)
-    if told or not isinstance(old := record.get(_DRIVES), dict):
-        return told
+    changes = compare_machine_files(record[_TEXT], machine.text)
+    if changes or not isinstance(old := record.get(_DRIVES), dict):
+        return changes
     new = _hashes(machine)  # the file is the same, but the values derived from it may differ
     return tuple(
         KeyChange(
@@ -68,11 +68,11 @@ def review_changes(
     A new machine file is accepted automatically, because the operator has chosen it. ``report`` writes to
     the event log.
     """
-    told = list_differences(machine, persistence)
+    changes = list_differences(machine, persistence)
 
     def keep() -> None:
         persistence.save_setting(get_settings_key(machine), create_record(machine))
-        what, name = "; ".join(str(change) for change in told or ()), persistence.who()
+        what, name = "; ".join(str(change) for change in changes or ()), persistence.who()
         done = Message(
             "machine file {path} accepted by {name}" if name else "machine file {path} accepted",
             path=machine.source,
@@ -80,9 +80,9 @@ def review_changes(
         )
         report(Message("{done}: {changes}", done=done, changes=what) if what else done)
 
-    if told is None:
+    if changes is None:
         keep()
-    return MachineFileChanges(machine.source, told or (), keep)
+    return MachineFileChanges(machine.source, changes or (), keep)
 
 
 def guard_commands(

@@ -116,8 +116,8 @@ def _list_machine_members(named: str | None) -> dict[str, Path]:
             Message("{named} is included with TurnDesk; omit --machine, or specify a file", named=named),
             "shipped-machine",
         )
-    beside = [path.with_suffix(ending) for ending in COMPANION_SUFFIXES]
-    return {f"{MACHINE}/{each.name}": each for each in (path, *beside) if each.is_file()}
+    companion_paths = [path.with_suffix(ending) for ending in COMPANION_SUFFIXES]
+    return {f"{MACHINE}/{each.name}": each for each in (path, *companion_paths) if each.is_file()}
 
 
 def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, ...]:
@@ -130,14 +130,14 @@ def _write_archive(archive_path: Path, members: dict[str, Path]) -> tuple[str, .
         ]
         members = {name: path for name, path in members.items() if name not in left_out}
         hashes = {name: hashlib.sha256(path.read_bytes()).hexdigest() for name, path in members.items()}
-        told = {
+        manifest = {
             "format": ARCHIVE_FORMAT,
             "made": datetime.now(UTC).isoformat(timespec="seconds"),
             "sha256": hashes,
         }
         # A computer without a battery-backed clock may date files before 1980, which ZIP does not support.
         with zipfile.ZipFile(archive_path, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False) as file:
-            file.writestr(MANIFEST, json.dumps(told, indent=1))
+            file.writestr(MANIFEST, json.dumps(manifest, indent=1))
             for name, path in members.items():
                 file.write(path, name)
     except OSError as error:
@@ -187,20 +187,20 @@ def load_setup(source: Path) -> tuple[SetupContents, Path | None]:
     nothing. Raises CommandError if the file is damaged, or while TurnDesk is running on this computer.
     """
     folder, stamp = find_data_folder(), datetime.now(UTC).strftime("%Y%m%dT%H%M%SZ")
-    with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as beside:
+    with tempfile.TemporaryDirectory(prefix="turndesk-") as name, _StagedFiles(stamp) as staged:
         names = unpack_archive(source, Path(name))
         try:
             for each in names:
                 if each != STORE:
-                    beside.stage_file(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1))
+                    staged.stage_file(Path(name) / each, folder / each.replace(f"{MACHINE}/", "machines/", 1))
             kept = backup.restore_store(folder, Path(name) / STORE)
-            beside.move_to_targets()
+            staged.move_to_targets()
         except StoreError as error:
             raise CommandError(str(error), get_error_code(error)) from error
         except OSError as error:
             where = error.filename or folder  # the error of a full disk does not name the file
             raise make_write_error(where, error) from error
-    return _told(names, beside.machine), kept
+    return _told(names, staged.machine), kept
 
 
 class _StagedFiles:

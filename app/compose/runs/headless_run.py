@@ -195,7 +195,7 @@ def _open_journal(
             yield journal, lambda _what: None
             return
         if journal.left is not None:
-            _demand_anew(journal.left, anew=discard_interrupted)
+            _demand_anew(journal.left, discard_interrupted=discard_interrupted)
             journal.hear(
                 LogEvent(
                     0.0,
@@ -214,8 +214,8 @@ def _open_journal(
             )
 
 
-def _demand_anew(left: InterruptedJob, *, anew: bool) -> None:
-    if not anew:
+def _demand_anew(left: InterruptedJob, *, discard_interrupted: bool) -> None:
+    if not discard_interrupted:
         raise CommandError(
             Message(
                 "a job was interrupted ({left}); {tool} may be in the part. Resume the job on the "

@@ -174,10 +174,10 @@ class ProgramRenewal:
 
         The screen calls this method once per frame.
         """
-        trouble, before = offset_book.poll_saving(), self._changes
+        save_error, before = offset_book.poll_saving(), self._changes
         self._changes = offset_book.changes
-        if trouble:
-            self.show_warning(Message("REJECTED: {why}", why=trouble))
+        if save_error:
+            self.show_warning(Message("REJECTED: {why}", why=save_error))
         changed, under_way = self._changes != before, snapshot.state in ACTIVE_STATES
         if changed and under_way:
             self.running_renewal.begin_renewal()

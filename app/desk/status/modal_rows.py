@@ -59,9 +59,9 @@ def _make_rows(point: Checkpoint, language: str) -> tuple[ModalRow, ...]:
 
     Without a saved state, the rows show the state at the end of a program.
     """
-    told = dict(point.kept.state_lines) if point.kept is not None else {}
+    saved_lines = dict(point.kept.state_lines) if point.kept is not None else {}
     begun = _RESET_CODES | {"speed": f"G97 S{point.modal.rpm:g}"} if language == "sinumerik" else {}
-    values = _left_by_program(point.modal) | begun | told
+    values = _left_by_program(point.modal) | begun | saved_lines
     labels = _labels()
     return tuple(ModalRow(key, labels[key], values.get(key) or NO_CODE) for key in _MODAL_GROUPS[language])
 

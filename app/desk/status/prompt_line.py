@@ -374,8 +374,8 @@ class PromptAnswers:
 
     def _report_unsaved(self) -> None:
         """Show a new storage error once, so that the operator learns about it immediately."""
-        trouble = self.read_storage_problem()
-        if trouble != self._not_kept:
-            self._not_kept = trouble
-            if trouble:
-                self.say(Message("NOT SAVED: {error}", error=trouble))
+        storage_problem = self.read_storage_problem()
+        if storage_problem != self._not_kept:
+            self._not_kept = storage_problem
+            if storage_problem:
+                self.say(Message("NOT SAVED: {error}", error=storage_problem))

@@ -284,8 +284,8 @@ def make_position_readout(
     ``third_axis``.
     """
     diameter = snapshot.shows_diameter
-    beside = ReadoutKind.POSITION if readout is ReadoutKind.TO_GO else ReadoutKind.TO_GO
-    large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, beside))
+    second_kind = ReadoutKind.POSITION if readout is ReadoutKind.TO_GO else ReadoutKind.TO_GO
+    large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, second_kind))
     mark = "" if snapshot.axes != LATHE_AXES else "Ø" if diameter else "R"
     known = UnknownPart.AXES not in snapshot.unknown
     names = (*snapshot.axes[:2], third_axis) if snapshot.axes == LATHE_AXES else snapshot.axes
@@ -295,7 +295,7 @@ def make_position_readout(
     ]
     return PositionReadout(
         main_kind=readout,
-        second_kind=beside,
+        second_kind=second_kind,
         unit=_find_unit(metric, snapshot.modal.metric),
         x_label=_find_x_label(snapshot, readout),
         axes=tuple(rows if has_c_axis or snapshot.axes != LATHE_AXES else rows[:2]),

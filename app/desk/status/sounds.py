@@ -65,12 +65,12 @@ def play_wav(sound: bytes) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sound.wav"
         path.write_bytes(sound)
-        told = [_run_player([*player, str(path)]) for player in players[:1]]
+        player_errors = [_run_player([*player, str(path)]) for player in players[:1]]
         for player in players[1:]:
-            if told[-1]:
-                told.append(_run_player([*player, str(path)]))
-    if all(told):
-        raise ValueError(told[0])
+            if player_errors[-1]:
+                player_errors.append(_run_player([*player, str(path)]))
+    if all(player_errors):
+        raise ValueError(player_errors[0])
 
 
 def _run_player(command: list[str]) -> str:

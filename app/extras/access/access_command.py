@@ -190,12 +190,12 @@ def _remove(store: Store, args: argparse.Namespace) -> str:
 def _reset(store: Store, _args: argparse.Namespace) -> str:
     count = store.people.remove_all_users().result()
     store.settings.save_setting("wrong PINs", None)
-    told = Message(
+    result_text = Message(
         "service reset at the keyboard: {count} users and their PINs were deleted, and access levels are off",
         count=count,
     )
-    store.events.log_event("access", told, author=getpass.getuser()).result()
-    return f"{told}\n"
+    store.events.log_event("access", result_text, author=getpass.getuser()).result()
+    return f"{result_text}\n"
 
 
 _ACTIONS = {"list": _list, "add": _add, "pin": _pin, "remove": _remove, "reset": _reset}
@@ -230,12 +230,12 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
             store.people.save_user(renewed).result()
         store.settings.save_setting(_WRONG, None).result()
         return
-    told = Message(
+    log_text = Message(
         "wrong PIN for {row} entered on the command line; consecutive wrong PINs: {wrong}",
         row=row.name,
         wrong=wrong + 1,
     )
-    store.events.log_event("access", told, author=getpass.getuser()).result()
+    store.events.log_event("access", log_text, author=getpass.getuser()).result()
     raise CommandError(
         Message("wrong PIN for user {row}; nothing was changed, and the attempt was logged", row=row.name),
         "wrong-pin",

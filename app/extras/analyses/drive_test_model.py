@@ -288,11 +288,11 @@ class DriveTestModel:
         if snapshot.state not in MANUAL_STATES:
             self.held_jog.requested_direction = None  # The prompt line belongs to an alarm or the E-stop.
         self.scope.file_worker.poll()
-        told = snapshot.drive_test
-        if self.held_jog.active_jog is not None and (self._begun is None or told.axis == ""):
+        test_status = snapshot.drive_test
+        if self.held_jog.active_jog is not None and (self._begun is None or test_status.axis == ""):
             held = self.held_jog.active_jog
-            self._begun = self.make_test_path(held.axis, 1 if held.velocity > 0.0 else -1), told.number
-            self._whole = told.completed_test_count
+            self._begun = self.make_test_path(held.axis, 1 if held.velocity > 0.0 else -1), test_status.number
+            self._whole = test_status.completed_test_count
         elif (
             self._begun is not None
             and snapshot.state is not MachineState.JOG
@@ -306,11 +306,11 @@ class DriveTestModel:
         A complete test is analyzed when its last samples are available.
         """
         assert self._begun is not None
-        told, live = snapshot.drive_test, self.scope.live_samples
-        if told.completed_test_count == self._whole or live is None:
+        test_status, live = snapshot.drive_test, self.scope.live_samples
+        if test_status.completed_test_count == self._whole or live is None:
             self._begun = None
             return
-        path, began = self._begun[0], told.start_time_s
+        path, began = self._begun[0], test_status.start_time_s
         ends = began + drive_test.total_duration_s(path.make_ramps(self._limits(path.axis)))
         if snapshot.t < ends + _SETTLED or live.newest_time_s < ends - _SETTLED:
             return
@@ -324,9 +324,9 @@ class DriveTestModel:
         def work() -> tuple[DriveTestResults | str, str]:
             record = live.read_between(began - 2.0 * REST_BEFORE_TEST_S, live.newest_time_s)
             instant = began - float(record.times_s[0]) if len(record.times_s) else 0.0
-            told = {**record.about, TEST_PATH_KEY: encode_test_path(path), INSTANT_KEY: f"{instant:.6f}"}
-            return _figures(replace(record, about=told), path, drives), shelf.save_named(
-                replace(record, about=told),
+            metadata = {**record.about, TEST_PATH_KEY: encode_test_path(path), INSTANT_KEY: f"{instant:.6f}"}
+            return _figures(replace(record, about=metadata), path, drives), shelf.save_named(
+                replace(record, about=metadata),
                 Message("drive test {axis} {shape}", axis=path.axis, shape=path.shape.value),
             ).name
 

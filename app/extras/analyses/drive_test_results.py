@@ -49,8 +49,8 @@ _SHAPE_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 
 def encode_test_path(path: DriveTestPath) -> str:
     """Return the test path as a JSON text for the record."""
-    told = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies)
-    return json.dumps(told)
+    path_fields = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies)
+    return json.dumps(path_fields)
 
 
 def find_test_path(record: ScopeRecord) -> DriveTestPath | None:

@@ -78,8 +78,8 @@ def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> Spindle
     groups = np.split(changes, np.flatnonzero(np.diff(times[changes]) > _ONE) + 1) if len(changes) else []
     for number in reversed(range(len(groups))):
         first, last = int(groups[number][0]), int(groups[number][-1]) + 1
-        way, band = abs(asked[last] - asked[first]), model.at_speed * abs(asked[last])
-        if abs(asked[last]) <= _CHANGE or way <= 2.0 * band:
+        speed_change_rpm, band = abs(asked[last] - asked[first]), model.at_speed * abs(asked[last])
+        if abs(asked[last]) <= _CHANGE or speed_change_rpm <= 2.0 * band:
             continue
         end = float(times[groups[number + 1][0]]) if number + 1 < len(groups) else np.inf
         return _response(times, asked, turned, first, last, min(end, times[last] + _MOST), model)

@@ -286,7 +286,7 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
     from core.extras.drawings.drawing_placement import find_axes
 
     names = [axis.name for axis in find_axes(drawing)]
-    told: Json = {
+    result: Json = {
         "file": drawing.name,
         "unit_mm": drawing.unit_mm or None,
         "layers": list(drawing.layers),
@@ -300,7 +300,7 @@ def _list(drawing: Drawing, view: DrawingPlacement, found: list[ElementGroup], *
         "left_out": dict(drawing.omitted_counts),
     }
     if as_json:
-        sys.stdout.write(json.dumps(told) + "\n")
+        sys.stdout.write(json.dumps(result) + "\n")
         return
     unit = Message("{unit} mm", unit=f"{drawing.unit_mm:g}") if drawing.unit_mm else "not specified"
     lines = [
@@ -404,13 +404,13 @@ def _tell(
     from core.extras.drawings.profile_job import convert_to_json, describe_program
 
     if args.json:
-        told = {
+        result = {
             "file": args.file,
             "out": args.out,
             "program": text,
             **convert_to_json(made, trial.comparison, chosen),
         }
-        sys.stdout.write(json.dumps({**told, "errors": list(trial.errors)}) + "\n")
+        sys.stdout.write(json.dumps({**result, "errors": list(trial.errors)}) + "\n")
         return
     for line in (*describe_program(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
         sys.stderr.write(f"turndesk: {line}\n")

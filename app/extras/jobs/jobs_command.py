@@ -64,10 +64,10 @@ def run(args: argparse.Namespace) -> int:
             if args.action != "list"
             else COMMAND_LINE_USER
         )
-        told = _ACTIONS[args.action](store, args)
+        result_text = _ACTIONS[args.action](store, args)
         if who != COMMAND_LINE_USER:
-            store.events.log_event("change", f"jobs: {told.strip()}", author=who).result()
-    sys.stdout.write(told)
+            store.events.log_event("change", f"jobs: {result_text.strip()}", author=who).result()
+    sys.stdout.write(result_text)
     return EXIT_OK
 
 

@@ -122,11 +122,11 @@ class Announcer:
         now = self._look()
         shown = {key: value for key, value in now.items() if key not in _ALWAYS_NEW}
         if shown != {key: value for key, value in self._before.items() if key not in _ALWAYS_NEW}:
-            for told in self._told:
-                told.send_status(now)
+            for receiver in self._told:
+                receiver.send_status(now)
         for announcement in find_events(self._before, now):
-            for told in self._told:
-                told.send_announcement(announcement)
+            for receiver in self._told:
+                receiver.send_announcement(announcement)
         # unknown while the control is silent; parts made in the meantime are reported afterwards
         parts = now.get("parts")
         self._before = now if parts is not None else {**now, "parts": self._before.get("parts")}

@@ -114,10 +114,10 @@ class MqttReceiver:
             self._client.loop_stop()
 
     def _said_offline(self) -> bool:
-        told = self._client.publish(f"{self._topic}/available", OFFLINE, _SURE, retain=True)
+        message_info = self._client.publish(f"{self._topic}/available", OFFLINE, _SURE, retain=True)
         try:
-            told.wait_for_publish(1.0)
-            return told.is_published()
+            message_info.wait_for_publish(1.0)
+            return message_info.is_published()
         except RuntimeError:  # the connection was lost in the meantime
             return True
 

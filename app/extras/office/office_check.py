@@ -16,7 +16,7 @@ _BROKER_PATIENCE = 2.0  # seconds
 
 def check_office(machine: Machine, report: CheckResults) -> None:
     """Add rows that show whether the status page can be opened and whether the MQTT broker responds."""
-    page, told = (
+    page, announce_table = (
         machine.hardware.find_driver_table(StatusPageTable),
         machine.hardware.find_driver_table(AnnounceTable),
     )
@@ -33,16 +33,16 @@ def check_office(machine: Machine, report: CheckResults) -> None:
                 else ("the status page can be opened only from this computer")
             )
             report.rows.append(CheckRow("status_page", f"{page.bind}:{page.port}", "ok", who))
-    if told is not None and told.mqtt:
+    if announce_table is not None and announce_table.mqtt:
         try:
-            socket.create_connection(parse_broker_address(told.mqtt), _BROKER_PATIENCE).close()
+            socket.create_connection(parse_broker_address(announce_table.mqtt), _BROKER_PATIENCE).close()
         except OSError as error:
             why = Message(
                 "[announce] {mqtt}: {cause}; check the address and port of the broker",
-                mqtt=told.mqtt,
+                mqtt=announce_table.mqtt,
                 cause=error.strerror or error,
             )
-            report.rows.append(CheckRow("announce", told.mqtt, "no answer", why))
+            report.rows.append(CheckRow("announce", announce_table.mqtt, "no answer", why))
             report.faults.append(why)
         else:
-            report.rows.append(CheckRow("announce", told.mqtt, "ok", told.topic))
+            report.rows.append(CheckRow("announce", announce_table.mqtt, "ok", announce_table.topic))

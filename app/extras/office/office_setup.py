@@ -61,17 +61,17 @@ class StatusSource:
         """
         snapshot = self.read_snapshot()
         reading = self.floor_reader.read_snapshot(snapshot)
-        told = {
+        status = {
             "updated": self.get_current_utc().isoformat(timespec="seconds"),
             **make_status(self.machine, reading),
         }
         if not reading.is_available:
-            return {**told, **_NOTHING_KNOWN}
+            return {**status, **_NOTHING_KNOWN}
         left = self.calculate_time_left(snapshot)
         # in the order of recording, because the clock can have been set back
         newest = self.read_stops()[::-1][:MAX_LISTED_STOPS]
         return {
-            **told,
+            **status,
             "state": snapshot.state.value,
             "waiting_for": snapshot.waiting_for,
             "line": snapshot.line or None,
@@ -105,8 +105,8 @@ def _words(snapshot: Snapshot) -> str:
         return Message("{alarms}: {cause}", alarms=snapshot.alarms[0].text, cause=snapshot.alarms[0].cause)
     if snapshot.message:
         return snapshot.message
-    told = snapshot.stop.text if snapshot.stop is not None else ""
-    return "" if told == snapshot.state.value else told
+    stop_text = snapshot.stop.text if snapshot.stop is not None else ""
+    return "" if stop_text == snapshot.state.value else stop_text
 
 
 PICTURE_SIZE = 600, 400  # pixels, the size for a phone
@@ -123,14 +123,14 @@ def start_office(
     """
     look = _look(desk, machine)
     closing: list[Callable[[], None]] = []
-    page, told = (
+    page, announce_table = (
         machine.hardware.find_driver_table(StatusPageTable),
         machine.hardware.find_driver_table(AnnounceTable),
     )
     if page is not None and page.enabled:
         closing += _page(desk, machine, journal, page, look, report_error)
-    if told is not None and (told.mqtt or told.hook):
-        closing += _announcer(told, look, report_error)
+    if announce_table is not None and (announce_table.mqtt or announce_table.hook):
+        closing += _announcer(announce_table, look, report_error)
 
     def close() -> None:
         for each in closing:
@@ -158,16 +158,16 @@ def _announcer(
     from app.extras.office.announcements import Announcer
     from app.extras.office.web_hook import WebhookReceiver
 
-    told: list[AnnouncementReceiver] = []
+    receivers: list[AnnouncementReceiver] = []
     if table.hook:
-        told.append(WebhookReceiver(table.hook, table.again))
+        receivers.append(WebhookReceiver(table.hook, table.again))
     if table.mqtt and find_spec("paho") is None:
         tell(MISSING_PACKAGE_MESSAGE.format(what="[announce] mqtt", package="paho-mqtt"))
     elif table.mqtt:
         from app.extras.office.mqtt_broker import MqttReceiver
 
-        told.append(MqttReceiver(table))
-    announcer = Announcer(look.read_status, told)
+        receivers.append(MqttReceiver(table))
+    announcer = Announcer(look.read_status, receivers)
     announcer.start()
     return [announcer.close]
 

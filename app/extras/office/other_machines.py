@@ -77,7 +77,7 @@ def read_status(
     name = _name(address)
     try:
         with _ASK.open(request, timeout=_PATIENCE) as answer:
-            status, trouble = convert(answer.read(max_bytes))
+            status, error_text = convert(answer.read(max_bytes))
     except HTTPError as error:
         return OtherMachine(name, error_text=_refused(error))
     except (URLError, HTTPException, OSError) as error:
@@ -85,7 +85,7 @@ def read_status(
     except (ValueError, RecursionError):
         return OtherMachine(name, error_text=tr("the server at this address is not a TurnDesk server"))
     shown = {key: value for key, value in status.items() if _fits(key, value)} if status is not None else None
-    return OtherMachine(name, shown, make_one_line(trouble))
+    return OtherMachine(name, shown, make_one_line(error_text))
 
 
 def _refused(error: HTTPError) -> str:
@@ -163,10 +163,10 @@ class OtherMachines:
     def _keep(self, address: str) -> None:
         while not self._closing.is_set():
             self._looked.wait()
-            heard = self._ask(address)
-            if heard.status is not None and (machine := heard.status.get("machine")):
+            answer = self._ask(address)
+            if answer.status is not None and (machine := answer.status.get("machine")):
                 self._names[address] = f"{machine} ({_name(address)})"
-            self._heard[address] = self._clock(), replace(heard, address=self._names[address])
+            self._heard[address] = self._clock(), replace(answer, address=self._names[address])
             if self._clock() - self._last > VIEW_TIMEOUT_S:
                 self._looked.clear()
             self._closing.wait(READ_INTERVAL_S)

@@ -149,8 +149,8 @@ class StatusPage:
             f'<i id="drawn" data-part="{_mark(self.read_part_png())}" '
             f'data-alarm="{_mark(self.read_alarm_svg())}"></i>'
         )
-        beside = f'<section class="others">{others}</section>' if others else ""
-        return f"{_desk(self.read_status())}{drawn}{beside}"
+        others_html = f'<section class="others">{others}</section>' if others else ""
+        return f"{_desk(self.read_status())}{drawn}{others_html}"
 
 
 _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
@@ -202,11 +202,11 @@ def _picture(name: str, address: str, picture: bytes, words: str) -> str:
 
 def _desk(status: StatusDocument) -> str:
     alarms = found if isinstance(found := status["alarms"], list) else []
-    told = "".join(map(_alarm, alarms))
+    alarms_html = "".join(map(_alarm, alarms))
     if any(each["text"] == status["stop"] for each in alarms):
         status = {**status, "stop": ""}  # the alarm contains this text and the remedy
     made = f'<p class="made">{escape(_local(status["updated"]))}</p>'
-    return f"{_head(status)}{told}{_table(_figures(status))}{_stops(status)}{made}"
+    return f"{_head(status)}{alarms_html}{_table(_figures(status))}{_stops(status)}{made}"
 
 
 def _alarm(alarm: Mapping[str, Any]) -> str:
@@ -216,10 +216,10 @@ def _alarm(alarm: Mapping[str, Any]) -> str:
     return f'<p class="alarm">{words}</p>'
 
 
-def _head(status: Mapping[str, Any], trouble: str = "") -> str:
+def _head(status: Mapping[str, Any], error_text: str = "") -> str:
     """Return the HTML of the state and its reason."""
     state = str(status.get("state") or status.get("execution") or "?")
-    why = trouble or str(status.get("stop") or status.get("waiting_for") or "")
+    why = error_text or str(status.get("stop") or status.get("waiting_for") or "")
     said = f'<p class="why">{escape(tr(why))}</p>' if why else ""
     return f'<p class="state {_look(state)}">{escape(tr(state))}</p>{said}'
 

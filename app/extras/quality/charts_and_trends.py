@@ -147,8 +147,8 @@ class TrendsSection(QualitySection):
         if not times:
             return tr("no part made yet")
         text = tr("last cycle {last}, shortest {best}, mean {mean} of {count} parts")
-        figures = (format_fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
-        last, best, mean = figures
+        stats = (format_fixed(each, 1) + " s" for each in (times[-1], min(times), sum(times) / len(times)))
+        last, best, mean = stats
         return tr(Message(text, last=last, best=best, mean=mean, count=len(times)))
 
     def _wear_words(self) -> str:

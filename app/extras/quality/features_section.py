@@ -197,13 +197,13 @@ class FeaturesSection(QualitySection):
         rows = tuple(TableRow((field, draft.get_field_text(field, mode))) for field in draft.field_names)
         turned = draft.selected_field in _TURNED
         question = "" if turned else f"{tr(draft.selected_field)}?"
-        way = (
+        entry_hint = (
             "Enter accepts the entry and goes to the next field. F6 saves the feature, Esc "
             "discards the changes."
         )
         return TableContent(
             "FEATURE", ("", mode.name), (0.55, 0.45), rows, draft.field_index, question, self.entry.text,
-            (tr("PRESS ENTER TO SWITCH TO THE OTHER VALUE"), way) if turned else (way,),
+            (tr("PRESS ENTER TO SWITCH TO THE OTHER VALUE"), entry_hint) if turned else (entry_hint,),
             raw_columns=frozenset({1}),
         )  # fmt: skip
 
@@ -344,9 +344,9 @@ class FeaturesSection(QualitySection):
         )
 
     def _write(self, operation: Callable[..., object], done: Callable[[], None], change: str) -> None:
-        told = Message("measured features of {program}: {change}", program=self.program_name, change=change)
+        text = Message("measured features of {program}: {change}", program=self.program_name, change=change)
         self.watch.parts_book.write_change(
-            ProtectedChange.FEATURES, operation, done, self.watch.report_refusal, told
+            ProtectedChange.FEATURES, operation, done, self.watch.report_refusal, text
         )
 
     def _turn_waits(self) -> None:

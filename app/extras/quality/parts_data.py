@@ -158,9 +158,9 @@ def make_csv_rows(data: PartsData) -> Iterator[tuple[object, ...]]:
     for each in data.readings:
         feature, per = make_feature(features[each.feature]), _PER[each.unit]
         low, high = feature.limits
-        figures = (round(value / per, 7) for value in (feature.nominal, low, high))
+        nominal_and_limits = (round(value / per, 7) for value in (feature.nominal, low, high))
         good = "yes" if feature.good(each.value) else "no"
-        sizes = round(each.value / per, 7), each.unit, *figures, good
+        sizes = round(each.value / per, 7), each.unit, *nominal_and_limits, good
         yield feature.name, each.part, *sizes, each.at, each.source, each.gauge, feature.corrected_by
 
 

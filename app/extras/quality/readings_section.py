@@ -99,12 +99,12 @@ class ReadingsSection(QualitySection):
             )
         heads = ("FEATURE", Message("NOMINAL {mode}", mode=mode.name), "PART", "MEASURED", "DEVIATION", "")
         words = self.correction_effect.describe_status() if self.correction_effect.is_question_open else ""
-        way = (
+        correction_hint = (
             ("Enter the deviation in DL and DR of the tool table (F8 of the main menu).")
             if self.is_mill
             else "F8 proposes a correction, F4 undoes the last correction."
         )
-        notes = (words or self._gauge_words(), way)
+        notes = (words or self._gauge_words(), correction_hint)
         title = (
             Message("READINGS  ·  {program}", program=self.program_name) if self.program_name else "READINGS"
         )

@@ -172,9 +172,9 @@ def _tell(
     args: argparse.Namespace, made: GeneratedProgram, text: str, errors: tuple[str, ...], cycle: float
 ) -> None:
     if args.json:
-        told = {"file": args.file, "out": args.out, "program": text, "steps": list(made.step_kinds)}
+        result = {"file": args.file, "out": args.out, "program": text, "steps": list(made.step_kinds)}
         more = {"words": list(made.remarks), "errors": list(errors), "cycle_time_s": round(cycle, 3)}
-        sys.stdout.write(json.dumps({**told, **more}) + "\n")
+        sys.stdout.write(json.dumps({**result, **more}) + "\n")
         return
     if args.out is None:
         sys.stdout.write(text)

@@ -394,7 +394,7 @@ class ShapesModel(PanelModel):
     def _write(self) -> None:
         form = self.form
         assert form is not None
-        text, behind = insert_shape(
+        text, next_line = insert_shape(
             self.program_lines, self.cursor_line, form.filled_shape, form.settings, form.replaced_piece
         )
         said = ""
@@ -410,7 +410,7 @@ class ShapesModel(PanelModel):
                 said = tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=stay))
         self.form, self.notice, self.pending_action = None, said, None
         self._take("\n".join(text) + "\n")
-        self.cursor_line = behind
+        self.cursor_line = next_line
         self.write_count += 1
         self.selected_row = 0 if not self.pieces else max(1, self.selected_row)
 

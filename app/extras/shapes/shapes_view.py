@@ -334,8 +334,8 @@ class ShapesView(EditorPanel):
             form.selected_column,
         )
         drawn = form.current_sketch
-        figures = tuple((dim.field_word, form.get_dimension_text(dim.field_word)) for dim in drawn.dimensions)
-        self.sketch_panel.displayed = drawn, figures, form.selected_word, frozenset(form.errors)
+        labels = tuple((dim.field_word, form.get_dimension_text(dim.field_word)) for dim in drawn.dimensions)
+        self.sketch_panel.displayed = drawn, labels, form.selected_word, frozenset(form.errors)
         self.lines_panel.error_text, self.lines_panel.displayed_lines = form.current_error, tuple(form.lines)
         self.lines_panel.remarks = form.remarks
 

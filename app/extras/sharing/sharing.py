@@ -47,10 +47,10 @@ class SharingThread:
         self,
         sharing: ProgramSharing,
         every: float,
-        heard: Callable[[SharingResult], None],
+        result_handler: Callable[[SharingResult], None],
         now: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._sharing, self._every, self._heard = sharing, every, heard
+        self._sharing, self._every, self._heard = sharing, every, result_handler
         self._wake, self._closing = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._repeat, name="sharing", daemon=True)
         self._now, self._since = now, -1.0  # start time of the present synchronization, or negative
@@ -153,17 +153,17 @@ class ProgramSharing:
         If the location cannot be used, ``error_text`` of the result contains the reason.
         """
         with self._lock:
-            found, trouble = None, ""
+            found, error_text = None, ""
             try:
                 store = self._store()
                 try:
                     found = self._learn(store)
                 except SharingError as error:
-                    trouble = str(error)
+                    error_text = str(error)
                 self._note(store, is_settled=is_settled)
                 if found is not None:
-                    trouble = self._publish(store, found)
-                self._tell(store, found, trouble)
+                    error_text = self._publish(store, found)
+                self._tell(store, found, error_text)
             except StoreError as error:  # a restore can close the store at any time
                 self.last_result = replace(self.last_result, error_text=str(error))
             return self.last_result
@@ -174,7 +174,7 @@ class ProgramSharing:
         Raises StoreError.
         """
         with self._lock:
-            store, found, trouble = self._store(), None, ""
+            store, found, error_text = self._store(), None, ""
             fresh: Sequence[SharedVersion] = ()
             try:
                 with store.read() as connection:
@@ -182,8 +182,8 @@ class ProgramSharing:
                 found = self.location.read_contents(known)
                 fresh = found.unknown_versions
             except SharingError as error:
-                trouble = str(error)
-            self._tell(store, found, trouble, fresh)
+                error_text = str(error)
+            self._tell(store, found, error_text, fresh)
             return self.last_result
 
     def _learn(self, store: Store) -> Found:
@@ -234,14 +234,14 @@ class ProgramSharing:
             return str(SharingErrorCause.NAME_TAKEN.make_error(self.location.name, self.machine_name))
         state = self._state(store)
         mine = next((each for each in found.machine_states if each.machine_id == self.machine_id), None)
-        told = mine is not None and (mine.desk, dict(mine.has)) == (state.desk, dict(state.has))
+        is_state_published = mine is not None and (mine.desk, dict(mine.has)) == (state.desk, dict(state.has))
         try:
             for batch in self._batches(store):
                 self.location.publish(batch, state)
                 versions = [each.version for each in batch]
                 store.write(partial(_published, versions)).result()
-                told = True
-            if not told:
+                is_state_published = True
+            if not is_state_published:
                 self.location.publish([], state)
         except SharingError as error:
             return str(error)
@@ -276,7 +276,7 @@ class ProgramSharing:
         return MachineState(self.machine_id, self.machine_name, get_utc_now_text(), has)
 
     def _tell(
-        self, store: Store, found: Found | None, trouble: str, fresh: Sequence[SharedVersion] = ()
+        self, store: Store, found: Found | None, error_text: str, fresh: Sequence[SharedVersion] = ()
     ) -> None:
         with store.read() as connection:
             families = shared_versions.read_shared_programs(connection, fresh)
@@ -291,7 +291,7 @@ class ProgramSharing:
         states = {key: family.state for key, family in families.items()}
         refused = dict(self._files.rejected_files)
         self.last_result = SharingResult(
-            families, states, _holders(desks), desks, strays, refused, waiting, trouble
+            families, states, _holders(desks), desks, strays, refused, waiting, error_text
         )
 
     # --- requests of the operator ----------------------------------------------------------------------

@@ -86,8 +86,8 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
     model = desk.page_registry.find(SharingModel)
     if model is None or model.sharing is None:
         return None
-    heard = SharingResultHandler(desk, journal)
-    thread = SharingThread(model.sharing, table.look, heard.handle_result)
+    result_handler = SharingResultHandler(desk, journal)
+    thread = SharingThread(model.sharing, table.look, result_handler.handle_result)
     model.synchronize_now, model.get_waiting_time = thread.synchronize_now, thread.get_waiting_time
     thread.start()
     return thread.close

@@ -71,8 +71,8 @@ def import_table(args: argparse.Namespace) -> int:
 
 
 def _tell(saved: tuple[ToolPlan, ...]) -> None:
-    told = Message("imported: {names}; 'turndesk offsets undo' undoes the import", names=_names(saved))
-    sys.stdout.write(f"{told}\n" if saved else "nothing was changed\n")
+    summary = Message("imported: {names}; 'turndesk offsets undo' undoes the import", names=_names(saved))
+    sys.stdout.write(f"{summary}\n" if saved else "nothing was changed\n")
 
 
 # --- the file and the options ------------------------------------------------------------------------------
@@ -242,8 +242,8 @@ def _write_json(
         }
         for plan in plans
     ]
-    told = {"file": file, "format": word, "tools": tools, "notes": list(table.notes)}
-    sys.stdout.write(json.dumps(told) + "\n")
+    result = {"file": file, "format": word, "tools": tools, "notes": list(table.notes)}
+    sys.stdout.write(json.dumps(result) + "\n")
 
 
 def _change_json(change: FieldChange) -> dict[str, object]:

@@ -339,9 +339,11 @@ class KeyboardFilter(QObject):
 
         Some X servers send repeats in this form.
         """
-        tells = self._server is not None and self._server.reports_repeats
+        has_repeat_reports = self._server is not None and self._server.reports_repeats
         return (
-            not tells and bool(self._stamp) and abs(self._stamp - self._up.get(code, -1000)) <= REPEAT_TIME_MS
+            not has_repeat_reports
+            and bool(self._stamp)
+            and abs(self._stamp - self._up.get(code, -1000)) <= REPEAT_TIME_MS
         )
 
     def _find_stop(self, event: QKeyEvent) -> StopFunction | None:

@@ -83,12 +83,12 @@ class PositionPanel(Panel):
         painter.draw_text_line(
             large, axis.value, 7.0 * share, "text" if plain else "soft", at=ALIGN_RIGHT, role=Role.POSITION
         )
-        beside = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
+        second_box = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
         painter.draw_text_line(
-            beside, axis.second_value, 2.7 * max(share, 0.8), "soft", at=ALIGN_RIGHT, bold=False
+            second_box, axis.second_value, 2.7 * max(share, 0.8), "soft", at=ALIGN_RIGHT, bold=False
         )
         if not plain:
-            above = QRectF(beside.x(), row.y() + 0.6 * u, beside.width(), 2.0 * u)
+            above = QRectF(second_box.x(), row.y() + 0.6 * u, second_box.width(), 2.0 * u)
             painter.draw_text_line(
                 above, "NOT HOMED" if axis.is_known else "LAST KNOWN", 1.5, "alarm", at=ALIGN_RIGHT
             )

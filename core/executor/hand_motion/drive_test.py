@@ -131,8 +131,8 @@ class DriveTestPath:
         top = self.speed if self.shape is Shape.RAMP else limits.max_speed
         return [
             piece
-            for way in (self.travel_mm, -self.travel_mm)
-            for piece in (*plan_step_ramps(way, top, limits.max_acceleration), (PAUSE_S, 0.0, 0.0))
+            for distance in (self.travel_mm, -self.travel_mm)
+            for piece in (*plan_step_ramps(distance, top, limits.max_acceleration), (PAUSE_S, 0.0, 0.0))
         ]
 
     def _make_sine(self, frequency: float, limits: Limits) -> list[Ramp]:
@@ -263,14 +263,14 @@ class DriveTester:
     def _no_room(self, axis: Axis, path: DriveTestPath, limits: Limits) -> str:
         here = self._context.sample.demand[self._context.ports.axes.axes.index(axis.name)]
         low, high = travel_range(path.make_ramps(limits))
-        for way in (low, high):
-            if abs(way) > _ROUNDING_TOLERANCE and abs(way) > distance_to_limit(axis, here, way):
-                end = "+" if way > 0.0 else "−"
+        for travel in (low, high):
+            if abs(travel) > _ROUNDING_TOLERANCE and abs(travel) > distance_to_limit(axis, here, travel):
+                end = "+" if travel > 0.0 else "−"
                 return Message(
                     "{axis} must move {distance} mm in the {end} direction for the test, but its travel ends "
                     "before that point",
                     axis=axis.name,
-                    distance=f"{abs(way):.3f}",
+                    distance=f"{abs(travel):.3f}",
                     end=end,
                 )
         return ""

@@ -245,10 +245,10 @@ class _TargetMove:
 
     def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:
         """Return the ramps for ``Jogger.follow_target``, at the speed that results in a delay of 0.1 s."""
-        way = self._wanted - p
+        distance = self._wanted - p
         longest = max(self._top * _FOLLOW_DELAY_S + v * v / (2.0 * self._amax), self._step)
-        if abs(way) > longest:
-            way = math.copysign(longest, way)
-            self.goal = p + way
-        least = max(abs(way), v * v / (2.0 * self._amax))
-        return plan_stop_at_distance(v, way, min(self._top, least / _FOLLOW_DELAY_S), self._amax)
+        if abs(distance) > longest:
+            distance = math.copysign(longest, distance)
+            self.goal = p + distance
+        least = max(abs(distance), v * v / (2.0 * self._amax))
+        return plan_stop_at_distance(v, distance, min(self._top, least / _FOLLOW_DELAY_S), self._amax)

@@ -72,15 +72,14 @@ def plan_stop_at_distance(
     opposite direction or within the braking distance, the axis stops first and then returns.
     """
     stop = start_speed * abs(start_speed) / (2.0 * acceleration)
-    if start_speed * distance < 0.0 or abs(stop) > abs(distance) + POSITION_TOLERANCE:
+    is_within_tolerance = abs(distance) <= POSITION_TOLERANCE
+    if start_speed * distance < 0.0 or is_within_tolerance or abs(stop) > abs(distance) + POSITION_TOLERANCE:
         brake = (abs(start_speed) / acceleration, start_speed, -math.copysign(acceleration, start_speed))
         back = distance - stop
         return _ramps(
             brake,
             *(plan_step_ramps(back, max_speed, acceleration) if abs(back) > POSITION_TOLERANCE else ()),
         )
-    if abs(distance) <= POSITION_TOLERANCE:
-        return []
     sign, here, left = math.copysign(1.0, distance), abs(start_speed), abs(distance)
     peak = min(max_speed, math.sqrt(acceleration * left + here * here / 2.0))
     change = abs(peak - here) / acceleration

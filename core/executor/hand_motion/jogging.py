@@ -175,8 +175,10 @@ class Jogger:
         until = context.now + min(lease_s, MAX_LEASE_S)
 
         def go(start: float, p: FloatArray, v: FloatArray) -> list[Ramp]:
-            way = line.distance_to_limit(p, speed) if homed else math.inf
-            return plan_jog_ramps(line.project(v), speed, line.max_acceleration, max(until - start, 0.0), way)
+            room = line.distance_to_limit(p, speed) if homed else math.inf
+            return plan_jog_ramps(
+                line.project(v), speed, line.max_acceleration, max(until - start, 0.0), room
+            )
 
         moves = self._splice(line, go)
         if moves:
@@ -220,12 +222,12 @@ class Jogger:
         top = min(speed, self.max_jog_speed(axis, context.sample.homed[index]))
 
         def go(start: float, p: float, v: float) -> list[Ramp]:
-            way = target - p
-            if abs(way) <= POSITION_TOLERANCE:
+            distance = target - p
+            if abs(distance) <= POSITION_TOLERANCE:
                 return []
-            room = distance_to_limit(axis, p, way)
+            room = distance_to_limit(axis, p, distance)
             return plan_jog_ramps(
-                v, math.copysign(top, way), axis.amax, max(until - start, 0.0), min(abs(way), room)
+                v, math.copysign(top, distance), axis.amax, max(until - start, 0.0), min(abs(distance), room)
             )
 
         moves = self._splice_axis(index, go)

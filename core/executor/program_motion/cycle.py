@@ -288,8 +288,8 @@ class Cycle:
         if stopped is MachineState.PROGRAM_STOP:
             self._feed.release_stop()
         self._change(MachineState.RUN)
-        behind = self.current_block if stopped is MachineState.BLOCK_END else None
-        self._hold.resume(behind, starts_spindle=starts_spindle)
+        finished_block = self.current_block if stopped is MachineState.BLOCK_END else None
+        self._hold.resume(finished_block, starts_spindle=starts_spindle)
 
     # --- actions in every tick ----------------------------------------------------------------------------
 

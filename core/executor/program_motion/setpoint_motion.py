@@ -75,8 +75,8 @@ class SetpointMotion:
     def following_block(self) -> Block | None:
         """Return the block after the one being executed, or None if it is not in the path section."""
         if self._pass is not None:
-            behind = self._following_blocks(self._pass.block_at(self._axes.now()))
-            return behind[0] if behind else None
+            following_blocks = self._following_blocks(self._pass.block_at(self._axes.now()))
+            return following_blocks[0] if following_blocks else None
         return self._section.find_block(self._shown.n + 1) if self._section and self._shown else None
 
     @property

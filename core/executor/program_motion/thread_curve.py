@@ -96,8 +96,8 @@ def _chord_points(block: Block) -> list[tuple[float, float]]:
     count = max(math.ceil(whole * _CHORDS_PER_REVOLUTION), 2)
     lead = block.feed - 0.5 * block.growth * whole
     q = np.linspace(0.0, whole, count + 1)[1:]
-    way = (lead + 0.5 * block.growth * q) * q
-    return [(float(each) / float(way[-1]), whole / count) for each in way]
+    distances_mm = (lead + 0.5 * block.growth * q) * q
+    return [(float(each) / float(distances_mm[-1]), whole / count) for each in distances_mm]
 
 
 def _round_joints(

@@ -130,11 +130,11 @@ class _AxisWatch:
                 "standstill",
                 Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
-        beside = (
+        is_off_target = (
             self._lasts("beside", error > axis.in_position) > _ARRIVAL_TIMEOUT_S and rest > _ARRIVAL_TIMEOUT_S
         )
         frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
-        if beside or frozen:
+        if is_off_target or frozen:
             raise AlarmError(
                 "standstill",
                 Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
@@ -197,11 +197,11 @@ class _AxisWatch:
             return 0.0
         return self._t - self._since.setdefault(what, self._t)
 
-    def _words(self, way: float) -> str:
+    def _words(self, deviation: float) -> str:
         return (
-            Message("{angle} degrees", angle=f"{way:.2f}")
+            Message("{angle} degrees", angle=f"{deviation:.2f}")
             if self._axis.rotary
-            else Message("{unit} mm", unit=f"{way:.3f}")
+            else Message("{unit} mm", unit=f"{deviation:.3f}")
         )
 
 
@@ -251,8 +251,8 @@ class Supervisor:
         each = zip(
             self._context.machine.axes, sample.demand, sample.actual, sample.following_error, strict=True
         )
-        for axis, *told in each:
-            if not all(map(math.isfinite, told)):
+        for axis, *axis_values in each:
+            if not all(map(math.isfinite, axis_values)):
                 raise AlarmError(
                     "axis",
                     Message("{axis}: the drive reports a position that is not a number", axis=axis.name),
@@ -293,9 +293,9 @@ class OutputsWatch:
         if UnknownPart.OUTPUTS in self._context.unknown_items or self._context.sample.fault:
             return  # The fault that switched outputs off is reported in this tick.
         if self._program_run.status.state not in CYCLE_STATES:
-            told, self._known_off = self._known_off, frozenset()
+            known_off, self._known_off = self._known_off, frozenset()
             for each in self._context.outputs.accept_actual_states():
-                if each.name not in told:  # already reported by the device that switched the output off
+                if each.name not in known_off:  # already reported by the device that switched the output off
                     self._context.log(
                         "disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.description)
                     )

@@ -100,18 +100,18 @@ def analyze_ball_bar(setpoints: FloatArray, actual: FloatArray) -> BallBarResult
     seen = actual - (u0, v0)
     theta = np.arctan2(seen[:, 1], seen[:, 0])
     deviation = np.hypot(*seen.T) - radius
-    told, rest = _fitted(theta, turned, deviation)
+    fit_coefficients, rest = _fitted(theta, turned, deviation)
     spike = (_spike(setpoints[:, 0], turned, rest), _spike(setpoints[:, 1], turned, rest))
     return BallBarResult(
         (u0, v0),
         radius,
         np.degrees(np.unwrap(theta)),
         deviation,
-        (told[1], told[2]),
+        (fit_coefficients[1], fit_coefficients[2]),
         spike,
-        1000.0 * 2.0 * told[3] / radius,
-        1000.0 * 2.0 * told[4] / radius,
-        told[0],
+        1000.0 * 2.0 * fit_coefficients[3] / radius,
+        1000.0 * 2.0 * fit_coefficients[4] / radius,
+        fit_coefficients[0],
     )
 
 
@@ -122,8 +122,8 @@ def _fitted(theta: FloatArray, turned: FloatArray, deviation: FloatArray) -> tup
     b of u leaves the axis b/2 short of its setpoint, which changes the radius by −(b/2)·sign(u′)·cos θ. A
     tilt φ gives φR/2·sin 2θ, and a scale error e between u and v gives eR/2·cos 2θ.
     """
-    way = 1.0 if turned[-1] > turned[0] else -1.0
-    towards_u, towards_v = -way * np.sign(np.sin(theta)), way * np.sign(np.cos(theta))
+    rotation_sign = 1.0 if turned[-1] > turned[0] else -1.0
+    towards_u, towards_v = -rotation_sign * np.sign(np.sin(theta)), rotation_sign * np.sign(np.cos(theta))
     shapes = np.column_stack(
         [
             np.ones_like(theta),
@@ -155,10 +155,10 @@ def _spike(position: FloatArray, turned: FloatArray, rest: FloatArray) -> float:
     turns = moving[1:][step[moving[1:]] != step[moving[:-1]]]
     peaks = []
     for at in turns:
-        behind = np.abs(turned - turned[at]) <= math.radians(_SPIKE)
-        behind[:at] = False
-        if behind.any():
-            peaks.append(float(np.abs(rest[behind]).max()))
+        is_after_reversal = np.abs(turned - turned[at]) <= math.radians(_SPIKE)
+        is_after_reversal[:at] = False
+        if is_after_reversal.any():
+            peaks.append(float(np.abs(rest[is_after_reversal]).max()))
     return max(peaks) if peaks else math.nan
 
 
@@ -249,19 +249,19 @@ def calculate_path_error(
     segment, share = np.zeros(len(measured), dtype=np.int64), np.zeros(len(measured))
     for step in range(-search_point_count, search_point_count):
         at = np.clip(due + step, 0, n - 2)
-        start, way = programmed[at], programmed[at + 1] - programmed[at]
-        square = (way**2).sum(axis=1)
-        dot = ((measured - start) * way).sum(axis=1)
+        start, segments = programmed[at], programmed[at + 1] - programmed[at]
+        square = (segments**2).sum(axis=1)
+        dot = ((measured - start) * segments).sum(axis=1)
         part = np.clip(np.divide(dot, square, out=np.zeros_like(dot), where=square > _SAME**2), 0.0, 1.0)
-        off = ((measured - start - part[:, None] * way) ** 2).sum(axis=1)
+        off = ((measured - start - part[:, None] * segments) ** 2).sum(axis=1)
         nearer = off < best
         best[nearer], segment[nearer], share[nearer] = off[nearer], at[nearer], part[nearer]
-    start, way = programmed[segment], programmed[segment + 1] - programmed[segment]
-    foot = start + share[:, None] * way
+    start, segments = programmed[segment], programmed[segment + 1] - programmed[segment]
+    foot = start + share[:, None] * segments
     distance = np.sqrt(best)
     if programmed.shape[1] == 2:
-        beside = measured - foot
-        side = np.sign(way[:, 0] * beside[:, 1] - way[:, 1] * beside[:, 0])
+        deviations = measured - foot
+        side = np.sign(segments[:, 0] * deviations[:, 1] - segments[:, 1] * deviations[:, 0])
         distance = np.where(side < 0.0, -1.0, 1.0) * distance
     return PathError(distance, foot, come[segment] + share * lengths[segment], lines[segment], measured)
 

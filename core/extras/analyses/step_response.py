@@ -45,25 +45,25 @@ def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, b
     ``band`` is the in-position window in mm. Raises AnalysisError.
     """
     _check(times, request, response)
-    way = float(request[-1] - request[0])
-    if abs(way) <= 2.0 * band:
+    step_size = float(request[-1] - request[0])
+    if abs(step_size) <= 2.0 * band:
         raise AnalysisError(
             Message(
                 "a step of {step} is too small for the in-position window of {band}; use a larger step",
-                step=f"{abs(way):.4f}",
+                step=f"{abs(step_size):.4f}",
                 band=f"{band:.4f}",
             ),
             "step-too-small",
         )
-    asked = (request - request[0]) / way
-    done = (response - response[0]) / way
+    asked = (request - request[0]) / step_size
+    done = (response - response[0]) / step_size
     half, tenth, most = (_crossing(times, done, share) for share in (0.5, 0.1, 0.9))
     end = float(times[np.argmax(asked >= 1.0 - 1e-9)])
     outside = np.flatnonzero(np.abs(response - request[-1]) > band)
     last = int(outside[-1]) if len(outside) else -1
     settling = math.nan if last == len(times) - 1 else max(float(times[last + 1]) - end, 0.0)
     return StepResponse(
-        way,
+        step_size,
         most - tenth,
         max(float(done.max()) - 1.0, 0.0),
         settling,

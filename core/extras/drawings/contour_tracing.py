@@ -297,29 +297,29 @@ def _walk(
             at_node.setdefault(n, []).append(number)
     low = group.extent[0]
     shut = set(without)
-    way: list[tuple[int, int]] = []  # elements, with the node to which each leads
+    path_steps: list[tuple[int, int]] = []  # elements, with the node to which each leads
     best: list[tuple[int, int]] = []
     node, seen = start, {start}
     while True:
         check_work_limit()
-        step = _next(group, at_node[node], node, shut, way, back, hand)
+        step = _next(group, at_node[node], node, shut, path_steps, back, hand)
         if step is not None:
             shut.add(step)
             each = _from(group.elements[step], group.element_end_nodes[step], node)
             ends = group.element_end_nodes[step]
             node = ends[1] if ends[0] == node else ends[0]
-            way.append((step, node))
+            path_steps.append((step, node))
             back = _angle(each.reversed())
             place = group.node_points[node]
             if node in seen or place[0] <= gap or place[1] <= low + gap:
-                return _elements(group, start, way)
+                return _elements(group, start, path_steps)
             seen.add(node)
             continue
-        best = max(best, way, key=lambda w: -group.node_points[w[-1][1]][1] if w else -math.inf)
-        if not way:
+        best = max(best, path_steps, key=lambda w: -group.node_points[w[-1][1]][1] if w else -math.inf)
+        if not path_steps:
             return _elements(group, start, best)
-        way.pop()
-        node = way[-1][1] if way else start
+        path_steps.pop()
+        node = path_steps[-1][1] if path_steps else start
 
 
 def _next(
@@ -327,7 +327,7 @@ def _next(
     there: Sequence[int],
     node: int,
     shut: set[int],
-    way: Sequence[tuple[int, int]],
+    path_steps: Sequence[tuple[int, int]],
     back: float,
     hand: float,
 ) -> int | None:
@@ -335,8 +335,8 @@ def _next(
 
     This is the first element found when turning in the direction ``hand`` from the incoming direction.
     """
-    if way:
-        last = way[-1][0]
+    if path_steps:
+        last = path_steps[-1][0]
         back = _angle(_from(group.elements[last], group.element_end_nodes[last], node))
     free = [n for n in there if n not in shut]
 
@@ -349,9 +349,9 @@ def _next(
     return min(free, key=turned, default=None)
 
 
-def _elements(net: ElementGroup, start: int, way: Iterable[tuple[int, int]]) -> list[Element]:
+def _elements(net: ElementGroup, start: int, path_steps: Iterable[tuple[int, int]]) -> list[Element]:
     found, node = [], start
-    for number, to in way:
+    for number, to in path_steps:
         found.append(_from(net.elements[number], net.element_end_nodes[number], node))
         node = to
     return found
@@ -363,11 +363,11 @@ def _checked(net: ElementGroup, walked: list[Element], gap: float) -> list[Eleme
     _no_crossing(walked)
     for end in (walked[0].start, walked[-1].end):
         if end[0] <= gap and any(abs(z - end[1]) <= gap for z in net.axis_crossings_z):
-            behind = net.extent[1] - end[1]
+            distance_mm = net.extent[1] - end[1]
             raise DrawingError(
                 Message(
                     "the contour crosses the axis {distance} mm from the face. Choose another axis.",
-                    distance=f"{behind:.3f}",
+                    distance=f"{distance_mm:.3f}",
                 ),
                 "crosses-axis",
             )
@@ -379,12 +379,12 @@ def _no_crossing(walked: Sequence[Element]) -> None:
     first = min(found, key=lambda crossing: crossing[0], default=None)
     if first is not None:
         _, point = first
-        behind = walked[0].start[1] - point[1]
+        distance_mm = walked[0].start[1] - point[1]
         raise DrawingError(
             Message(
                 "the contour crosses itself {distance} mm from the face at a diameter of "
                 "{diameter} mm. Correct the contour at this point.",
-                distance=f"{behind:.3f}",
+                distance=f"{distance_mm:.3f}",
                 diameter=f"{2 * point[0]:.3f}",
             ),
             "crosses-itself",

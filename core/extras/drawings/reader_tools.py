@@ -108,10 +108,10 @@ def _joint(a: CurvePoint, b: CurvePoint) -> Point | None:
     )
 
 
-def _bulge(at: Point, way: Point, to: Point) -> float:
+def _bulge(at: Point, tangent: Point, to: Point) -> float:
     """Return the bulge of an arc from its start point, the direction at its start, and its end point."""
     dx, dy = to[0] - at[0], to[1] - at[1]
-    half = math.atan2(way[0] * dy - way[1] * dx, way[0] * dx + way[1] * dy)
+    half = math.atan2(tangent[0] * dy - tangent[1] * dx, tangent[0] * dx + tangent[1] * dy)
     return 0.0 if abs(half) < STRAIGHT_TOLERANCE else math.tan(half / 2.0)
 
 

@@ -121,9 +121,9 @@ def fit_biarcs(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
 
 
 def _fitted(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
-    (a, way), (b, end_way) = _ends(spans, 0.0), _ends(spans, 1.0)
-    joint, good = _joints(a, way, b, end_way)
-    bulges = np.array([_bulges(a, way, joint), -_bulges(b, -end_way, joint)])
+    (a, start_tangents), (b, end_tangents) = _ends(spans, 0.0), _ends(spans, 1.0)
+    joint, good = _joints(a, start_tangents, b, end_tangents)
+    bulges = np.array([_bulges(a, start_tangents, joint), -_bulges(b, -end_tangents, joint)])
     good &= np.abs(bulges).max(axis=0) <= 1.0
     off = np.zeros(len(a))
     for k in range(1, CURVE_SAMPLES + 1):
@@ -157,10 +157,10 @@ def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
     return _points(spans.control_points, u), size[:, None] * (q[:, :2] * p[:, 2:] - p[:, :2] * q[:, 2:])
 
 
-def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats, Bools]:
+def _joints(a: Floats, start_tangents: Floats, b: Floats, end_tangents: Floats) -> tuple[Floats, Bools]:
     """Return the points at which both arcs meet, and whether each point exists (see ``reader_tools``)."""
-    sizes = np.array([np.hypot(*way.T), np.hypot(*end_way.T)])
-    one, other, v = way / sizes[0][:, None], end_way / sizes[1][:, None], b - a
+    sizes = np.array([np.hypot(*start_tangents.T), np.hypot(*end_tangents.T)])
+    one, other, v = start_tangents / sizes[0][:, None], end_tangents / sizes[1][:, None], b - a
     vt, vv = (v * (one + other)).sum(axis=1), (v * v).sum(axis=1)
     both = 2.0 * (1.0 - (one * other).sum(axis=1))
     along = (v * other).sum(axis=1)
@@ -171,10 +171,10 @@ def _joints(a: Floats, way: Floats, b: Floats, end_way: Floats) -> tuple[Floats,
     return 0.5 * (a + b + far[:, None] * (one - other)), good
 
 
-def _bulges(at: Floats, way: Floats, to: Floats) -> Floats:
+def _bulges(at: Floats, tangents: Floats, to: Floats) -> Floats:
     """Return the bulges of arcs from their starts, their start directions and their ends."""
     d = to - at
-    half = np.arctan2(way[:, 0] * d[:, 1] - way[:, 1] * d[:, 0], (way * d).sum(axis=1))
+    half = np.arctan2(tangents[:, 0] * d[:, 1] - tangents[:, 1] * d[:, 0], (tangents * d).sum(axis=1))
     return np.where(np.abs(half) < STRAIGHT_TOLERANCE, 0.0, np.tan(0.5 * half))
 
 

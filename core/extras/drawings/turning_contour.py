@@ -85,8 +85,8 @@ def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReac
     edge = axis_facing_edge(cutting[0] * [1.0, -1.0 if side is ContourSide.INSIDE else 1.0])
     points = [(float(z), float(r)) for z, r in zip(edge.z, edge.r, strict=True)]
     tip = int(edge.r.argmin())
-    behind, before = _straight(points[tip:]), _straight(points[tip::-1])
-    return ToolReach(behind or 0.0, before or math.pi / 2.0)
+    back_angle, before = _straight(points[tip:]), _straight(points[tip::-1])
+    return ToolReach(back_angle or 0.0, before or math.pi / 2.0)
 
 
 def _straight(points: Sequence[Point]) -> float | None:
@@ -229,13 +229,13 @@ def _fall(element: Element) -> float:
     element rises.
     """
     ways = (element.start_direction, element.end_direction)
-    found = (math.atan2(-way[0], max(-way[1], 0.0)) for way in ways)
+    found = (math.atan2(-direction[0], max(-direction[1], 0.0)) for direction in ways)
     return max(found) if element.end[0] < element.start[0] - _SAME else -max(-f for f in found)
 
 
 def _rise(each: Element) -> float:
     ways = (each.start_direction, each.end_direction)
-    return max(math.atan2(way[0], max(-way[1], 0.0)) for way in ways)
+    return max(math.atan2(direction[0], max(-direction[1], 0.0)) for direction in ways)
 
 
 def _not_too_steep(kept: Iterable[Element], reach: ToolReach) -> None:

@@ -185,11 +185,11 @@ def _corner(
             )
 
 
-def _set_back(row: ContourPoint, before: Point, here: Point, behind: Point) -> float:
+def _set_back(row: ContourPoint, before: Point, here: Point, next_point: Point) -> float:
     """Return the length that a corner removes from each of its two lines."""
     if row.chamfer:
         return row.chamfer
-    a, b = _direction(before, here), _direction(here, behind)
+    a, b = _direction(before, here), _direction(here, next_point)
     turn = abs(math.remainder(b - a, 2.0 * math.pi))
     return row.radius * math.tan(min(turn, math.pi - 1e-6) / 2.0)
 
@@ -227,9 +227,9 @@ def _along(a: Point, b: Point, far: float) -> Point:
     return a[0] + (b[0] - a[0]) * far / whole, a[1] + (b[1] - a[1]) * far / whole
 
 
-def _cut_corner(row: ContourPoint, before: Point, here: Point, behind: Point) -> list[Point]:
-    back = min(_set_back(row, before, here, behind), math.dist(before, here), math.dist(here, behind))
-    a, b = _along(here, before, back), _along(here, behind, back)
+def _cut_corner(row: ContourPoint, before: Point, here: Point, next_point: Point) -> list[Point]:
+    back = min(_set_back(row, before, here, next_point), math.dist(before, here), math.dist(here, next_point))
+    a, b = _along(here, before, back), _along(here, next_point, back)
     if row.chamfer:
         return [a, b]
     return [_quadratic(a, here, b, k / 6) for k in range(7)]

@@ -425,12 +425,12 @@ def insert_shape(
     ends = r"\s*/?M(30|02)" if settings.dialect is Dialect.OMNITURN else r"\s*(N\d+\s*)?M(30|0?2|17)\b(?!=)"
     if not any(re.match(ends, line) for line in text):
         text.append("M30")
-    behind = line_number + len(new)
+    next_line_number = line_number + len(new)
     tail = shape.shape.ends(shape)
     if tail and replaced_piece is None and tail[0] not in (strip_line(line) for line in text):
         text += tail
-        behind = len(text) - 1
-    return text, behind
+        next_line_number = len(text) - 1
+    return text, next_line_number
 
 
 def convert_unit(

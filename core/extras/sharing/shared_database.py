@@ -247,8 +247,8 @@ class SharedDatabase:
         except psycopg.Error as error:
             raise self._refusal(error.sqlstate or "", str(error)) from error
 
-    def _refusal(self, code: str, told: str) -> SharingError:
-        lines = [line for line in told.splitlines() if line.strip()] or ["it failed"]
+    def _refusal(self, code: str, error_text: str) -> SharingError:
+        lines = [line for line in error_text.splitlines() if line.strip()] or ["it failed"]
         for cause, begins in _CODES if code else ():
             if code.startswith(begins):
                 return cause.make_error(self.name, _bare(lines[0]))

@@ -165,16 +165,16 @@ class TableReader:
         specified. If X and Z are both 0, the tool is not measured.
         """
         found: dict[str, FieldValue] = {**shape_words(words), **_stated(values)}
-        told = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
+        all_notes = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
         for name, value in found.items():
             self._check(place, name, value)
-        told += _radius_notes(found)
+        all_notes += _radius_notes(found)
         offset = {name: value for name, value in found.items() if name in OFFSET_FIELDS}
         shape = {name: value for name, value in found.items() if name not in offset}
         if shape and not shape.get("kind"):
-            told.append(Message("not imported without a kind of tool: {names}", names=", ".join(shape)))
+            all_notes.append(Message("not imported without a kind of tool: {names}", names=", ".join(shape)))
             shape = {}
-        self.tools[number] = ToolEntry(number, place, offset, shape, tuple(told))
+        self.tools[number] = ToolEntry(number, place, offset, shape, tuple(all_notes))
 
     def _check(self, place: str, name: str, value: FieldValue) -> None:
         known = TABLE_FIELDS[name]

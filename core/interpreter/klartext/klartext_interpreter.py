@@ -354,8 +354,8 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         if self._cycles.called_program:
             self._call_program(self._cycles.called_program, column)
             return
-        figures = [self._read_contour(part, column) for part in self._cycles.contours]
-        yield from self._cycles.call_cycle(column, figures)
+        contours = [self._read_contour(part, column) for part in self._cycles.contours]
+        yield from self._cycles.call_cycle(column, contours)
 
     def _read_contour(self, part: nodes.ContourPart, column: int) -> SlContour:
         """Return the contour of a subprogram, which is executed on a copy of the state."""

@@ -193,14 +193,14 @@ def _corners(program: Program) -> BlankCorners | None:
 
 def _cylinder_corners(blank: CylinderBlank, scale: float) -> BlankCorners | None:
     """Return the corners of the block around a cylinder, or None if its dimensions are not numbers."""
-    told = (blank.radius, blank.length, blank.height_above_datum)
+    dimensions = (blank.radius, blank.length, blank.height_above_datum)
     if (
-        any(each.parameter_number is not None for each in told)
+        any(each.parameter_number is not None for each in dimensions)
         or blank.radius.number <= 0.0
         or blank.length.number <= 0.0
     ):
         return None
-    radius, length, above = (each.number * scale for each in told)
+    radius, length, above = (each.number * scale for each in dimensions)
     ends = dict.fromkeys("XYZ", (-radius, radius)) | {blank.tool_axis: (above - length, above)}
     low, high = zip(*(ends[axis] for axis in "XYZ"), strict=True)
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
@@ -227,9 +227,9 @@ def _frame(program: Program) -> Iterator[Diagnostic]:
     for index in with_blocks[1:]:
         if isinstance(program.lines[index].node, BeginBlock):
             yield _wrong(index + 1, "BEGIN PGM appears twice.", "Put only one program in a file.")
-    behind = next((index for index in with_blocks if index > program.end_index), None)
-    if behind is not None:
-        yield _wrong(behind + 1, "This block is after END PGM.", "Move this block to a line before END PGM.")
+    surplus = next((index for index in with_blocks if index > program.end_index), None)
+    if surplus is not None:
+        yield _wrong(surplus + 1, "This block is after END PGM.", "Move this block to a line before END PGM.")
     if first.node.is_inch != last.is_inch:
         text = "BEGIN PGM and END PGM specify different units."
         yield _wrong(program.end_index + 1, text, "Write the same unit in BEGIN PGM and END PGM.")

@@ -237,8 +237,8 @@ def _faces(
 def _farthest(feeds: BoolArray, z0: FloatArray, z: FloatArray, tool: IntArray) -> dict[int, float]:
     """Return for each tool the maximum Z of its rapids, if that Z is beyond the starts of all cuts."""
     cut = _greatest(np.concatenate((z0[feeds], z[feeds])), -inf)
-    told = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
-    return {each: far for each, far in told.items() if far > cut + SAME_POINT_MM}
+    rapid_z_by_tool = {int(each): _greatest(z[~feeds & (tool == each)], -inf) for each in np.unique(tool)}
+    return {each: far for each, far in rapid_z_by_tool.items() if far > cut + SAME_POINT_MM}
 
 
 def _retract_radius(

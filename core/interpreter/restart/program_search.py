@@ -95,19 +95,19 @@ class BlockSearch:
 
     @cached_property
     def _run(self) -> _RunVisits:
-        told, run, made = _RunVisits(), self._pass(), 0
+        run_visits, run, made = _RunVisits(), self._pass(), 0
 
         def see(line: int) -> bool:
-            told.visits.setdefault(line, []).append(made)
-            told.blocking_reasons.setdefault(line, run.blocking_reason)
+            run_visits.visits.setdefault(line, []).append(made)
+            run_visits.blocking_reasons.setdefault(line, run.blocking_reason)
             return False
 
         run.stop_condition = see
         for block in self._watched(run.generate_blocks(to_first_error=True)):
             made = block.n
             if isinstance(block.action, ProgramEnd):
-                told.end_line = block.line
-        return told
+                run_visits.end_line = block.line
+        return run_visits
 
     def _run_to_line(
         self, line: int, number: int, offset: float, interruption: Interruption | None

@@ -453,27 +453,27 @@ def _steps(
     found: RestartPoint, now: PresentState, choices: OperatorChoices, machine: Kinematics
 ) -> Iterator[ApproachStep]:
     wanted, goal = found.checkpoint.modal, find_start_position(found, now, machine)
-    way = _MovePlan(machine, dict(zip(machine.axis_names, now.axis_positions, strict=True)))
+    move_plan = _MovePlan(machine, dict(zip(machine.axis_names, now.axis_positions, strict=True)))
     change = wanted.tool not in {0, now.modal.tool}
     if change and now.modal.spindle:
         yield FunctionStep(SpindleStop(), "M5")
         now = replace(now, modal=now.modal._replace(spindle=0))
     yield from list_stopping_functions(wanted, now.modal)
-    yield from _retract_moves(way, choices)
-    yield from way.move_to({name: at for name, at in goal.items() if name not in _LINEAR_AXES}, None)
+    yield from _retract_moves(move_plan, choices)
+    yield from move_plan.move_to({name: at for name, at in goal.items() if name not in _LINEAR_AXES}, None)
     if change:
         yield FunctionStep(ToolChange(wanted.tool), Message("TOOL CALL {tool}", tool=wanted.tool))
         yield FunctionStep(
             ProgramStop(optional=False, message=Message("TOOL {tool}", tool=wanted.tool)), "STOP"
         )
     place: Vector = goal["X"], goal["Y"], goal["Z"]
-    room = max(way.available_travel(place), 0.0)
-    over = way.offset_position(place, room)
-    yield from way.move_to({"X": over["X"], "Y": over["Y"]}, None)
+    room = max(move_plan.available_travel(place), 0.0)
+    over = move_plan.offset_position(place, room)
+    yield from move_plan.move_to({"X": over["X"], "Y": over["Y"]}, None)
     yield from list_starting_functions(found, now, choices)
-    yield from way.move_to(over, None)
-    yield from way.move_to(way.offset_position(place, min(_SLOW_ENTRY_MM, room)), None)
-    yield from way.move_to(way.offset_position(place, 0.0), choices.inside_speed_mm_s)
+    yield from move_plan.move_to(over, None)
+    yield from move_plan.move_to(move_plan.offset_position(place, min(_SLOW_ENTRY_MM, room)), None)
+    yield from move_plan.move_to(move_plan.offset_position(place, 0.0), choices.inside_speed_mm_s)
 
 
 def _retract_moves(plan: _MovePlan, choices: OperatorChoices) -> Iterator[AxesLeg]:

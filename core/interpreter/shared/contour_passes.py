@@ -110,14 +110,14 @@ class RoughingPlanner:
 
         The tool reaches the front end from in front of the area, and the back end from above.
         """
-        way = min(to[1], 0.0) if front else to[1]
-        self._move_above(way)
-        done = [depth for depth, spans in self._done if _covering(spans, way, to[1])]
+        length = min(to[1], 0.0) if front else to[1]
+        self._move_above(length)
+        done = [depth for depth, spans in self._done if _covering(spans, length, to[1])]
         if self._done:
             self._sink(min(max(done, default=0.0), to[0]))
         elif front:  # At the back end, the tool could hit remaining material.
             self._sink(to[0])
-        self._feed(to[0], way)
+        self._feed(to[0], length)
         self._feed(*to)
 
     def _along(self, path: list[Element]) -> None:
@@ -162,13 +162,13 @@ class RoughingPlanner:
                 return depth - self._lift
         return 0.0 if _covering(self._free, low, high) else min(0.0, self._area.top_depth - self._lift)
 
-    def _go(self, depth: float, way: float) -> None:
-        self.moves.append(CycleMove(depth, way, self._rapid))
-        self._at = depth, way
+    def _go(self, depth: float, length: float) -> None:
+        self.moves.append(CycleMove(depth, length, self._rapid))
+        self._at = depth, length
 
-    def _feed(self, depth: float, way: float) -> None:
-        self.moves.append(CycleMove(depth, way))
-        self._at = depth, way
+    def _feed(self, depth: float, length: float) -> None:
+        self.moves.append(CycleMove(depth, length))
+        self._at = depth, length
 
     def _check(self, here: Point, moves: list[CycleMove]) -> None:
         for move in moves:
@@ -182,17 +182,17 @@ class RoughingPlanner:
 
         If the allowance U is 0, a move is too close only if it crosses the contour.
         """
-        left, way = self._area.allowance_mm, Line(start, end)
+        left, line = self._area.allowance_mm, Line(start, end)
         if left > _CLEARANCE_TOLERANCE_MM:
             return any(
-                min_distance(way, element) < left - _CLEARANCE_TOLERANCE_MM for element in self._area.contour
+                min_distance(line, element) < left - _CLEARANCE_TOLERANCE_MM for element in self._area.contour
             )
-        depth, ways = max(start[0], end[0]) - _TOUCHING, (start[1], end[1])
-        if way.length <= 2 * _TOUCHING:
+        depth, lengths = max(start[0], end[0]) - _TOUCHING, (start[1], end[1])
+        if line.length <= 2 * _TOUCHING:
             return False
-        if _covering(self._area.find_spans(depth), max(min(ways), 0.0), max(ways)):
+        if _covering(self._area.find_spans(depth), max(min(lengths), 0.0), max(lengths)):
             return False
-        inner = Line(way.point_at(_TOUCHING), way.point_at(way.length - _TOUCHING))
+        inner = Line(line.point_at(_TOUCHING), line.point_at(line.length - _TOUCHING))
         return any(intersections(inner, element) for element in self._area.contour)
 
 

@@ -304,12 +304,12 @@ class ContourStage(ABC):
         """
         for piece in pieces:
             if self._at is None:
-                way = self._approach_path(piece.element.start)
+                approach_path = self._approach_path(piece.element.start)
                 self._at = (
                     piece.element.start[0] + self.tip_offset[0],
                     piece.element.start[1] + self.tip_offset[1],
                 )
-                yield from self._lead(self.approach_move, way)
+                yield from self._lead(self.approach_move, approach_path)
             while self._index < piece.source_index:
                 yield from self._standing(self._held.pop(self._index))
                 self._index += 1
@@ -323,8 +323,8 @@ class ContourStage(ABC):
         yield from self._standing(self._held.pop(self._index))
         yield from self._lead(move, path)
 
-    def _lead(self, move: ContourMove, way: Sequence[Element]) -> Iterator[Block]:
-        for element in way:
+    def _lead(self, move: ContourMove, path: Sequence[Element]) -> Iterator[Block]:
+        for element in path:
             yield self._arrived(
                 self._moves.replace_element(move.block, shift_element(element, *self.tip_offset))
             )

@@ -151,8 +151,8 @@ class Block:
         if self.kind is BlockKind.ARC:
             ends = (self.x0, self.z0), (self.x, self.z)
             return arc_length(*ends, (self.cx, self.cz), clockwise=self.clockwise)
-        way = hypot(self.x - self.x0, self.z - self.z0) if self.plane is None else self.plane.length
-        return way or abs(self.c - self.c0)
+        length_mm = hypot(self.x - self.x0, self.z - self.z0) if self.plane is None else self.plane.length
+        return length_mm or abs(self.c - self.c0)
 
     @property
     def rapid(self) -> bool:

@@ -485,9 +485,9 @@ class Interpreter(LinePass[LexedBlock]):
         axis = "Y" if _ARC_IN_Y.search(finding.message) else match[1] if match else ""
         if not axis:
             return False
-        told = axis in self._no_axis
+        is_reported = axis in self._no_axis
         self._no_axis.add(axis)
-        return told
+        return is_reported
 
     def _report_limit(self, line: LexedBlock) -> None:
         if self._stopped and self._left < 0:

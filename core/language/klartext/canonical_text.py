@@ -101,10 +101,10 @@ def _feed(feed: nodes.FeedWord | None) -> str:
     return _FEEDS[feed.kind] if feed.value is None else f"F{feed.base}{_value(feed.value, plus=False)}"
 
 
-def _retract(way: nodes.RetractWord | None) -> str:
-    if way is None:
+def _retract(retract: nodes.RetractWord | None) -> str:
+    if retract is None:
         return ""
-    return "MB MAX" if way.distance is None else f"MB{_value(way.distance, plus=False)}"
+    return "MB MAX" if retract.distance is None else f"MB{_value(retract.distance, plus=False)}"
 
 
 def _value(value: nodes.Value, *, plus: bool = True) -> str:

@@ -220,10 +220,10 @@ def read_m_function(cursor: LineCursor) -> MFunction | None:
     if number == 103:
         return MFunction(number, column, feed=_factor(cursor))
     if number == 140:
-        way = read_retract(cursor)
-        if way is None:
+        retract = read_retract(cursor)
+        if retract is None:
             raise cursor.make_expected_error("M140 needs MB", "Write MB and a length, or MB MAX.")
-        return MFunction(number, column, way, read_feed(cursor))
+        return MFunction(number, column, retract, read_feed(cursor))
     if number in _WITH_WORDS:
         cursor.match(_WITH_WORDS[number])
     return MFunction(number, column)

@@ -92,15 +92,15 @@ def _read_all_words(
 
 
 def _positioning(cursor: LineCursor, form: str) -> RotaryPositioning:
-    way = cursor.read_keyword(*_POSITIONING_MODES)
-    if way is None:
+    mode = cursor.read_keyword(*_POSITIONING_MODES)
+    if mode is None:
         if form == "RESET" and cursor.is_at_end:
             return RotaryPositioning()
         raise cursor.make_expected_error(
             "MOVE, TURN or STAY is missing",
             "Write MOVE, TURN or STAY to set how the rotary axes are positioned.",
         )
-    made = RotaryPositioning(way)
+    made = RotaryPositioning(mode)
     while not cursor.is_at_end:
         made = _with_word(cursor, form, made)
     return made
@@ -125,10 +125,10 @@ def _with_word(cursor: LineCursor, form: str, positioning: RotaryPositioning) ->
 
 
 def _with_motion(cursor: LineCursor, made: RotaryPositioning, column: int) -> RotaryPositioning:
-    if way := read_retract(cursor):
+    if retract := read_retract(cursor):
         _demand_motion(cursor, made, column, "MB")
         check_not_repeated(cursor, column, made.retract, "MB")
-        return dataclasses.replace(made, retract=way)
+        return dataclasses.replace(made, retract=retract)
     if speed := read_feed(cursor):
         _demand_motion(cursor, made, column, "F")
         check_not_repeated(cursor, column, made.feed, "F")

@@ -69,8 +69,8 @@ def lex_line(number: int, text: str) -> LexedLine:
         )
     errors: list[Diagnostic] = []
     if _THREE_LETTERS.search(text) or text[:1] in "%oO: ":
-        text, told = _blank_prose(number, text)
-        errors += told
+        text, prose_errors = _blank_prose(number, text)
+        errors += prose_errors
     written, columns, comment, comment_column = _without_comment(number, text, errors)
     code = _Code(to_ascii_upper(written), written, columns)
     block_delete = code.text.startswith("/")
@@ -118,16 +118,16 @@ def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
         column = len(bare) - len(bare.lstrip()) + 1
         kept = "".join(" " if sign == bare[at] else sign for at, sign in enumerate(text))
         return kept, [make_error_diagnostic(number, column, *habit)]
-    told: list[Diagnostic] = []
+    errors: list[Diagnostic] = []
     for found in _prose_in(bare):
         start, end = found.span()
         if bare[start - 1 : start] == ";":  # a comment in the style of other controls
             start -= 1
-            told.append(word_faults.make_character_error(number, start + 1, ";", after_number=False))
+            errors.append(word_faults.make_character_error(number, start + 1, ";", after_number=False))
         else:
-            told.append(word_faults.make_text_error(number, start + 1, found[0].strip()))
+            errors.append(word_faults.make_text_error(number, start + 1, found[0].strip()))
         text = text[:start] + " " * (end - start) + text[end:]
-    return text, told
+    return text, errors
 
 
 def _with_blank_comments(text: str) -> str:

@@ -187,10 +187,10 @@ def find_iso_word(code: str) -> IsoWord | None:
 
     ``code`` is the block in capitals, without its comment.
     """
-    for pattern, told in _RULES:
+    for pattern, explain_match in _RULES:
         if match := pattern.search(code):
             groups = match.groupdict()
             part = next((name for name in ("word", "letter", "code", "number") if groups.get(name)), 0)
             at = match.start(part)
-            return IsoWord(at - (part == "code"), *told(match))
+            return IsoWord(at - (part == "code"), *explain_match(match))
     return None

@@ -213,5 +213,5 @@ def _pattern(name: str) -> re.Pattern[str]:
 
     The name must be followed by an equals sign, or by a number if the name is a single letter.
     """
-    behind = r"\s*=(?!=)" if len(name) > 1 else r"(?:\s*=(?!=)|[-+]?\.?[0-9]+(?![0-9]*\s*=))"
-    return re.compile(rf"(?<![A-Z_$]){name}(?={behind})")
+    lookahead = r"\s*=(?!=)" if len(name) > 1 else r"(?:\s*=(?!=)|[-+]?\.?[0-9]+(?![0-9]*\s*=))"
+    return re.compile(rf"(?<![A-Z_$]){name}(?={lookahead})")

@@ -113,10 +113,10 @@ class AirCutChecks:
             text = "After this rapid alongside the part, the tool retracts without cutting."
             yield Found("unmade-cut", text, self._went_in)
             self._went_in = None
-        beside = min(abs(r0), abs(r1)) < self.stock.max_radius_mm + _SIDE_DISTANCE_MM
+        is_near_part = min(abs(r0), abs(r1)) < self.stock.max_radius_mm + _SIDE_DISTANCE_MM
         if (
             not cut
-            and beside
+            and is_near_part
             and move.line != self._cut_line
             and z1 < min(z0, self.stock.front_z_mm) - _AWAY_DISTANCE_MM
         ):

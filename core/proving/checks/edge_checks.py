@@ -140,8 +140,8 @@ class EdgeChecks:
         radii = [r for _, r in move.points]
         if min(radii) < _NEAR_TOLERANCE and max(radii) > -_NEAR_TOLERANCE:
             return  # the move crosses the axis
-        way = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
-        if self._turned.setdefault(tool, way) != way and tool not in self._told:
+        direction = math.copysign(1.0, move.rpm) * math.copysign(1.0, radii[0])
+        if self._turned.setdefault(tool, direction) != direction and tool not in self._told:
             self._told.add(tool)
             words = Message(
                 "{tool} cuts with the spindle turning in the opposite direction to its earlier cuts.",
@@ -345,10 +345,10 @@ def _check_cutting_side(
         return
     clears = cutter.trailing_edge_angle(forward)
     for start, end, met, steep in _iter_steep_runs(move.points, cuts, shape, clears + _STEEPER):
-        behind = met.front_z_mm - start[0] if forward < 0 else start[0] - met.back_z_mm
-        faces = behind <= _FACED and not _leaves_wall(part, met, forward, abs(end[1]), cutter.side)
+        trailing_mm = met.front_z_mm - start[0] if forward < 0 else start[0] - met.back_z_mm
+        faces = trailing_mm <= _FACED and not _leaves_wall(part, met, forward, abs(end[1]), cutter.side)
         if (
-            behind > 2.0 * shape.nose_radius + _TRAILING_CUT_MM
+            trailing_mm > 2.0 * shape.nose_radius + _TRAILING_CUT_MM
             and met.depth_mm > _TRAILING_CUT_MM
             and not faces
         ):

@@ -289,10 +289,10 @@ def apply_field_changes(
         if field is None or not field.accepts(value):
             word, shown = (field.label, _told(field, value)) if field else (name, value)
             whose = format_edge_name(number) if table.letter == "T" else f"{table.letter}{number}"
-            told = Message("{whose} {word} {value}", whose=whose, word=word, value=shown)
+            entry_text = Message("{whose} {word} {value}", whose=whose, word=word, value=shown)
             accepted = field.range_text if field else ", ".join(fields)
             raise StoreError(
-                Message("{details} is out of range; enter {accepted}", details=told, accepted=accepted),
+                Message("{details} is out of range; enter {accepted}", details=entry_text, accepted=accepted),
                 "out-of-range",
             )
     before = old_row or table.row()
@@ -386,15 +386,15 @@ def apply_changes(
         [log.key_column, *columns],
         [(number, *new) for number, (_old, new) in changes.items() if new is not None],
     )
-    told = {"kind": kind.value} if log.kind_expression == "kind" else {}
+    kind_map = {"kind": kind.value} if log.kind_expression == "kind" else {}
     sides = [f"{side}_{column}" for side in ("old", "new") for column in columns]
     nothing = (None,) * len(columns)
     _insert(
         connection,
         log.name,
-        ["step", "undoes", "at", *told, log.key_column, "why", "who", *sides],
+        ["step", "undoes", "at", *kind_map, log.key_column, "why", "who", *sides],
         [
-            (step, undone_step, at, *told.values(), number, *reason, *(old or nothing), *(new or nothing))
+            (step, undone_step, at, *kind_map.values(), number, *reason, *(old or nothing), *(new or nothing))
             for number, (old, new) in changes.items()
         ],
     )

@@ -411,15 +411,15 @@ def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]
         *speeds, f"{_SPINDLE}.full_speed", f"{_SPINDLE}.velocity_per_rpm", f"{_SPINDLE}.channel"
     ):
         return
-    told = any(values.text(path) for path in speeds)
+    has_speed_pin = any(values.text(path) for path in speeds)
     scale = "velocity_per_rpm" if kind == ETHERCAT else "full_speed"
     scaled = values.read_number(f"{_SPINDLE}.{scale}")
-    if told and not scaled:
+    if has_speed_pin and not scaled:
         what = (
             "the value of object 60FF at 1 rpm" if kind == ETHERCAT else ("the spindle speed at 10 V, in rpm")
         )
         yield _missing(f"{_SPINDLE}.{scale}", what)
-    if scaled and not told:
+    if scaled and not has_speed_pin:
         yield FileFinding(
             speeds[0],
             "",
@@ -429,10 +429,10 @@ def _check_spindle(file: MachineFileReading, kind: str) -> Iterator[FileFinding]
             ),
         )
     channel = values.read_integer(f"{_SPINDLE}.channel")
-    if told and kind == MESA_SERVO and channel not in (4, 5):
+    if has_speed_pin and kind == MESA_SERVO and channel not in (4, 5):
         what = "the number of an analog output with a separate enable: 4 or 5"
         yield _number_finding(f"{_SPINDLE}.channel", channel, what)
-    if told and kind == ETHERCAT:
+    if has_speed_pin and kind == ETHERCAT:
         if channel < 0:
             yield _missing(f"{_SPINDLE}.channel", _CHANNEL_MEANINGS[kind])
         yield from _check_required(file, kind, _SPINDLE)

@@ -175,12 +175,12 @@ def build_bus_xml(lathe: LatheData) -> str:
         drives.append((spindle.channel, spindle.vendor, spindle.product, "spindle"))
     for place, vendor, product, name in sorted(drives):
         lines += _slave_lines(place, vendor, product, name)
-    behind = 1 + max(place for place, *_ in drives)
+    coupler_position = 1 + max(place for place, *_ in drives)
     if _has_terminals(lathe):
         lines += [
-            f'    <slave idx="{behind}" type="EK1100" name="coupler"/>',
-            f'    <slave idx="{behind + 1}" type="EL1008" name="DI"/>',
-            f'    <slave idx="{behind + 2}" type="EL2008" name="DO"/>',
+            f'    <slave idx="{coupler_position}" type="EK1100" name="coupler"/>',
+            f'    <slave idx="{coupler_position + 1}" type="EL1008" name="DI"/>',
+            f'    <slave idx="{coupler_position + 2}" type="EL2008" name="DO"/>',
         ]
     return "\n".join((*lines, "  </master>", "</masters>", ""))
 
@@ -190,8 +190,8 @@ def _slave_lines(position: int, vendor: str, product: str, name: str) -> Iterato
     ids = f'vid="{int(vendor, 16):08X}" pid="{int(product, 16):08X}"'
     yield f'    <slave idx="{position}" type="generic" {ids} name="{name}" configPdos="true">'
     yield '      <dcConf assignActivate="300" sync0Cycle="*1" sync0Shift="0"/>'
-    for number, way, pdo, objects in ((2, "out", "1600", _OUTPUT_PDO), (3, "in", "1a00", _INPUT_PDO)):
-        yield f'      <syncManager idx="{number}" dir="{way}">'
+    for number, direction, pdo, objects in ((2, "out", "1600", _OUTPUT_PDO), (3, "in", "1a00", _INPUT_PDO)):
+        yield f'      <syncManager idx="{number}" dir="{direction}">'
         yield f'        <pdo idx="{pdo}">'
         for index, bits, pin, kind in objects:
             words = f'idx="{index}" subIdx="00" bitLen="{bits}" halPin="{pin}" halType="{kind}"'

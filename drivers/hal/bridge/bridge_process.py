@@ -87,8 +87,8 @@ def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
     if settings["only_check"] or any(wrong for _, _, wrong in verdicts):
         return None
     component = hal.component(settings["name"])
-    for name, kind, way in settings["pins"]:
-        component.newpin(name, getattr(hal, _PIN_KINDS[kind]), getattr(hal, _PIN_DIRECTIONS[way]))
+    for name, kind, direction in settings["pins"]:
+        component.newpin(name, getattr(hal, _PIN_KINDS[kind]), getattr(hal, _PIN_DIRECTIONS[direction]))
     script = Path(settings["nets"])
     script.write_text(
         "\n".join(hal_pins.build_net_lines(wanted, settings["own"], pins, signals)) + "\n", encoding="utf-8"
@@ -102,9 +102,9 @@ def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
 
 
 def _bridge(hal: Any, component: Any, said: Mapping[str, Any]) -> HalBridge:
-    told = dict(said["bridge"])
-    told["axes"] = tuple(BridgeAxis(**axis) for axis in told["axes"])
-    config = BridgeConfig(**told)
+    bridge_settings = dict(said["bridge"])
+    bridge_settings["axes"] = tuple(BridgeAxis(**axis) for axis in bridge_settings["axes"])
+    config = BridgeConfig(**bridge_settings)
     streams = [hal.stream(component, hal.streamer_base + n, said["columns"]) for n in range(2)]
     sampler = hal.stream(component, hal.sampler_base, said["sampled"])
     return HalBridge(

@@ -496,7 +496,7 @@ class HalBridge:
         if self.has_driver_ended:
             self._power_off()
             blind = not self.config.turns or self._is_thread_stopped
-            stands = (
+            is_stopped = (
                 blind or abs(self.setpoint_player.spindle_predictor.speed_rev_per_s) < _STANDSTILL_REV_PER_S
             )
-            self.is_done = stands or now - self._left_at > _SPINDLE_STOP_S
+            self.is_done = is_stopped or now - self._left_at > _SPINDLE_STOP_S

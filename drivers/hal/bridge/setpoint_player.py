@@ -98,14 +98,14 @@ class SetpointPlayer:
 
         Earlier pieces of the same cam remain.
         """
-        way = PieceQueue(pieces[0].positions)
+        path_queue = PieceQueue(pieces[0].positions)
         if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
             start_revolutions,
             sign,
         ):
-            way = self.cam.path_queue
-        way.replace_from(pieces[0].start_time_s, pieces)
-        self.cam, self.cam_end_time_s = PlayerCam(start_revolutions, sign, way, following_pieces), None
+            path_queue = self.cam.path_queue
+        path_queue.replace_from(pieces[0].start_time_s, pieces)
+        self.cam, self.cam_end_time_s = PlayerCam(start_revolutions, sign, path_queue, following_pieces), None
 
     def brake_to_rest(self, t: float, deceleration: Sequence[float]) -> list[MotionPiece]:
         """Brake straight to rest from ``t`` on, and return the pieces of the deceleration.

@@ -73,7 +73,7 @@ class Spindle:
     def __init__(self) -> None:
         self.commanded_rpm = self.rpm = 0.0
         self.is_used_as_c = False
-        self.known = True
+        self.is_known = True
 
     def run_at(self, rpm: float) -> None:
         self.commanded_rpm = rpm
@@ -171,7 +171,7 @@ def test_with_the_drives_off_or_the_spindle_turning_it_is_not_taken() -> None:
 def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() -> None:
     stand = Stand()
     stand.run(0.2)
-    stand.turning.known = False
+    stand.turning.is_known = False
     stand.c.set_c_mode(True, orient=True)
     assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
         HalSpindleCStep.FIND_INDEX,
@@ -182,7 +182,7 @@ def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() 
     stand.turning.rpm = 60.0
     stand.run(1.0)
     assert stand.c.step is HalSpindleCStep.FIND_INDEX
-    stand.turning.known = True
+    stand.turning.is_known = True
     stand.run(0.1)
     assert (stand.c.step, stand.turning.commanded_rpm) == (HalSpindleCStep.STOP, 0.0)
     stand.turning.rpm = 1.0
@@ -204,9 +204,9 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
 ) -> None:
     stand = Stand(tells=True)
     stand.run(0.2)
-    stand.turning.known = False
+    stand.turning.is_known = False
     stand.c.set_c_mode(True, orient=True)
-    stand.turning.known, stand.turning.rpm = known, rpm
+    stand.turning.is_known, stand.turning.rpm = known, rpm
     stand.run(0.02)  # and what it waits for begins
     stand.run(seconds - 0.05)
     assert stand.axes.fault == ""
@@ -226,7 +226,7 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
 def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: str) -> None:
     stand = Stand()
     stand.run(0.2)
-    stand.turning.known = False
+    stand.turning.is_known = False
     stand.c.set_c_mode(True, orient=True)
     stand.link.is_state_unknown, stand.link.failure = True, lost
     stand.c.update()

@@ -333,7 +333,7 @@ def _element(component: Component, device: str, parent: Element) -> Element:
 
 
 def _attributes(item: DataItem, device: str) -> dict[str, str]:
-    told = {
+    attributes = {
         "category": item.category.value,
         "id": f"{device}_{item.key}",
         "name": item.key,
@@ -342,4 +342,4 @@ def _attributes(item: DataItem, device: str) -> dict[str, str]:
         "units": item.units,
         "coordinateSystem": item.coordinate_system,
     }
-    return {name: text for name, text in told.items() if text}
+    return {name: text for name, text in attributes.items() if text}

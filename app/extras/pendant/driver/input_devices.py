@@ -326,14 +326,14 @@ class KernelDevice:
 
     def read_axis_ranges(self) -> Mapping[int, AxisRange]:
         """Return the range of every axis by code (EVIOCGABS)."""
-        told = {}
+        axis_ranges = {}
         for code in range(AXES):
             if (ABS, code) in self._able:
                 raw = array.array("B", bytes(_ABSINFO.size))
                 _ioctl(self._fd, _request(2, 0x40 + code, _ABSINFO.size), raw)
                 value, low, high, *_ = _ABSINFO.unpack(raw)
-                told[code] = AxisRange(low, high, value)
-        return told
+                axis_ranges[code] = AxisRange(low, high, value)
+        return axis_ranges
 
     def close(self) -> None:
         """Close the device and end its exclusive use."""

@@ -166,15 +166,15 @@ def write_contour(
     Roughing is included if a depth is specified.
     """
     there = resolve_points(rows)
-    beside = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
+    clear_radius = _calculate_clear_radius(filled_shape, settings, there, is_inside=is_inside)
     rough, comp = filled_shape.get_number("ROUGH"), filled_shape.get_number("COMP")
     write_spindle_start(
-        filled_shape, settings, code, beside if rough else there[0][1], there[0][0] + settings.near
+        filled_shape, settings, code, clear_radius if rough else there[0][1], there[0][0] + settings.near
     )
     code.write_contour_turning(
         ContourTurning(
             rows,
-            beside,
+            clear_radius,
             is_inside,
             filled_shape.get_number("FEED"),
             rough,

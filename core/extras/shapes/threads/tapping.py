@@ -190,7 +190,7 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
     series = get_series(filled.values)
     places, unit = (2 if setting.metric else 4), convert_length(1.0, series, metric=setting.metric)
     least, most = (format_short_number(value * unit, places) for value in known.minor_diameter)
-    told = Message(
+    hole_size_text = Message(
         "hole diameter before tapping: {crest}; limits {minimum} to {maximum}",
         crest=format_short_number(known.crest_diameter * unit, places),
         minimum=least,
@@ -198,9 +198,9 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
     )
     drill = find_tap_drill(*known.minor_diameter, metric=series in METRIC_SERIES)
     return (
-        (told,)
+        (hole_size_text,)
         if drill is None
-        else (told, Message("tap drill: {series}", series=_called(*drill, series, setting)))
+        else (hole_size_text, Message("tap drill: {series}", series=_called(*drill, series, setting)))
     )
 
 

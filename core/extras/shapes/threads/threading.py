@@ -123,11 +123,11 @@ def write_cycle97(filled_shape: FilledShape, code: CodeWriter) -> None:
         math.ceil(filled_shape.get_number("PASSES") - 1e-6),
     )
     kind = 4.0 if filled_shape.get_text("SIDE") == INSIDE else 3.0
-    figures = (*ends, depth, 0.0, angle, 0.0, passes, 0.0, kind, starts)
+    parameters = (*ends, depth, 0.0, angle, 0.0, passes, 0.0, kind, starts)
     words = (
         format_sinumerik_number(filled_shape.get_number("PITCH") * starts, 6),
         "",
-        *map(format_sinumerik_number, figures),
+        *map(format_sinumerik_number, parameters),
     )
     code.write(f"CYCLE97({', '.join(words)})")
     code.clear_modal_state()

@@ -151,22 +151,22 @@ def run_pilot_drilling(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 
     The cycle drills a hole at each position where cycle 22 plunges with tool Q13.
     """
-    told = ClearingData(tool, area)
+    clearing = ClearingData(tool, area)
     radius = tool.find_radius_mm(int(tool.read_value(13)))
     if radius is None or radius <= MIN_LENGTH_MM:
         text = "Rough-out tool {plain} (Q13) has no radius in the tool table."
         raise tool.make_error(text, "Set Q13 to the number of a measured tool.", plain=tool.read_value(13))
-    feed, bottom = told.tool.read_cutting_feed(11), told.bottom_z_mm + told.floor_allowance_mm
-    yield from told.move_to_safe_z()
-    for cut in told.plan_level(radius):
+    feed, bottom = clearing.tool.read_cutting_feed(11), clearing.bottom_z_mm + clearing.floor_allowance_mm
+    yield from clearing.move_to_safe_z()
+    for cut in clearing.plan_level(radius):
         if cut.moves_at_depth:
             continue
         yield tool.move_straight(cut.ramp_loop[0].start)
-        yield tool.move_to_z(told.clearance_z_mm)
-        for z in told.compute_levels(bottom):
+        yield tool.move_to_z(clearing.clearance_z_mm)
+        for z in clearing.compute_levels(bottom):
             yield tool.move_to_z(z, feed)
-            yield tool.move_to_z(told.clearance_z_mm)
-        yield tool.move_to_z(told.safe_z_mm)
+            yield tool.move_to_z(clearing.clearance_z_mm)
+        yield tool.move_to_z(clearing.safe_z_mm)
 
 
 def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
@@ -174,23 +174,23 @@ def run_roughing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block
 
     The allowances of cycle 20 remain on the part. Q401 reduces the feed in full-width cuts.
     """
-    told = ClearingData(tool, area)
+    clearing = ClearingData(tool, area)
     if tool.read_value(18, 0.0):
         tool.log_note(
             "the whole pocket is milled again, including the area that the coarse roughing tool "
             "(Q18) has cleared."
         )
-    feed = told.tool.read_cutting_feed(12)
+    feed = clearing.tool.read_cutting_feed(12)
     slow = feed * min(max(tool.read_value(401, 100.0), 1.0), 100.0) / 100.0
-    plan = told.plan_level(tool.radius_mm)
-    yield from told.move_to_safe_z()
-    top = told.surface_z_mm
-    for z in told.compute_levels(told.bottom_z_mm + told.floor_allowance_mm):
+    plan = clearing.plan_level(tool.radius_mm)
+    yield from clearing.move_to_safe_z()
+    top = clearing.surface_z_mm
+    for z in clearing.compute_levels(clearing.bottom_z_mm + clearing.floor_allowance_mm):
         for cut in plan:
-            yield from _move_to_depth(told, cut, top, z, slow)
+            yield from _move_to_depth(clearing, cut, top, z, slow)
             yield from _along(tool, cut.loop, feed if cut.moves_at_depth else slow)
         top = z
-    yield from told.retract()
+    yield from clearing.retract()
 
 
 def _move_to_depth(
@@ -226,9 +226,9 @@ def _ramp(
         tool.check(
             length <= _MAX_RAMP_ROUNDS * ring, text, "Use a center-cutting tool and plunge vertically."
         )
-        way, rest = split_loop(cut.ramp_loop, length)
+        ramp_elements, rest = split_loop(cut.ramp_loop, length)
         done = 0.0
-        for element in way:
+        for element in ramp_elements:
             done += element.length
             yield _element(tool, element, top + (z - top) * min(done / length, 1.0), feed)
         yield from _along(
@@ -251,19 +251,19 @@ def _element(tool: CycleTool, element: Element, z: float, feed: float) -> Block:
 
 def run_floor_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator[Block]:
     """Yield the blocks of cycle 23, which finishes the floor up to the allowance on the walls."""
-    told = ClearingData(tool, area)
-    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
-    plan = told.plan_level(tool.radius_mm)
-    yield from told.move_to_safe_z()
-    for cut in plan if told.surface_z_mm - told.bottom_z_mm > MIN_LENGTH_MM else ():
+    clearing = ClearingData(tool, area)
+    feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
+    plan = clearing.plan_level(tool.radius_mm)
+    yield from clearing.move_to_safe_z()
+    for cut in plan if clearing.surface_z_mm - clearing.bottom_z_mm > MIN_LENGTH_MM else ():
         start = cut.loop[0].start
         if not cut.moves_at_depth:
-            yield from tool.move_above(start, told.clearance_z_mm)
-            yield tool.move_to_z(told.bottom_z_mm, plunge)
+            yield from tool.move_above(start, clearing.clearance_z_mm)
+            yield tool.move_to_z(clearing.bottom_z_mm, plunge)
         elif math.dist(tool.xy_position, start) > SAME_POINT_TOLERANCE_MM:
             yield tool.move_straight(start, None, feed)
         yield from _along(tool, cut.loop, feed)
-    yield from told.retract()
+    yield from clearing.retract()
 
 
 # --- walls ------------------------------------------------------------------------------------------------
@@ -274,26 +274,28 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 
     The tool approaches and departs on quarter circles.
     """
-    told = ClearingData(tool, area)
-    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
+    clearing = ClearingData(tool, area)
+    feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     apart = tool.radius_mm + tool.read_length_mm(14, 0.0)
     try:
         loops = inset_loops(area, apart)
     except AreaError as problem:
-        raise told.make_fit_error(problem) from None
+        raise clearing.make_fit_error(problem) from None
     if not loops:
-        raise told.make_fit_error(AreaError("the tool does not fit anywhere inside the contour"))
+        raise clearing.make_fit_error(AreaError("the tool does not fit anywhere inside the contour"))
     room = AreaCheck(area)
-    yield from told.move_to_safe_z()
+    yield from clearing.move_to_safe_z()
     for loop in loops:
-        ring = [element.reversed() for element in reversed(loop)] if told.is_up_cut else loop
-        ring, to_it, off_it = _add_approach_arcs(ring, room, apart, tool.radius_mm, is_up_cut=told.is_up_cut)
-        for z in told.compute_levels(told.bottom_z_mm):
-            yield from tool.move_above(to_it.start if to_it else ring[0].start, told.clearance_z_mm)
+        ring = [element.reversed() for element in reversed(loop)] if clearing.is_up_cut else loop
+        ring, to_it, off_it = _add_approach_arcs(
+            ring, room, apart, tool.radius_mm, is_up_cut=clearing.is_up_cut
+        )
+        for z in clearing.compute_levels(clearing.bottom_z_mm):
+            yield from tool.move_above(to_it.start if to_it else ring[0].start, clearing.clearance_z_mm)
             yield tool.move_to_z(z, plunge)
             yield from _along(tool, [each for each in (to_it, *ring, off_it) if each is not None], feed)
-        yield tool.move_to_z(told.clearance_z_mm)
-    yield from told.retract()
+        yield tool.move_to_z(clearing.clearance_z_mm)
+    yield from clearing.retract()
 
 
 def _add_approach_arcs(
@@ -323,8 +325,8 @@ def _make_quarter_arcs(
     side = (x, y) if is_left else (-x, -y)
     centre = wall_point[0] + side[0] * radius_mm, wall_point[1] + side[1] * radius_mm
     before = centre[0] - direction[0] * radius_mm, centre[1] - direction[1] * radius_mm
-    behind = centre[0] + direction[0] * radius_mm, centre[1] + direction[1] * radius_mm
-    return Arc(before, wall_point, centre, not is_left), Arc(wall_point, behind, centre, not is_left)
+    departure_end = centre[0] + direction[0] * radius_mm, centre[1] + direction[1] * radius_mm
+    return Arc(before, wall_point, centre, not is_left), Arc(wall_point, departure_end, centre, not is_left)
 
 
 # --- open contours ----------------------------------------------------------------------------------------
@@ -335,27 +337,27 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
 
     Q15 is 0 for milling in both directions and -1 for up-cut milling.
     """
-    told = ClearingData(tool, clearance_mm=_CLEARANCE_MM)
+    clearing = ClearingData(tool, clearance_mm=_CLEARANCE_MM)
     if len(contours) > 1:
         tool.log_note("Cycle 25 mills only the first contour listed in cycle 14.")
     figure = contours[0]
-    way = _offset_path(told, figure)
+    tool_path = _offset_path(clearing, figure)
     kind = tool.read_value(15, 1.0)
     climbs = (figure.side == "L") == (tool.running_rpm > 0.0)  # in the programmed direction
     if kind and figure.side and climbs != (kind > 0.0):
-        way = [element.reversed() for element in reversed(way)]
-    feed, plunge = told.tool.read_cutting_feed(12), told.tool.read_cutting_feed(11)
-    yield from told.move_to_safe_z()
-    for index, z in enumerate(told.compute_levels(told.bottom_z_mm)):
+        tool_path = [element.reversed() for element in reversed(tool_path)]
+    feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
+    yield from clearing.move_to_safe_z()
+    for index, z in enumerate(clearing.compute_levels(clearing.bottom_z_mm)):
         if kind or index == 0:
-            yield tool.move_to_z(max(told.clearance_z_mm, tool.z_position) if index else tool.z_position)
-            yield tool.move_straight(way[0].start)
-            yield tool.move_to_z(told.clearance_z_mm)
+            yield tool.move_to_z(max(clearing.clearance_z_mm, tool.z_position) if index else tool.z_position)
+            yield tool.move_straight(tool_path[0].start)
+            yield tool.move_to_z(clearing.clearance_z_mm)
         yield tool.move_to_z(z, plunge)
-        yield from _along(tool, way, feed)
+        yield from _along(tool, tool_path, feed)
         if not kind:
-            way = [element.reversed() for element in reversed(way)]
-    yield tool.move_to_z(told.safe_z_mm)
+            tool_path = [element.reversed() for element in reversed(tool_path)]
+    yield tool.move_to_z(clearing.safe_z_mm)
 
 
 def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
@@ -373,10 +375,10 @@ def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
     if closed:
         elements = close_loop(elements)
     try:
-        beside = offset_known_contour(elements, apart if contour.side == "L" else -apart)
+        offset_pieces = offset_known_contour(elements, apart if contour.side == "L" else -apart)
     except GougeError as problem:
         raise clearing.make_fit_error(problem) from None
-    return [piece.element for piece in beside]
+    return [piece.element for piece in offset_pieces]
 
 
 def run_contour_cycle(

@@ -143,8 +143,8 @@ class ActiveCycle:
     def _not_supported(self, node: CycleDefinition | CycleLine) -> ProgramError:
         """Return the error for a cycle number that is not supported."""
         kind = _CYLINDER_CYCLES.get(node.cycle_number)
-        told = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
-        name = Message("CYCL DEF {number}{kind}", number=node.cycle_number, kind=told)
+        kind_suffix = Message(" (cylinder surface, {kind})", kind=kind) if kind else ""
+        name = Message("CYCL DEF {number}{kind}", number=node.cycle_number, kind=kind_suffix)
         return make_unsupported_error(
             self._state.line_number, node.column, name, CYCLE_ALTERNATIVES.get(node.cycle_number, "")
         )
@@ -333,15 +333,15 @@ class ActiveCycle:
         if not node.words:
             return PlaneBlock("RESET", (), RotaryPositioning("STAY"), node.column)
         named = {word.axis: word for word in node.words}
-        way = RotaryPositioning("STAY")
+        positioning = RotaryPositioning("STAY")
         # The control positions the axes about the point at this distance from the tool.
         if node.feed is not None:
             distance = named[""].value if "" in named else None
-            way = RotaryPositioning("MOVE", distance, feed=node.feed)
+            positioning = RotaryPositioning("MOVE", distance, feed=node.feed)
         words = tuple(
             named.get(axis, AxisWord(axis, Value(0.0)))._replace(axis=f"SP{axis}") for axis in "ABC"
         )
-        return PlaneBlock("SPATIAL", words, way, node.column)
+        return PlaneBlock("SPATIAL", words, positioning, node.column)
 
     def _check_feed_modes(self, column: int) -> None:
         """Raise ProgramError if M136 is active, and log a warning if M103 is active.

@@ -282,7 +282,7 @@ class CycleTool:
         levels = [state.transformation.to_plane((0.0, 0.0, at))[2] for at in (self.z_position, z)]
         names = state.axis_names
         columns = names.index("X"), names.index("Y"), names.index("Z")
-        way = HelixMove(
+        helix = HelixMove(
             state.plane_transform,
             state.transformation.transform_arc(arc),
             levels[0],
@@ -291,7 +291,7 @@ class CycleTool:
             columns,
         )
         goal = dict(zip(LINEAR_AXES, state.to_machine_position((*arc.end, z)), strict=True))
-        return state.make_move_block(BlockKind.PLANE_ARC, goal, state.convert_feed_to_mm_s(feed), way)
+        return state.make_move_block(BlockKind.PLANE_ARC, goal, state.convert_feed_to_mm_s(feed), helix)
 
     def make_dwell_blocks(self, seconds: float, *, in_hole: bool = False) -> list[Block]:
         """Return a list with one dwell block, or an empty list for 0 s."""

@@ -40,7 +40,7 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     move off the wall, the program then stops so that the operator can turn the edge away from the wall.
     """
     surface, clear, bottom = read_heights(tool)
-    rpm, way = tool.running_rpm, lateral_direction(tool, (0, 1, 2, 3, 4))
+    rpm, off_wall_direction = tool.running_rpm, lateral_direction(tool, (0, 1, 2, 3, 4))
     x, y = tool.xy_position
     yield tool.move_to_z(clear)
     if abs(bottom - surface) < MIN_LENGTH_MM:
@@ -50,15 +50,17 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     yield (
         tool.orient_spindle(336) if tool.can_orient_spindle else tool.stop_spindle(waits_for_standstill=True)
     )
-    if way != (0.0, 0.0):
+    if off_wall_direction != (0.0, 0.0):
         if not tool.can_orient_spindle:
             tool.warn_unoriented()
-            yield tool.stop_program(_EDGE[way])
+            yield tool.stop_program(_EDGE[off_wall_direction])
         yield tool.move_straight(
-            (x + way[0] * _LATERAL_MOVE_MM, y + way[1] * _LATERAL_MOVE_MM), None, tool.read_feed(206)
+            (x + off_wall_direction[0] * _LATERAL_MOVE_MM, y + off_wall_direction[1] * _LATERAL_MOVE_MM),
+            None,
+            tool.read_feed(206),
         )
     yield from out(tool, surface, clear, tool.read_feed(208) if tool.read_value(208, 0.0) else None)
-    if way != (0.0, 0.0):
+    if off_wall_direction != (0.0, 0.0):
         yield tool.move_straight((x, y))
     yield tool.run_spindle(rpm)
 
@@ -97,12 +99,12 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     )
     lowest, end = surface - through - tool.read_length_mm(200), surface - through + depth
     (x, y), off = tool.xy_position, tool.read_length_mm(251)
-    beside = x + along_x * off, y + along_y * off
+    offset_position = x + along_x * off, y + along_y * off
     yield tool.move_to_z(clear)
     if depth < MIN_LENGTH_MM:
         return
     yield tool.orient_spindle(336)
-    yield tool.move_straight(beside)
+    yield tool.move_straight(offset_position)
     yield tool.move_to_z(lowest, slow)
     yield tool.move_straight((x, y), None, slow)
     yield tool.run_spindle(rpm)
@@ -110,7 +112,7 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     yield from tool.make_dwell_blocks(tool.read_value(255, 0.0))
     yield tool.move_to_z(lowest, slow)
     yield tool.orient_spindle(336)
-    yield tool.move_straight(beside, None, slow)
+    yield tool.move_straight(offset_position, None, slow)
     yield from out(tool, surface, clear, slow)
     yield tool.move_straight((x, y))
     yield tool.run_spindle(rpm)
@@ -257,17 +259,21 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
     """
     surface, clear, bottom = read_heights(tool)
     feed = tool.read_feed(206) or 0.0
-    way = tool.read_length_mm(335) / 2.0 - tool.radius_mm
+    helix_radius_mm = tool.read_length_mm(335) / 2.0 - tool.radius_mm
     x, y = tool.xy_position
     pitch = tool.read_length_mm(334)
     text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
-    tool.check(way >= 0.0 and pitch > 0.0 and feed > 0.0, text, "Correct the entries named in the message.")
+    tool.check(
+        helix_radius_mm >= 0.0 and pitch > 0.0 and feed > 0.0,
+        text,
+        "Correct the entries named in the message.",
+    )
     yield tool.move_to_z(clear)
-    if way < MIN_LENGTH_MM:
+    if helix_radius_mm < MIN_LENGTH_MM:
         yield tool.move_to_z(bottom, feed)
         yield from out(tool, surface, clear, None)
         return
-    start = x + way, y
+    start = x + helix_radius_mm, y
     yield tool.move_straight(start, None, feed)
     clockwise = tool.read_value(351, 1.0) < 0.0
     circle = Arc(start, start, (x, y), clockwise)

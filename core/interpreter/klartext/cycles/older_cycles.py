@@ -228,10 +228,10 @@ def _ring_count(tool: CycleTool, width: float) -> int:
     return max(1, math.ceil(width / step)) if step > _MIN_LENGTH_MM else 1
 
 
-def _sides(told: OlderCycleData, part: int) -> Point:
+def _sides(cycle_data: OlderCycleData, part: int) -> Point:
     return (
-        told.read_length_mm(part, "X") if told.has_axis_word(part, "X") else 0.0,
-        told.read_length_mm(part, "Y") if told.has_axis_word(part, "Y") else 0.0,
+        cycle_data.read_length_mm(part, "X") if cycle_data.has_axis_word(part, "X") else 0.0,
+        cycle_data.read_length_mm(part, "Y") if cycle_data.has_axis_word(part, "Y") else 0.0,
     )
 
 

@@ -138,29 +138,29 @@ def _pocket(tool: CycleTool, seat: Placement, wall: RoundedRectangle) -> Iterato
             Placement(seat.center, seat.angle_deg + 90.0),
             RoundedRectangle(wall.half_side_v_mm, wall.half_side_u_mm, wall.corner_radius_mm),
         )
-    told = _MillingParameters(tool)
+    milling = _MillingParameters(tool)
     last = wall.enlarge(-tool.radius_mm)
-    rough = last.enlarge(-told.side_allowance_mm) if told.scope != _FINISH else last
+    rough = last.enlarge(-milling.side_allowance_mm) if milling.scope != _FINISH else last
     if min(rough.half_side_v_mm, last.half_side_v_mm) < -MIN_LENGTH_MM:
         raise tool.make_error("The tool is wider than the pocket or slot.", "Use a smaller tool.")
     rough, last = (
         RoundedRectangle(max(each.half_side_u_mm, 0.0), max(each.half_side_v_mm, 0.0), each.corner_radius_mm)
         for each in (rough, last)
     )
-    yield tool.move_to_z(max(told.clearance_z_mm, min(tool.z_position, told.safe_z_mm)))
-    if told.surface_z_mm - told.bottom_z_mm < MIN_LENGTH_MM:
+    yield tool.move_to_z(max(milling.clearance_z_mm, min(tool.z_position, milling.safe_z_mm)))
+    if milling.surface_z_mm - milling.bottom_z_mm < MIN_LENGTH_MM:
         return
-    if told.scope != _FINISH:
-        above = told.surface_z_mm
-        for z in told.compute_levels():
-            yield from _plunge(told, seat, rough, above, z)
-            yield from _clear_level(told, seat, rough, told.feed)
+    if milling.scope != _FINISH:
+        above = milling.surface_z_mm
+        for z in milling.compute_levels():
+            yield from _plunge(milling, seat, rough, above, z)
+            yield from _clear_level(milling, seat, rough, milling.feed)
             above = z
-    if told.has_finishing:
-        yield from _finish_walls(told, seat, last)
-    yield tool.move_to_z(told.clearance_z_mm)
+    if milling.has_finishing:
+        yield from _finish_walls(milling, seat, last)
+    yield tool.move_to_z(milling.clearance_z_mm)
     yield tool.move_straight(seat.center)
-    yield from out(tool, told.surface_z_mm, told.clearance_z_mm, None)
+    yield from out(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
 
 
 def _plunge(
@@ -190,20 +190,20 @@ def _plunge(
 
 
 def _helix(
-    told: _MillingParameters, seat: Placement, radius: float, above: float, z: float
+    milling: _MillingParameters, seat: Placement, radius: float, above: float, z: float
 ) -> Iterator[Block]:
-    tool = told.tool
+    tool = milling.tool
     text = "There is not enough room to plunge along a ramp."
     tool.check(radius >= MIN_LENGTH_MM * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
     begin = seat.to_program_point(radius, 0.0)
     yield tool.move_straight(begin)
-    yield tool.move_to_z(above, told.plunge_feed)
+    yield tool.move_to_z(above, milling.plunge_feed)
     turns = math.ceil((above - z) / (2.0 * math.pi * radius * _RAMP) - MIN_LENGTH_MM)
-    circle = Arc(begin, begin, seat.center, told.is_up_cut)
+    circle = Arc(begin, begin, seat.center, milling.is_up_cut)
     for count in range(1, turns + 1):
-        yield tool.move_on_arc(circle, above + (z - above) * count / turns, told.plunge_feed)
-    yield tool.move_on_arc(circle, z, told.plunge_feed)
-    yield tool.move_straight(seat.center, None, told.feed)
+        yield tool.move_on_arc(circle, above + (z - above) * count / turns, milling.plunge_feed)
+    yield tool.move_on_arc(circle, z, milling.plunge_feed)
+    yield tool.move_straight(seat.center, None, milling.feed)
 
 
 def _clear_level(
@@ -308,30 +308,30 @@ def _stud(
 
     ``oversize_mm`` is the oversize of the blank in mm.
     """
-    told = _MillingParameters(tool)
+    milling = _MillingParameters(tool)
     tool.check(
         oversize_mm >= MIN_LENGTH_MM,
         "The blank is not larger than the stud.",
         "Correct the blank dimensions.",
     )
     last = wall.enlarge(tool.radius_mm)
-    rough = last.enlarge(told.side_allowance_mm if told.scope != _FINISH else 0.0)
+    rough = last.enlarge(milling.side_allowance_mm if milling.scope != _FINISH else 0.0)
     outside = last.half_side_u_mm + oversize_mm + tool.radius_mm + tool.read_length_mm(200)
-    yield tool.move_to_z(max(told.safe_z_mm, tool.z_position))
-    if told.surface_z_mm - told.bottom_z_mm < MIN_LENGTH_MM:
+    yield tool.move_to_z(max(milling.safe_z_mm, tool.z_position))
+    if milling.surface_z_mm - milling.bottom_z_mm < MIN_LENGTH_MM:
         return
-    rounds = math.ceil(oversize_mm / told.stepover_mm - MIN_LENGTH_MM)
-    for z in told.compute_levels() if told.scope != _FINISH else ():
+    rounds = math.ceil(oversize_mm / milling.stepover_mm - MIN_LENGTH_MM)
+    for z in milling.compute_levels() if milling.scope != _FINISH else ():
         for at in range(1, rounds + 1):
             each = rough.enlarge(oversize_mm * (1.0 - at / rounds))
-            yield from _approach_level(told, placement, outside, z, at == 1)
-            yield from _around(told, placement, each, told.feed)
-    if told.has_finishing:
-        for z in told.compute_wall_levels():
-            yield from _approach_level(told, placement, outside, z, True)
-            yield from _around(told, placement, last, told.finishing_feed)
-    yield tool.move_to_z(told.clearance_z_mm)
-    yield from out(tool, told.surface_z_mm, told.clearance_z_mm, None)
+            yield from _approach_level(milling, placement, outside, z, at == 1)
+            yield from _around(milling, placement, each, milling.feed)
+    if milling.has_finishing:
+        for z in milling.compute_wall_levels():
+            yield from _approach_level(milling, placement, outside, z, True)
+            yield from _around(milling, placement, last, milling.finishing_feed)
+    yield tool.move_to_z(milling.clearance_z_mm)
+    yield from out(tool, milling.surface_z_mm, milling.clearance_z_mm, None)
 
 
 def _approach_level(
@@ -346,14 +346,14 @@ def _approach_level(
 
 
 def _around(
-    told: _MillingParameters, seat: Placement, ring: RoundedRectangle, feed: float
+    milling: _MillingParameters, seat: Placement, ring: RoundedRectangle, feed: float
 ) -> Iterator[Block]:
-    tool = told.tool
-    side = 1.0 if told.is_up_cut else -1.0  # the direction is opposite to that of a pocket
+    tool = milling.tool
+    side = 1.0 if milling.is_up_cut else -1.0  # the direction is opposite to that of a pocket
     yield tool.move_straight(
         seat.to_program_point(ring.half_side_u_mm + tool.radius_mm, -side * tool.radius_mm), None, feed
     )
-    yield from _mill_ring(told, seat, ring, -tool.radius_mm, feed)
+    yield from _mill_ring(milling, seat, ring, -tool.radius_mm, feed)
 
 
 # --- circular slots: areas with a separate boundary, cleared by the rings of the SL cycles

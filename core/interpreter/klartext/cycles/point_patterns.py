@@ -24,8 +24,8 @@ def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
     """
     found: list[Vector] = []
     for part in node.parts:
-        told = _numbers(state, part)
-        found += [(*at, told.get("Z", 0.0)) for at in _of_a_part(state, part, told)]
+        values = _numbers(state, part)
+        found += [(*at, values.get("Z", 0.0)) for at in _of_a_part(state, part, values)]
     if len(found) > MAX_POINTS:
         text = "The pattern has too many points: {found_count}."
         hint = "The maximum is {most_points} points."
@@ -43,20 +43,20 @@ def _numbers(state: State, part: PatternPart) -> dict[str, float]:
     }
 
 
-def _of_a_part(state: State, part: PatternPart, told: dict[str, float]) -> Iterator[tuple[float, float]]:
-    x, y = told["X"], told["Y"]
+def _of_a_part(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:
+    x, y = values["X"], values["Y"]
     if part.kind == "POS":
         yield x, y
     elif part.kind == "ROW":
-        angle = math.radians(told.get("ROT", 0.0))
-        for at in range(_count(state, part, told["NUM"])):
-            yield x + at * told["D"] * math.cos(angle), y + at * told["D"] * math.sin(angle)
+        angle = math.radians(values.get("ROT", 0.0))
+        for at in range(_count(state, part, values["NUM"])):
+            yield x + at * values["D"] * math.cos(angle), y + at * values["D"] * math.sin(angle)
     elif part.kind in {"PAT", "FRAME"}:
-        yield from _grid(state, part, told)
+        yield from _grid(state, part, values)
     else:
-        count = _count(state, part, told["NUM"])
-        step = told["STEP"] if part.kind == "PITCHCIRC" else 360.0 / count
-        yield from _circle((x, y), told["D"] / 2.0, count, told.get("START", 0.0), step)
+        count = _count(state, part, values["NUM"])
+        step = values["STEP"] if part.kind == "PITCHCIRC" else 360.0 / count
+        yield from _circle((x, y), values["D"] / 2.0, count, values.get("START", 0.0), step)
 
 
 def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:

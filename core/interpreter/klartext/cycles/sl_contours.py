@@ -64,10 +64,10 @@ class ContourCollector(PathRunner):
     @property
     def elements(self) -> tuple[Element, ...]:
         """Return the elements that follow the move to the start of the contour."""
-        behind = self._waiting[self._begun + 1 :]
+        contour_items = self._waiting[self._begun + 1 :]
         return tuple(
             each.planar_element
-            for each in behind
+            for each in contour_items
             if isinstance(each, PathElement) and each.planar_element is not None
         )
 

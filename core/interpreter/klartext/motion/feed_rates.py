@@ -107,12 +107,12 @@ def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float])
     then converted with the distance of the tip from the rotary axes at the start. If the tip is on the axis
     line, F is in degrees/min.
     """
-    way = {name: goal - state.rotary_angles[name] for name, goal in targets.items()}
-    whole = math.hypot(*way.values())
+    travel_deg_by_axis = {name: goal - state.rotary_angles[name] for name, goal in targets.items()}
+    whole = math.hypot(*travel_deg_by_axis.values())
     if not state.is_rotary_feed_at_tip or whole <= POINT_TOLERANCE:
         return feed / 60.0
     begin = {
-        name: state.rotary_angles[name] + way.get(name, 0.0) * _TEST_ANGLE_DEG / whole
+        name: state.rotary_angles[name] + travel_deg_by_axis.get(name, 0.0) * _TEST_ANGLE_DEG / whole
         for name in state.rotary_angles
     }
     there, here = (

@@ -423,12 +423,12 @@ class PathRunner:
             if (word := node.find_word(axis)) is not None:
                 value = word_values.evaluate_coordinate(state, word)
                 goals[axis] = value + (now if word.is_incremental else datum.get(axis, 0.0))
-        ways = [
+        travels_mm = [
             goals.get(name, state.position_by_axis[name]) - state.position_by_axis[name]
             for name in LINEAR_AXES
         ]
-        linear = any(abs(way) > POINT_TOLERANCE for way in ways)
-        feed = reduce_plunging_feed(state, feed, math.hypot(*ways), -ways[2])
+        linear = any(abs(travel_mm) > POINT_TOLERANCE for travel_mm in travels_mm)
+        feed = reduce_plunging_feed(state, feed, math.hypot(*travels_mm), -travels_mm[2])
         rate = None if feed is None else (state.convert_feed_to_mm_s(feed) if linear else feed / 60.0)
         yield state.make_move_block(BlockKind.RAPID if rate is None else BlockKind.FEED, goals, rate)
 
@@ -484,10 +484,10 @@ def _rotary(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict
             value, now = word_values.evaluate_coordinate(state, word), state.position_by_axis[axis.name]
             state.is_table_positioned = state.is_table_positioned or not word.is_incremental
             begin = now - zero[axis.name]
-            way = (
+            travel_deg = (
                 axis.find_travel(begin, value)
                 if state.uses_shorter_rotation
                 else value - axis.displayed_angle(begin)
             )
-            found[axis.name] = now + (value if word.is_incremental else way)
+            found[axis.name] = now + (value if word.is_incremental else travel_deg)
     return found

@@ -232,8 +232,8 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     if made is not None and made.frame != state.kinematics.workpiece_rotation:
         _check_tool_axis(state, node)
     targets = state.kinematics.zero_angles if made is None else made.target_angles
-    way = node.positioning.mode or "STAY"
-    feed = word_values.evaluate_feed(state, node.positioning.feed, node.column) if way != "STAY" else None
+    mode = node.positioning.mode or "STAY"
+    feed = word_values.evaluate_feed(state, node.positioning.feed, node.column) if mode != "STAY" else None
     up = compute_retract_length(state, node.positioning.retract)
     distance = word_values.evaluate_length_mm(state, node.positioning.distance, "DIST")
     _warn_about_shift(state, made)
@@ -242,9 +242,9 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
         state.q_values[q] = 0.0 if axis is None else state.kinematics.displayed_angle(axis, targets[name])
     if up > POINT_TOLERANCE:
         yield make_retract_block(state, up, feed)
-    pivot = _pivot(state, distance) if way == "MOVE" else None
-    goal = state.rotary_angles if way == "STAY" else _goal(state, targets)
-    state.is_table_positioned = state.is_table_positioned or way != "STAY"
+    pivot = _pivot(state, distance) if mode == "MOVE" else None
+    goal = state.rotary_angles if mode == "STAY" else _goal(state, targets)
+    state.is_table_positioned = state.is_table_positioned or mode != "STAY"
     state.set_plane(made)
     yield _swivel(state, goal, feed, pivot, distance)
 
@@ -336,8 +336,8 @@ def _swivel(
     turn = math.hypot(*(goal[name] - at for name, at in start.items()))
     if pivot is None or turn <= POINT_TOLERANCE:
         return state.make_move_block(BlockKind.PLANE, goal, rate)
-    way = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length_mm, turn)
-    return state.make_move_block(BlockKind.PLANE, way.end_positions(), rate, way)
+    pivot_move = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length_mm, turn)
+    return state.make_move_block(BlockKind.PLANE, pivot_move.end_positions(), rate, pivot_move)
 
 
 def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
@@ -366,9 +366,9 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
     first, last = (_parallel(state, state.transformation.to_plane(at)) for at in (element.start, element.end))
     start = state.rotary_angles
     end = start | dict(element.rotary)
-    way = math.dist(first, last)
+    path_length_mm = math.dist(first, last)
     turn = math.hypot(*(end[name] - at for name, at in start.items()))
-    moves = way > POINT_TOLERANCE
+    moves = path_length_mm > POINT_TOLERANCE
     led = PivotMove(
         state.kinematics,
         start,
@@ -376,7 +376,7 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
         first,
         0.0,
         state.tool_length_mm,
-        way if moves else turn,
+        path_length_mm if moves else turn,
         last if moves else None,
     )
     goals = led.end_positions()

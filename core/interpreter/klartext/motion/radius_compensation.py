@@ -111,21 +111,21 @@ class ContourEntry:
 
 def plan_approach_path(state: State, entry: ContourEntry, direction: Point) -> Iterator[PathElement]:
     """Yield the approach to a contour that starts in ``direction`` (a unit vector)."""
-    beside = _offset_point(entry.contour_start, direction, entry.side, entry.radius_mm)
+    offset_start = _offset_point(entry.contour_start, direction, entry.side, entry.radius_mm)
     made = PathElement(entry.start, entry.start, entry.feed, state.line_number, state.text, entry.node.column)
     form = entry.node.function_name.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
     if not entry.node.function_name.startswith("APPR"):
-        yield _straight(made, entry.start, beside)
+        yield _straight(made, entry.start, offset_start)
     elif form in {"LT", "LN"}:
         length = _length(state, entry.node, "LEN")
         back = (-direction[0], -direction[1]) if form == "LT" else _outward_normal(direction, entry.side)
-        before = (beside[0] + back[0] * length, beside[1] + back[1] * length, beside[2])
+        before = (offset_start[0] + back[0] * length, offset_start[1] + back[1] * length, offset_start[2])
         yield _straight(made, entry.start, before)
-        yield _straight(made, before, beside)
+        yield _straight(made, before, offset_start)
     else:
-        arc = _arc_in(state, entry, direction, beside, tangent=form == "LCT")
-        yield _straight(made, entry.start, (*arc.start, beside[2]))
-        yield _round(made, arc, beside[2], beside[2])
+        arc = _arc_in(state, entry, direction, offset_start, tangent=form == "LCT")
+        yield _straight(made, entry.start, (*arc.start, offset_start[2]))
+        yield _round(made, arc, offset_start[2], offset_start[2])
 
 
 def plan_departure_path(
@@ -140,22 +140,22 @@ def plan_departure_path(
     """Yield the departure of DEP from a contour that ends at ``contour_end`` in ``direction`` (a unit
     vector).
     """
-    beside = _offset_point(contour_end, direction, side, radius)
-    made = PathElement(beside, beside, feed, state.line_number, state.text, node.column)
+    start = _offset_point(contour_end, direction, side, radius)
+    made = PathElement(start, start, feed, state.line_number, state.text, node.column)
     form = node.function_name.removeprefix("DEP ").replace("PL", "L")
     end = compute_end_point(state, node, contour_end)
     if form in {"LT", "LN"}:
         length = _length(state, node, "LEN")
         on = direction if form == "LT" else _outward_normal(direction, side)
-        yield _straight(made, beside, (beside[0] + on[0] * length, beside[1] + on[1] * length, end[2]))
+        yield _straight(made, start, (start[0] + on[0] * length, start[1] + on[1] * length, end[2]))
         return
     # A departure is a reversed approach.
     back = ContourEntry(node, end, contour_end, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
     turned = -direction[0], -direction[1]
-    arc = _arc_in(state, back, turned, beside, tangent=form == "LCT").reversed()
-    yield _round(made, arc, beside[2], beside[2])
+    arc = _arc_in(state, back, turned, start, tangent=form == "LCT").reversed()
+    yield _round(made, arc, start[2], start[2])
     if form == "LCT":
-        yield _straight(made, (*arc.end, beside[2]), end)
+        yield _straight(made, (*arc.end, start[2]), end)
 
 
 def _arc_in(

@@ -60,10 +60,10 @@ def _read_table_row(state: State, row: Value, column: int) -> tuple[AxisWord, ..
         raise state.make_error(
             column, DATUM_TABLE_MISSING, text, "Correct the row number, or add the row.", number=number
         )
-    told = ((axis, found[axis]) for axis in (*LINEAR_AXES, *ROTARY_AXES) if axis in found)
+    axis_values = ((axis, found[axis]) for axis in (*LINEAR_AXES, *ROTARY_AXES) if axis in found)
     return tuple(
         AxisWord(axis, Value(value / (state.mm_per_unit if axis in LINEAR_AXES else 1.0)), column=column)
-        for axis, value in told
+        for axis, value in axis_values
     )
 
 

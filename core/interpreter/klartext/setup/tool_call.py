@@ -140,8 +140,8 @@ def find_tool_radius_mm(state: State, tool: int) -> float | None:
 
     The radius comes from TOOL DEF or the tool table.
     """
-    if (told := _defined(state, tool)) is not None:
-        return told[1]
+    if (tool_definition := _defined(state, tool)) is not None:
+        return tool_definition[1]
     offset = state.setup.tools.get(tool)
     return None if offset is None else offset.nose_radius
 

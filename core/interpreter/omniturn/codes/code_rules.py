@@ -27,25 +27,25 @@ _ROUNDING = 1 + 1e-9
 
 
 def refused(
-    statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **told: object
+    statement: Statement, code: CodeEntry, refusal: ErrorTemplate, at: Word | None = None, **values: object
 ) -> ProgramError:
     """Return the error for an error template.
 
     ``told`` contains the values of further placeholders.
     """
-    told = {
+    values = {
         "code": code.name,
         "number": code.name[1:],
         "name": code.name.lstrip("~"),
         "word": "" if at is None else at.text,
         "letter": "" if at is None else at.letter,
-        **told,
+        **values,
     }
     return statement.make_error(
         refusal.location if at is None else at,
         refusal.diagnostic_code,
-        Message(refusal.text, **told),
-        Message(refusal.hint, **told),
+        Message(refusal.text, **values),
+        Message(refusal.hint, **values),
     )
 
 
@@ -86,8 +86,8 @@ def check_value(
     if word is None and not refusal.location:
         refusal = refusal._replace(location=letter)
     most = format_limit(state, rule.maximum) if isinstance(rule.maximum, WordLimit) else ""
-    told = {"letter": letter, "what": rule.description, "value": f"{value or 0.0:g}", "most": most}
-    raise refused(statement, code, refusal, at, **{"word": word.text if word else "", **told})
+    values = {"letter": letter, "what": rule.description, "value": f"{value or 0.0:g}", "most": most}
+    raise refused(statement, code, refusal, at, **{"word": word.text if word else "", **values})
 
 
 def _wrong(state: State, rule: WordRule, word: Word | None, value: float | None) -> ErrorTemplate | None:

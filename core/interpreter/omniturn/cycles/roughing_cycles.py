@@ -241,8 +241,8 @@ def _plunges_at_start(first: Element) -> bool:
 
     ``first`` is in depth and length from the start point.
     """
-    (depth, way), (there, further) = first.start, first.end
-    return there > depth + _SAME and abs(further - way) > _SAME
+    (depth, length), (there, further) = first.start, first.end
+    return there > depth + _SAME and abs(further - length) > _SAME
 
 
 def _passes(

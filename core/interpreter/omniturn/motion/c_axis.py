@@ -114,17 +114,17 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
     rpm = read_c_rpm(state, statement, _entry(state, statement))
     if rpm is not None:
         state.set_modal(state.modal._replace(c_rpm=rpm))
-    way = hypot(state.x - x0, state.z - z0)
-    if way <= _SAME:
+    distance_mm = hypot(state.x - x0, state.z - z0)
+    if distance_mm <= _SAME:
         yield rotate_c_axis(state, statement.line, statement.get_block_text("move"), goal)
         record_c_turn_time(state, statement.line, word.column, abs(goal - c0))
         return
     state.c = goal
     if state.per_rev and state.modal.feed is not None:
-        _check_turns(state, statement, word, way, abs(goal - c0))
+        _check_turns(state, statement, word, distance_mm, abs(goal - c0))
         rpm = copysign(state.modal.c_rpm or 0.0, goal - c0)
     else:
-        check_move_feed(state, statement.line, x0, state.x, way)
+        check_move_feed(state, statement.line, x0, state.x, distance_mm)
         rpm = 0.0
     warn_about_title_rapid(state, statement.line)
     start, text = (x0, z0, c0), statement.get_block_text("move")

@@ -120,9 +120,9 @@ def _compute_positions(state: State, word: FloatArray, at: float, scale: float) 
     """
     named = ~np.isnan(word)
     if not state.absolute:
-        ways = np.where(named, word, 0.0) + 0.0  # -0 as 0
-        way: FloatArray = np.add.accumulate(np.concatenate([[at], ways * scale]))[1:]
-        return way
+        increments = np.where(named, word, 0.0) + 0.0  # -0 as 0
+        positions: FloatArray = np.add.accumulate(np.concatenate([[at], increments * scale]))[1:]
+        return positions
     if named.all():
         return word * scale
     last = np.maximum.accumulate(np.where(named, np.arange(len(word)), -1))

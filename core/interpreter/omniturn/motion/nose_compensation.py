@@ -153,10 +153,10 @@ class _Contour(ContourStage):
             hint = "Write the contour between the approach and the departure."
             raise _refused(self.last_move.block, "comp-empty", text, hint, name=self._mark.name)
         pieces = self._remaining_pieces()
-        way = Line(pieces[-1].element.end, (self.last_move.block.x, self.last_move.block.z))
-        self._check_departure(way)  # This check precedes the output of buffered blocks.
+        departure_path = Line(pieces[-1].element.end, (self.last_move.block.x, self.last_move.block.z))
+        self._check_departure(departure_path)  # This check precedes the output of buffered blocks.
         yield from self._yield_pieces(pieces)
-        yield from self._depart(self.last_move, [way])
+        yield from self._depart(self.last_move, [departure_path])
 
     def _approach_path(self, to: Point) -> Sequence[Element]:
         block, mark, modal = self.approach_move.block, self._mark, self.approach_move.block.modal
@@ -164,12 +164,12 @@ class _Contour(ContourStage):
             block.x0 - mark.secondary_x + modal.secondary_x,
             block.z0 - mark.secondary_z + modal.secondary_z,
         )
-        way = Line((block.x0, block.z0), to)
+        approach_path = Line((block.x0, block.z0), to)
         lead = ApproachOrDeparture(block, False, mark.code, self.nose_radius_mm, self._first)
-        lead.check_path(way, begun, (block.x, block.z), self._log)
-        return [way]
+        lead.check_path(approach_path, begun, (block.x, block.z), self._log)
+        return [approach_path]
 
-    def _check_departure(self, way: Line) -> None:
+    def _check_departure(self, departure_path: Line) -> None:
         block, after = self.last_move.block, self.last_move.following_blocks
         contour = list(reversed(self._recent))
         lead = ApproachOrDeparture(block, True, self._mark.code, self.nose_radius_mm, contour)
@@ -179,7 +179,7 @@ class _Contour(ContourStage):
         if block.kind not in STRAIGHT_KINDS:
             text = "The departure, the move before G40, is not a straight line."
             raise lead.make_error("", text, "Move off the part in a straight line.")
-        lead.check_path(way, way.end, (block.x0, block.z0), self._log)
+        lead.check_path(departure_path, departure_path.end, (block.x0, block.z0), self._log)
 
     def _make_gouge_error(self, block: Block, code_suffix: str) -> ProgramError:
         text = Message(
@@ -329,11 +329,11 @@ def check_approach_move(state: State, block: Block) -> None:
         raise _refused(block, "comp-radius", text, hint, secondary=state.modal.secondary)
     if not radius:
         template = "R of D{secondary} is 0, so G{state} does not compensate."
-        hint, told = (
+        hint, message_values = (
             "Enter the nose radius in the offset table.",
             {"secondary": state.modal.secondary, "state": on},
         )
-        state.log.warn(block.line, 0, "comp-no-radius", template, hint, **told)
+        state.log.warn(block.line, 0, "comp-no-radius", template, hint, **message_values)
 
 
 def get_nose_radius_mm(state: State) -> float:

@@ -88,13 +88,13 @@ class CycleCall:
         names, arguments = CYCLE_PARAMETERS[self.line.called_name], self.line.arguments or ()
         if len(arguments) > len(names):
             text = "{call} accepts {names_count} parameters, but the call passes {arguments_count}."
-            told = {
+            values = {
                 "call": self.line.called_name,
                 "names_count": len(names),
                 "arguments_count": len(arguments),
             }
             hint = Message("Use only these parameters: {names}.", names=", ".join(names))
-            raise self._fault(arguments[len(names)].column, TOO_MANY_ARGUMENTS, Message(text, **told), hint)
+            raise self._fault(arguments[len(names)].column, TOO_MANY_ARGUMENTS, Message(text, **values), hint)
         return {name: each for name, each in zip(names, arguments, strict=False) if each.is_specified}
 
     def _check(self) -> None:

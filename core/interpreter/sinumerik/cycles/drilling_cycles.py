@@ -342,8 +342,8 @@ def _row(cycle: CycleCall, number: int) -> list[tuple[float, float]]:
             "{name} is the distance between the holes and must be greater than 0",
             "Correct the value.",
         )
-    ways = [first + apart * k for k in range(number)]
-    return [(x + way * cos(angle), y + way * sin(angle)) for way in ways]
+    distances_mm = [first + apart * k for k in range(number)]
+    return [(x + distance_mm * cos(angle), y + distance_mm * sin(angle)) for distance_mm in distances_mm]
 
 
 def _circle(cycle: CycleCall, number: int) -> list[tuple[float, float]]:

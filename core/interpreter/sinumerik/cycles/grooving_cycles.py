@@ -115,18 +115,18 @@ def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
         raise cycle.make_call_error(WRONG_GROOVE_WIDTH, text, hint, name=name, other=format_edge_name(other))
     here, there = tools[key], tools[other]
     # A corner farther in the plus direction has the smaller machine position at part zero.
-    way = here.z - there.z
+    corner_offset_mm = here.z - there.z
     text = "{key} and {other} are at the same position, so the tool has no width."
     hint = "Correct the offsets of the two tool corners."
     cycle.require(
-        abs(way) >= _SAME,
+        abs(corner_offset_mm) >= _SAME,
         WRONG_GROOVE_WIDTH,
         text,
         hint,
         key=format_edge_name(key),
         other=format_edge_name(other),
     )
-    return abs(way), way > 0.0
+    return abs(corner_offset_mm), corner_offset_mm > 0.0
 
 
 def run_grooving(cycle: CycleCall) -> Iterator[Block]:

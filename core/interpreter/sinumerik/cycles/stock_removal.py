@@ -274,9 +274,9 @@ class _Plan:
         out, front = self._signs
         boxes = [each.bounding_box for each in self._contour]
         depth = max(b[1] for b in boxes) if out > 0 else min(b[0] for b in boxes)
-        way = max(b[3] for b in boxes) if front > 0 else min(b[2] for b in boxes)
-        (allow_depth, allow_way), left = self._allow, self._left + self._nose
-        return depth + out * (allow_depth + left), way + front * (allow_way + left + self._off)
+        length = max(b[3] for b in boxes) if front > 0 else min(b[2] for b in boxes)
+        (allow_depth, allow_length), left = self._allow, self._left + self._nose
+        return depth + out * (allow_depth + left), length + front * (allow_length + left + self._off)
 
     def _area(self, contour: Sequence[Element], left: float) -> tuple[RoughingArea, ContourFrame]:
         ends = contour[0].start, contour[-1].end
@@ -291,14 +291,14 @@ class _Plan:
     def plan_approach(self) -> list[CycleStep]:
         """Return the steps to the start point, first in depth away from the part and then in length."""
         out, _ = self._signs
-        depth, way = self._start
+        depth, length = self._start
         x, z = self._cycle.x - self._tip[0], self._cycle.z - self._tip[1]
         here = (z, x) if self._kind.is_transverse else (x, z)
         clear = depth + out * self._off
         if out * here[0] > out * clear:
             clear = here[0]
-        return [self._step(CycleMove(clear, here[1], 1.0)), self._step(CycleMove(clear, way, 1.0)),
-                self._step(CycleMove(depth, way, 1.0))]  # fmt: skip
+        return [self._step(CycleMove(clear, here[1], 1.0)), self._step(CycleMove(clear, length, 1.0)),
+                self._step(CycleMove(depth, length, 1.0))]  # fmt: skip
 
     def plan_roughing(self) -> list[CycleStep]:
         """Return the roughing steps.
@@ -348,9 +348,9 @@ class _Plan:
 
         A contour with a recess is not shifted. Its allowance is the larger of the two values.
         """
-        depth, way = self._allow
+        depth, length_allowance = self._allow
         out, front = self._signs
-        if not depth and not way:
+        if not depth and not length_allowance:
             return self._contour, self._left
         flat = [
             (point[0] * out, -point[1] * front) for each in self._contour for point in (each.start, each.end)
@@ -358,8 +358,8 @@ class _Plan:
         rises = all(b[0] >= a[0] - _SAME for a, b in pairwise(flat))
         falls = all(b[0] <= a[0] + _SAME for a, b in pairwise(flat))
         if (rises or falls) and not self._left:
-            return [shift_element(each, out * depth, front * way) for each in self._contour], 0.0
-        return self._contour, max(depth, way, self._left)
+            return [shift_element(each, out * depth, front * length_allowance) for each in self._contour], 0.0
+        return self._contour, max(depth, length_allowance, self._left)
 
     def _fed(
         self, moves: Sequence[CycleMove], feed: float | None, plunge: float | None, *, breaks: bool = False
@@ -384,20 +384,20 @@ class _Plan:
     def _break_chips(self, position: Point, move: CycleMove, feed: float) -> list[CycleStep]:
         """Return a cut that is interrupted by a dwell DT after each distance DAM to break chips."""
         length, seconds = self._cycle.read_size_mm("DAM"), self._cycle.read_number("DT")
-        way = move.z - position[1]
+        travel_mm = move.z - position[1]
         if (
             not length
             or move.rapid_rate_mm_s is not None
             or move.center is not None
-            or abs(way) <= length + _SAME
+            or abs(travel_mm) <= length + _SAME
         ):
             return [self._step(move, feed)]
         steps: list[CycleStep] = []
         text = "{name} would interrupt a pass {count} times, which is too many"
-        count = self._cycle.compute_pass_count(abs(way), length, "DAM", text, "Correct the value.")
+        count = self._cycle.compute_pass_count(abs(travel_mm), length, "DAM", text, "Correct the value.")
         for k in range(1, count + 1):
-            share = min(k * length / abs(way), 1.0)
-            between = CycleMove(position[0] + (move.x - position[0]) * share, position[1] + way * share)
+            share = min(k * length / abs(travel_mm), 1.0)
+            between = CycleMove(position[0] + (move.x - position[0]) * share, position[1] + travel_mm * share)
             steps.append(self._step(between, feed))
             if k < count:
                 steps += make_dwell_steps(seconds)

@@ -231,16 +231,16 @@ def make_tap_block(state: State, statement: Statement) -> Block:
     statement.check(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
     state.tap_lead_mm = pitch
     travel = compute_travel(state, statement)
-    way = travel.z - travel.z0
+    stroke = travel.z - travel.z0
     text = "{code} does not move along Z."
-    statement.check(abs(way) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code)
+    statement.check(abs(stroke) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code)
     rpm = state.modal.rpm
     text = "No spindle speed is programmed for {code}."
     statement.check(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # With G331, a positive lead turns in the direction of M3. With G332, the direction is reversed.
     sense = 1.0 if state.motion is MotionKind.TAP else -1.0
-    turn = sense * abs(way) / pitch * 360.0
+    turn = sense * abs(stroke) / pitch * 360.0
     made = make_travel_block(
         state, statement, travel._replace(c=travel.c0 + turn), BlockKind.FEED, abs(pitch) * rpm / 60.0
     )

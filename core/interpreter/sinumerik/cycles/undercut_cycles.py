@@ -289,19 +289,19 @@ def _cut(
 
     ``clearance`` is the distance of the start point from the surface, in mm.
     """
-    way = _tip_path(
+    tip_path = _tip_path(
         cycle,
         undercut_position,
         _round_corners(make_profile(undercut_position, size), size.corner_radius, _nose(cycle, size)),
     )
     clear = undercut_position.surface_radius + undercut_position.outward_sign * clearance
-    (x0, z0), (_, z1) = way[0].start, way[-1].end
+    (x0, z0), (_, z1) = tip_path[0].start, tip_path[-1].end
     steps = [
         *cycle.make_clearance_steps(clear, undercut_position.outward_sign),
         CycleStep(clear, z0),
         CycleStep(x0, z0, feed),
     ]
-    for each in way:
+    for each in tip_path:
         centre, clockwise = (each.center, each.clockwise) if isinstance(each, Arc) else (None, False)
         steps.append(CycleStep(*each.end, feed, centre, clockwise))
     off = (
@@ -351,7 +351,7 @@ def _tip_path(cycle: CycleCall, undercut_position: UndercutPosition, contour: li
         return contour
     left = left_normal((0.0, -undercut_position.side_sign))[0] * undercut_position.outward_sign
     try:
-        beside = offset_known_contour(contour, edge.nose_radius if left > 0.0 else -edge.nose_radius)
+        offset_pieces = offset_known_contour(contour, edge.nose_radius if left > 0.0 else -edge.nose_radius)
     except GougeError as problem:
         text = "the nose radius {nose_radius} does not fit into this undercut: {why}."
         hint = "Use a tool with a smaller nose radius."
@@ -359,4 +359,4 @@ def _tip_path(cycle: CycleCall, undercut_position: UndercutPosition, contour: li
             NOSE_RADIUS_TOO_LARGE, text, hint, nose_radius=edge.nose_radius, why=problem.reason
         ) from None
     z, x = TIP_DIRECTIONS[edge.quadrant]
-    return [shift_element(each.element, x * edge.nose_radius, z * edge.nose_radius) for each in beside]
+    return [shift_element(each.element, x * edge.nose_radius, z * edge.nose_radius) for each in offset_pieces]

@@ -220,11 +220,11 @@ def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None
             left = state.variables.assign_values(each.name, scope.list_elements(each.name)[0], each.values,
                                         lambda asked: _worth(line, jump, state, asked))  # fmt: skip
             if left:
-                told = Message(
+                text = Message(
                     "array {item} needs {left} more elements for this list.", item=each.name, left=left
                 )
                 raise line.make_error(
-                    jump.column, "array-values", told, "Shorten the list, or enlarge the array."
+                    jump.column, "array-values", text, "Shorten the list, or enlarge the array."
                 )
 
 
@@ -234,7 +234,7 @@ def _sizes(
     """Return the dimensions of an array. Raises ProgramError if a dimension or the size is invalid."""
     sizes = tuple(int(_worth(line, jump, state, size)) for size in each.dimensions)
     if len(sizes) > MAX_DIMENSIONS or min(sizes, default=1) < 1 or prod(sizes) > MAX_ARRAY_SIZE:
-        told = Message(
+        text = Message(
             "{item}{sizes}: an array must have 1 to {largest_array} elements.",
             item=each.name,
             sizes=list(sizes),
@@ -244,7 +244,7 @@ def _sizes(
             "Correct the array sizes; at most {most_dimensions} dimensions are allowed.",
             most_dimensions=MAX_DIMENSIONS,
         )
-        raise line.make_error(jump.column, WRONG_FIRST_INDEX, told, hint)
+        raise line.make_error(jump.column, WRONG_FIRST_INDEX, text, hint)
     return sizes
 
 
@@ -296,8 +296,8 @@ def find_label_index(
     direction, or None.
     """
     places = program.find_label_lines(target)
-    behind = next((place for place in places if place > start_index), None)
+    next_hit = next((place for place in places if place > start_index), None)
     before = next((place for place in reversed(places) if place <= start_index), None)
-    if jump_keyword is ControlKeyword.GOTO_BACK or (jump_keyword is ControlKeyword.GOTO and behind is None):
+    if jump_keyword is ControlKeyword.GOTO_BACK or (jump_keyword is ControlKeyword.GOTO and next_hit is None):
         return before
-    return behind
+    return next_hit

@@ -69,8 +69,8 @@ class AxisTravel(NamedTuple):
 
         ``speeds`` are the maximum speeds of X, Z and C. The slowest axis moves at its maximum speed.
         """
-        ways = (self.x - self.x0, self.z - self.z0, self.c_travel)
-        time = max(abs(way) / speed for way, speed in zip(ways, speeds, strict=True))
+        travels = (self.x - self.x0, self.z - self.z0, self.c_travel)
+        time = max(abs(travel) / speed for travel, speed in zip(travels, speeds, strict=True))
         return (self.length_mm or abs(self.c_travel)) / time if time else min(speeds)
 
 

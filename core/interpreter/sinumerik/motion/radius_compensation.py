@@ -213,9 +213,9 @@ class _Contour(ContourStage):
         both = zip(self.moves, self._elements, strict=True)
         pieces = [piece for move, element in both for piece in self._add_move(move, element)]
         pieces += self._remaining_pieces()
-        beside = list(self._yield_pieces(pieces))
+        contour_blocks = list(self._yield_pieces(pieces))
         out = self._departure_path(departure, pieces[-1].element.end) if departure.moves else []
-        yield from beside
+        yield from contour_blocks
         yield from self._depart(ContourMove(departure), out)
         if not departure.moves:
             yield from self._standing(ContourMove(departure, [departure]))
@@ -262,9 +262,9 @@ class _Contour(ContourStage):
 
         Raises ProgramError if the path cuts the contour.
         """
-        radius, way = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
-        if not radius or not is_gouging(way, end.contour, radius):
-            return [way] if way.length > SAME_POINT_TOLERANCE_MM else []
+        radius, direct_line = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
+        if not radius or not is_gouging(direct_line, end.contour, radius):
+            return [direct_line] if direct_line.length > SAME_POINT_TOLERANCE_MM else []
         text = Message(
             "during the {end}, the nose radius of {radius} mm cuts into the contour.",
             end=end.name,
@@ -286,8 +286,8 @@ class _Contour(ContourStage):
         straight = Line(end.nose_start, around.start)
         if any(min_distance(straight, each) < radius - _CONTACT_TOLERANCE_MM for each in end.contour):
             raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
-        way_round = [straight, *self._corner(end.block, around)]
-        return [element for element in way_round if element.length > SAME_POINT_TOLERANCE_MM]
+        detour = [straight, *self._corner(end.block, around)]
+        return [element for element in detour if element.length > SAME_POINT_TOLERANCE_MM]
 
     def _tangent_arc(self, end: _ContourEnd) -> Arc:
         """Return the arc about the end of the contour that is tangent to the straight approach."""

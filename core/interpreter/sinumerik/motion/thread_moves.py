@@ -88,10 +88,10 @@ def _mean_lead(statement: Statement, travel: AxisTravel, lead: float, growth: fl
 
     Raises ProgramError if the lead decreases to 0.
     """
-    way = abs(travel.z - travel.z0)
+    thread_length_mm = abs(travel.z - travel.z0)
     if not growth:
         return lead, lead
-    square = lead * lead + 2.0 * growth * way
+    square = lead * lead + 2.0 * growth * thread_length_mm
     end = sqrt(square) if square > 0.0 else 0.0
     if end < _MIN_LEAD:
         raise _refused(

@@ -405,8 +405,8 @@ class ActiveTransformation:
         Raises ProgramError if a corner or the compensation is not possible.
         """
         for cut in self._corners.accept(block, corner):
-            for beside in self._compensation.accept(cut):
-                yield from self._to_lathe_blocks(beside)
+            for compensated_block in self._compensation.accept(cut):
+                yield from self._to_lathe_blocks(compensated_block)
 
     def flush(self) -> Iterator[Block]:
         """Yield the buffered blocks if no move follows their corner.
@@ -414,8 +414,8 @@ class ActiveTransformation:
         Raises ProgramError if the corner needs a following move.
         """
         for cut in self._corners.finish():
-            for beside in self._compensation.accept(cut):
-                yield from self._to_lathe_blocks(beside)
+            for compensated_block in self._compensation.accept(cut):
+                yield from self._to_lathe_blocks(compensated_block)
 
     def finish(self) -> Iterator[Block]:
         """Yield the remaining blocks at the end.
@@ -423,8 +423,8 @@ class ActiveTransformation:
         Raises ProgramError if a corner or a contour is unfinished.
         """
         yield from self.flush()
-        for beside in self._compensation.finish():
-            yield from self._to_lathe_blocks(beside)
+        for compensated_block in self._compensation.finish():
+            yield from self._to_lathe_blocks(compensated_block)
 
     def discard(self) -> None:
         """Discard buffered blocks after an error."""
@@ -457,10 +457,10 @@ class ActiveTransformation:
             return
         x, z, c = self._to_lathe(self._at)
         self._theta += turn
-        speed, way = state.setup.limits.max_axis_speeds[2], -degrees(turn)
+        speed, c_turn = state.setup.limits.max_axis_speeds[2], -degrees(turn)
         yield replace(
-            block, kind=BlockKind.ROTATE, x0=x, z0=z, c0=c, x=x, z=z, c=c + way, feed=speed, per_rev=False,
-            rpm=copysign(speed / 6.0, way), **self._zero(block),
+            block, kind=BlockKind.ROTATE, x0=x, z0=z, c0=c, x=x, z=z, c=c + c_turn, feed=speed, per_rev=False,
+            rpm=copysign(speed / 6.0, c_turn), **self._zero(block),
         )  # fmt: skip
 
     def _made(self, block: Block, part: PlaneMove) -> Block:
