@@ -51,7 +51,7 @@ UNHEARD = 0.1  # s after which a driver reports that what it tells is old
 PORTS = ("axes", "spindle", "io")
 FREEZES = {  # what a port goes on telling, and what it reports as unknown then
     "axes": (("sample",), UnknownPart.AXES),
-    "spindle": (("speed", "angle", "fault"), UnknownPart.SPINDLE),
+    "spindle": (("speed", "read_angle", "read_fault"), UnknownPart.SPINDLE),
     "io": (("inputs", "outputs"), UnknownPart.INPUTS),
 }
 

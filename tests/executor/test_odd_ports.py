@@ -20,8 +20,8 @@ BUSY = "G90G94F300\nM03S1000\nM08\nM25\nX1\nG01F20Z-1\nG04F1\nM00\nX0Z0\nM30\n"
 ODD = [ValueError, SystemExit, GeneratorExit, MemoryError, ZeroDivisionError]
 CALLS = {
     "axes": ("now", "horizon", "splice", "demand_at", "sample", "stop", "clear_fault", "enable"),
-    "spindle": ("run", "coast", "speed", "angle", "fault"),
-    "io": ("inputs", "outputs", "write", "safe"),
+    "spindle": ("run_at", "coast", "speed", "read_angle", "read_fault"),
+    "io": ("inputs", "outputs", "write", "switch_to_safe_state"),
     "station": ("snapshot",),
 }
 EACH = [(port, call) for port, calls in CALLS.items() for call in calls]
@@ -88,7 +88,7 @@ def test_estop_with_a_driver_that_breaks_takes_every_other_step(port: str, call:
         rig.sim.machine.press_estop()
         rig.run(4.0)
         outputs = {name for name, lit in rig.sim.ports.io.outputs().items() if lit}
-        if (port, call) not in {("io", "write"), ("io", "safe")}:
+        if (port, call) not in {("io", "write"), ("io", "switch_to_safe_state")}:
             assert outputs <= {"collet"}
         assert rig.sim.machine.get_spindle_rpm() == 0.0
         assert not rig.sim.ports.axes.sample().enabled
@@ -127,7 +127,7 @@ def test_a_driver_that_breaks_in_a_cut_stops_the_machine_or_is_not_needed(
 
 def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_own() -> None:
     rig = OddRig()
-    odd = rig.break_into("io", "safe", ValueError)
+    odd = rig.break_into("io", "switch_to_safe_state", ValueError)
     write = rig.sim.ports.io.write
 
     def stuck(name: str, on: bool) -> None:

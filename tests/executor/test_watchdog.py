@@ -40,7 +40,7 @@ class Ticked:
 
     def __init__(self, executor: Executor) -> None:
         self.executor = executor
-        self.alive = True
+        self.is_alive = True
 
 
 def watched(executor: Executor, halt: Callable[[], None] | None) -> tuple[Watchdog, Ticked]:
@@ -70,7 +70,7 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
     rig, control = cutting(name)
     dog, thread = watched(control.executor, control.executor.halt_function)
     dog.check()
-    thread.alive = not dead
+    thread.is_alive = not dead
     place = control.world.place()[1]
     away(rig, 6.0, dog.check)
     # a second to be sure that it is stuck, what was queued meanwhile, and the ramp
@@ -148,7 +148,7 @@ def test_a_controller_is_held_first_and_then_reset() -> None:
 
     rig.wire.write = noting  # type: ignore[method-assign]
     dog, thread = watched(control.executor, control.executor.halt_function)
-    thread.alive = False
+    thread.is_alive = False
     for _ in range(3 * CHECKS_BETWEEN_HALTS):
         away(rig, 0.1)
         dog.check()
@@ -288,7 +288,7 @@ def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
         released.wait()
 
     dog, thread = watched(control.executor, blocks)
-    thread.alive = False
+    thread.is_alive = False
 
     def look() -> None:
         for _ in range(3 * CHECKS_BETWEEN_HALTS):
@@ -374,7 +374,7 @@ def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
         raise ValueError("no way")
 
     dog, thread = watched(control.executor, broken)
-    thread.alive = False
+    thread.is_alive = False
     for _ in range(20):
         dog.check()
     assert control.shot.alarms[0].code == "control-silent"

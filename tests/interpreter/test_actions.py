@@ -46,7 +46,7 @@ def test_values_of_other_classes_or_with_other_attributes_differ(one: PlainValue
 
 
 def test_a_value_shows_its_attributes() -> None:
-    assert repr(actions.OutputSwitch("m25", True)) == "Output(name='m25', on=True)"
+    assert repr(actions.OutputSwitch("m25", True)) == "OutputSwitch(name='m25', on=True)"
 
 
 def test_a_pattern_finds_the_attributes_in_the_order_of_the_arguments() -> None:

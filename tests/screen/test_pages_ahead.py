@@ -53,7 +53,7 @@ class Asked:
         self.names.append(name)
         return self  # type: ignore[return-value]  # all that is asked of it is ``ahead``
 
-    def ahead(self) -> bool:
+    def prepare_slice(self) -> bool:
         """As a page."""
         self.slices -= 1
         return self.slices > 0
