@@ -85,7 +85,7 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     assert jog.shot.drive_test.completed_test_count == 1
     assert jog.shot.demand[1] == pytest.approx(0.0, abs=1e-9)
     assert jog.desk.desk_control.recordings is not None
-    jog.desk.desk_control.recordings.drain()
+    jog.desk.desk_control.recordings.store_queued_ticks()
 
     def worked_out() -> bool:
         jog.run(0.01)
