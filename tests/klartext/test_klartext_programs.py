@@ -163,7 +163,16 @@ def actions(ran: Ran) -> list[Action]:
 def test_functions_before_and_behind_the_motion() -> None:
     ran = run("L X+1 FMAX M3 M8\nL X+2 FMAX M5 M9")
     kinds = [block.kind if block.action is None else type(block.action).__name__ for block in ran.blocks]
-    wanted = ["ToolChange", "SpindleRun", "Coolant", "rapid", "rapid", "SpindleStop", "Coolant", "ProgramEnd"]
+    wanted = [
+        "ToolChange",
+        "SpindleRun",
+        "CoolantSwitch",
+        "rapid",
+        "rapid",
+        "SpindleStop",
+        "CoolantSwitch",
+        "ProgramEnd",
+    ]
     assert kinds == wanted
 
 

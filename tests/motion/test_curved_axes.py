@@ -274,18 +274,18 @@ class Circle:
     radius: float
     length: float
     seen: bool = True
-    straight: bool = False
+    is_straight: bool = False
 
-    def machine(self, share: FloatArray) -> FloatArray:
+    def machine_positions(self, share: FloatArray) -> FloatArray:
         """X, Z and C at shares of the way."""
         angle = share * self.length / self.radius
         return np.stack([self.radius * np.cos(angle), self.radius * np.sin(angle), 0.0 * angle], axis=1)
 
-    def part(self, points: FloatArray) -> FloatArray:
+    def workpiece_points(self, points: FloatArray) -> FloatArray:
         """The points as the part has them."""
         return points if self.seen else np.zeros_like(points)
 
-    def nearest(self) -> float:
+    def critical_fraction(self) -> float:
         """Where C turns fastest: nowhere, so in the middle."""
         return 0.5
 

@@ -39,7 +39,8 @@ def _short(node: nodes.Node) -> str:
     match node:
         case nodes.BeginBlock() | nodes.EndBlock():
             unit = "INCH" if node.is_inch else "MM"
-            made = _joined(Message("{name} PGM", name=type(node).__name__.upper()), node.name, unit)
+            name = "BEGIN" if isinstance(node, nodes.BeginBlock) else "END"
+            made = _joined(Message("{name} PGM", name=name), node.name, unit)
         case nodes.BlankCorner():
             made = _joined(
                 Message("BLK FORM 0.{part}", part=node.part_number), node.tool_axis, _axes(node.corner)

@@ -94,7 +94,7 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     qtbot.waitUntil(worked_out, timeout=60_000)  # on a worker, whose time is not the machine's
     found = page.model.results
     assert found is not None
-    assert [each.way for each in found.steps] == pytest.approx([SIZE, -SIZE])
+    assert [each.step_size for each in found.step_responses] == pytest.approx([SIZE, -SIZE])
     assert page.model.saved_record.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
     assert (page.model.scope.recording_store.folder / page.model.saved_record).exists()
     kept = page.model.scope.recording_store.read_recording(
