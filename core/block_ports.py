@@ -82,11 +82,11 @@ class BlockController(Protocol):
     )
 
     def prepare_css(self, max_rpm: float) -> None:
-        """Announce the highest rpm that constant surface speed may require, or 0 for a constant spindle
-        speed.
+        """Announce the highest rpm that constant surface speed may require.
 
-        The spindle speed then follows the radius up to this rpm. The function is called before each speed
-        command, so that a driver whose spindle speed has steps can select the range of the steps.
+        ``max_rpm`` is 0 for a constant spindle speed. Otherwise the spindle speed then follows the radius
+        up to this rpm. The method is called ahead of each speed command, so that a driver whose spindle
+        speed has steps can select the range of the steps.
         """
         ...
 

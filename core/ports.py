@@ -158,9 +158,13 @@ class AxisSink(Protocol):
 class Spindle(Protocol):
     """The main spindle. Its speed in rpm is signed; M03 is positive."""
 
-    def run_at(self, rpm: float) -> None: ...
+    def run_at(self, rpm: float) -> None:
+        """Turn the spindle at ``rpm``, signed; 0 stops the spindle."""
+        ...
 
-    def coast(self) -> None: ...
+    def coast(self) -> None:
+        """Remove the torque, so that the spindle coasts to a stop."""
+        ...
 
     def speed(self) -> float:
         """Return the measured, signed speed in rpm."""
@@ -170,7 +174,9 @@ class Spindle(Protocol):
         """Return the time and the revolutions since power-up from the encoder, or None without an encoder."""
         ...
 
-    def read_fault(self) -> str: ...
+    def read_fault(self) -> str:
+        """Return the fault of the spindle drive, or an empty text without a fault."""
+        ...
 
 
 class SpindleCAxis(Protocol):

@@ -33,6 +33,7 @@ class NamedTool(int):
     name: str
 
     def __new__(cls, number: int, name: str) -> NamedTool:
+        """Create the number of a tool or cutting edge together with the name that the program calls."""
         made = super().__new__(cls, number)
         made.name = name
         return made

@@ -252,11 +252,19 @@ class PotSettings(Protocol):
     """Settings of a pot in the machine file: its values at both ends and the input that enables the pot."""
 
     @property
-    def low_value(self) -> float: ...
+    def low_value(self) -> float:
+        """Return the value at the low end of the pot."""
+        ...
+
     @property
-    def high_value(self) -> float: ...
+    def high_value(self) -> float:
+        """Return the value at the high end of the pot."""
+        ...
+
     @property
-    def switch_input(self) -> str: ...
+    def switch_input(self) -> str:
+        """Return the name of the input that enables the pot."""
+        ...
 
 
 def build_station_state(

@@ -54,7 +54,9 @@ class SerialTransport(Protocol):
         """Discard received bytes that have not been read."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Close the serial line."""
+        ...
 
 
 class FlowControlTransport(SerialTransport, Protocol):
@@ -62,8 +64,9 @@ class FlowControlTransport(SerialTransport, Protocol):
 
     @property
     def damaged_count(self) -> int:
-        """Return the number of characters received with a parity or framing error since the line was
-        opened.
+        """Return the number of characters received with a parity or framing error.
+
+        The count starts when the line is opened.
         """
         ...
 

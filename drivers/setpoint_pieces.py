@@ -105,11 +105,10 @@ class PieceQueue:
         return self._pieces
 
     def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
-        """Replace the queue with a straight deceleration of all axes at the same time, and return its end
-        time.
+        """Replace the queue with a straight deceleration, and return its end time.
 
-        This method is for stops without the host, such as an E-stop or a fault. The axes leave their path
-        only by the curvature of the path within the braking distance.
+        All axes decelerate at the same time. This method is for stops without the host, such as an E-stop
+        or a fault. The axes leave their path only by the curvature of the path within the braking distance.
         """
         return self._brake(now, self.commanded_state_at(now), deceleration)
 

@@ -181,8 +181,9 @@ class CamGearing:
         return SetpointQueue(self._slides.names, self._standing, 0.0, per_turn)
 
     def is_same_cam(self, cam: Cam) -> bool:
-        """Return whether a cam counts from the same index pulse and in the same direction as the present
-        cam.
+        """Return whether a cam has the same reference as the present cam.
+
+        The cams must count from the same index pulse and in the same direction.
         """
         return (cam.start_revolutions, cam.sign) == (self._cam.start_revolutions, self._cam.sign)
 
@@ -217,8 +218,9 @@ class CamGearing:
         return self._queue.commanded_state_at(math.inf)[0]
 
     def is_still_at(self, t: float) -> bool:
-        """Return whether all axes will still be at their rest position at time ``t`` at the present spindle
-        speed.
+        """Return whether all axes will still be at their rest position at time ``t``.
+
+        The prediction assumes the present spindle speed.
         """
         return self.predict_motion(t)[0] == self._standing
 
@@ -398,10 +400,9 @@ class GearedQueue(SetpointQueue):
         self._gearing = None
 
     def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
-        """Stop following the spindle, brake all axes on a straight line, and return the end time in
-        seconds.
+        """Stop following the spindle, and brake all axes on a straight line.
 
-        ``deceleration`` is in mm/s² (degrees/s² for C).
+        Returns the end time in seconds. ``deceleration`` is in mm/s² (degrees/s² for C).
         """
         state = self.commanded_state_at(now)
         if self._gearing is not None:

@@ -226,8 +226,9 @@ class AutomaticPage(Page):
             self.host.open_page(page_table.EDITOR)
 
     def show_file_prompt(self) -> None:
-        """Show the prompt ``FILE TO BE PROCESSED``, or open the program list if the prompt is already
-        shown.
+        """Show the prompt ``FILE TO BE PROCESSED``, or open the program list.
+
+        The program list opens if the prompt is already shown.
         """
         if self.file_prompt.isVisible():
             self.host.open_page(page_table.PROGRAMS)

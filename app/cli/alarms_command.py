@@ -1,5 +1,6 @@
-"""The command ``turndesk alarms``, which lists every alarm, hold and stop with number, likely causes and
-remedy.
+"""The command ``turndesk alarms``, which lists every alarm, hold and stop.
+
+Each entry has a number, the likely causes and the remedy.
 """
 
 from __future__ import annotations

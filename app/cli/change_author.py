@@ -96,8 +96,9 @@ def _needs(act: ProtectedChange) -> str:
 
 
 def _access_remedy(people: UserList, needed: AccessLevel) -> str:
-    """Return a text that names the users with a sufficient level, or explains how to turn access levels
-    off.
+    """Return a text that names the users with a sufficient access level.
+
+    If no such user has a PIN, the text explains how to turn access levels off.
     """
     able = [row.name for row in people.rows if row.level >= needed and row.has_pin]
     if not able:

@@ -1,8 +1,8 @@
-"""Argument parser of ``turndesk`` that accepts each option only once, only in full, and only if the command
-uses it.
+"""Argument parser of ``turndesk``, which accepts each option only once and only in full.
 
-Screen options may be written before a command, as in ``turndesk --machine FILE prove …``. They then have
-the same effect as after the command, or are rejected if the command does not have the option.
+The parser accepts an option only if the command uses it. Screen options may be written ahead of a command,
+as in ``turndesk --machine FILE prove …``. They then have the same effect as after the command, or are
+rejected if the command does not have the option.
 """
 
 from __future__ import annotations
@@ -213,10 +213,10 @@ def is_for_screen(argv: Sequence[str]) -> bool:
 
 
 def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
-    """Return the arguments with ``--program`` inserted before the first word if it is a file and not a
-    command.
+    """Return the arguments with ``--program`` inserted ahead of a program file.
 
-    ``commands`` are the names of all commands. A command takes precedence over a file of the same name.
+    The option is inserted if the first word is a file and not a command. ``commands`` are the names of all
+    commands. A command takes precedence over a file of the same name.
     """
     value_of = ""
     for index, word in enumerate(argv):
@@ -230,8 +230,9 @@ def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Seque
 
 
 def with_demo_first(argv: Sequence[str]) -> Sequence[str]:
-    """Return the arguments with ``--demo`` moved before the command, where the screen's parser reads the
-    option.
+    """Return the arguments with ``--demo`` moved ahead of the command.
+
+    The screen's parser reads the option at this position.
     """
     return ["--demo", *(word for word in argv if word != "--demo")] if "--demo" in argv else argv
 

@@ -396,8 +396,9 @@ def simulate_devices(file: str) -> int:
 
 
 def _line_reader() -> Callable[[], Iterable[str]]:
-    """Return a function that reads lines from standard input, or returns () if standard input is not
-    available.
+    """Return a function that reads lines from standard input.
+
+    If standard input is not available, the function returns ().
     """
     from app.compose.backends.simulated_devices import LineReader
 

@@ -1,5 +1,6 @@
-"""The command ``turndesk scope FILE``, which prints the contents of a scope record and writes its samples
-as CSV.
+"""The command ``turndesk scope FILE``, which prints the contents of a scope record.
+
+The command also writes the samples of the record as CSV.
 """
 
 from __future__ import annotations

@@ -271,8 +271,9 @@ def _format_received(progress: TransferProgress) -> str:
 
 
 def _tell(last_reason: str, progress: TransferProgress) -> str:
-    """Report received data that is not a program, once for each reason, and return the last reported
-    reason.
+    """Report received data that is not a program, and return the last reported reason.
+
+    Each reason is reported once.
     """
     if not progress.received_text or last_reason == progress.wait_reason:
         return last_reason

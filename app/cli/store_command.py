@@ -1,5 +1,6 @@
-"""The command ``turndesk store`` for backup, restore, export, import, upgrade and verification of the
-store.
+"""The command ``turndesk store``, which manages the store.
+
+The command performs backup, restore, export, import, upgrade and verification of the store.
 """
 
 from __future__ import annotations

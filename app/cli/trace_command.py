@@ -1,5 +1,6 @@
-"""The command ``turndesk trace FILE --out FILE.csv``, which writes the time-stamped setpoints for the
-drives.
+"""The command ``turndesk trace FILE --out FILE.csv``, which writes the setpoints for the drives.
+
+The setpoints have time stamps.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""Assembly of the operator screen's model with all its pages, for a control in this process or another
-process.
+"""Assembly of the operator screen's model with all its pages.
+
+The control runs in this process or in another process.
 """
 
 from __future__ import annotations
@@ -66,6 +67,11 @@ def create_desk_parts(
     journal: Journal | None,
     records: Path | None,
 ) -> tuple[Desk, Executor, Recorder]:
+    """Create the operator screen's model, its executor and its recorder, all in this process.
+
+    ``records`` is the folder of the scope records, or None if no records are written to files. Without a
+    ``journal``, interruptions are not saved. Raises CommandError if the machine cannot be connected.
+    """
     connected = _connected(machine, clock)
     recorder = Recorder(list_recorded_signals(machine, connected.ports), records)
     events = EventDistributor(clock, journal, recorder.assign_record_name)

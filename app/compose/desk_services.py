@@ -1,5 +1,6 @@
-"""Services of the operator screen, which are supervised threads, status file, daily backup and shop
-network.
+"""Services of the operator screen.
+
+The services are supervised threads, the status file, the daily backup and the shop network.
 """
 
 from __future__ import annotations

@@ -117,10 +117,10 @@ class OptionalFeature:
         """Extend ``model``, which belongs to a required feature, when it is created."""
 
     def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
-        """Start the threads of this feature, and return the function that ends them, or None without
-        threads.
+        """Start the threads of this feature, and return the function that ends them.
 
-        ``report`` shows the reason why the feature cannot run on the prompt line and in the event log.
+        The result is None if the feature has no threads. If the feature cannot run, ``report`` shows the
+        reason on the prompt line and in the event log.
         """
 
     def start_headless(
@@ -200,8 +200,9 @@ def _modules(words_of: Callable[[OptionalFeature], Iterable[str]]) -> Mapping[st
 
 
 def find_worker_class() -> str:
-    """Return the dotted name of the class of workers on other computers, or an empty text without such a
-    class.
+    """Return the dotted name of the class of workers on other computers.
+
+    The name is empty if such a class does not exist.
     """
     return next((extra.worker_class_name for extra in extras().values() if extra.worker_class_name), "")
 

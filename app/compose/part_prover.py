@@ -60,8 +60,9 @@ class PartProver:
     def read_setting(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
-        """Return the specified stock, tools and clamping, and a finding if the specified stock cannot be
-        used.
+        """Return the specified stock, tools and clamping, and a finding or None.
+
+        The finding reports that the specified stock cannot be used.
         """
         from app.compose.part_data import apply_stored_clamping, read_known_part
         from app.compose.specified_stock import StockContext, read_stock
@@ -138,8 +139,10 @@ def _unusable(why: str) -> Diagnostic:
 
 
 def _assign_severity(findings: Iterable[Diagnostic], report: PartReport | None) -> PartProof:
-    """Return the proof with all findings, including the texts of findings that are announced before a
-    start.
+    """Return the proof with all findings.
+
+    The proof also contains the texts of the findings that are announced when the operator starts the
+    program.
     """
     findings = tuple(findings)
     warned = [each for each in findings if _is_announced(each)]

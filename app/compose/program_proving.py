@@ -1,5 +1,6 @@
-"""Proving of programs, MDI lines and restarts on this machine, and of the effect of other offsets on a
-path.
+"""Proving of programs, MDI lines and restarts on this machine.
+
+The module also proves the effect of other offsets on a path.
 """
 
 from __future__ import annotations
@@ -228,8 +229,9 @@ def read_checkpoint(snapshot: Snapshot) -> Checkpoint:
 
 
 def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
-    """Return a function that proves an MDI line like a program, starting at the current position of the
-    axes.
+    """Return a function that proves an MDI line like a program.
+
+    The line starts at the current position of the axes.
     """
 
     def prove_line(text: str, snapshot: Snapshot, watch: ProgressCallback) -> tuple[Job, ProvedJob]:

@@ -1,5 +1,6 @@
-"""Reading of the specified stock, which is a bar, a tube, a profile from a file, or the part of another
-program.
+"""Reading of the specified stock.
+
+The stock is a bar, a tube, a profile from a file, or the part of another program.
 """
 
 from __future__ import annotations

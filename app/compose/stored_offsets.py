@@ -160,10 +160,10 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
 
 
 def create_offset_book(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
-    """Return the offsets for the screen, either those of the journal's store or the read-only offsets of a
-    file.
+    """Return the offsets for the screen.
 
-    Raises CommandError if the file has errors.
+    They are the offsets of the journal's store, or the read-only offsets of a file. Raises CommandError if
+    the file has errors.
     """
     if journal is not None and offsets is read_stored_offsets:
         return journal.book()

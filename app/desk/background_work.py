@@ -92,10 +92,9 @@ class WorkRequest:
         self.worker.progress = int(reached)
 
     def publish(self, deliver: Callable[[], None]) -> None:
-        """Call ``deliver`` on the worker with an intermediate result, and block newer requests during the
-        call.
+        """Call ``deliver`` on the worker with an intermediate result.
 
-        Raises AbandonedError if the result is no longer needed.
+        Newer requests are blocked during the call. Raises AbandonedError if the result is no longer needed.
         """
         with self.worker.lock:
             if not self.is_wanted:
@@ -203,10 +202,10 @@ class LatestRequestWorker:
             self.poll()
 
     def close(self) -> None:
-        """End the thread after canceling requests and finishing queued work, whose results are not
-        delivered.
+        """End the thread after canceling requests and finishing queued work.
 
-        Work that takes longer than ``CLOSE_TIMEOUT_S`` seconds continues on the daemon thread.
+        The results of this work are not delivered. Work that takes longer than ``CLOSE_TIMEOUT_S`` seconds
+        continues on the daemon thread.
         """
         with self.lock:
             self._closing = True

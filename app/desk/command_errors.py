@@ -13,10 +13,10 @@ EXIT_INTERRUPTED = 130  # Status that a shell reports for Ctrl+C.
 
 
 class CommandError(CodedError):
-    """Error that ends a command, for example because of wrong usage, an unreadable file or an invalid
-    machine file.
+    """Error that ends a command.
 
-    The command then exits with status 2.
+    Examples of causes are wrong usage, an unreadable file and an invalid machine file. The command exits
+    with status 2.
     """
 
 

@@ -234,8 +234,9 @@ class Desk:
             self.say(Message("NOT SAVED: {error}", error=error))
 
     def select_next_readout(self) -> None:
-        """Switch the large position display to the next of position, distance to go, and distance from
-        home.
+        """Switch the large position display to the next kind of readout.
+
+        The kinds are position, distance to go, and distance from home.
         """
         self.apply_setting("readout", self.readout_kind.next_kind.value)
 
@@ -275,8 +276,9 @@ class Desk:
     # --- every frame ---------------------------------------------------------------------------------
 
     def update(self) -> tuple[Snapshot, MachineStatus, LoadedProgram]:
-        """Update the models once per frame, and return the snapshot, the machine status and the loaded
-        program.
+        """Update the models, and return the snapshot, the machine status and the loaded program.
+
+        This method is called once per frame.
         """
         self.station_controls.advance_pots()
         snapshot = self.read_snapshot()
@@ -312,8 +314,9 @@ class Desk:
             self.try_save(partial(self.program_runs.update_first_job, snapshot, loaded))
 
     def find_first_move_refusal(self, snapshot: Snapshot) -> str:
-        """Return why the first move prevents a start of the program, or an empty text if the first move is
-        clear.
+        """Return the reason why the first move prevents a start of the program.
+
+        The text is empty if the first move is clear.
         """
         if self.start_watch is None or snapshot.state is not MachineState.IDLE:
             return ""
@@ -443,7 +446,8 @@ class Desk:
 
     @property
     def was_question_read(self) -> bool:
-        """Return whether the operator had enough time to read the open question before the current key
-        press.
+        """Return whether the operator had enough time to read the open question.
+
+        The time ends at the current key press.
         """
         return self.prompt_answers.was_read(self.station_controls.at())

@@ -18,25 +18,41 @@ TWO_HAND_WINDOW_S = 0.5  # Seconds within which the second palm button must foll
 class StationPanel(Protocol):
     """Interface of the simulated station. The station decides whether both palm buttons start a cycle."""
 
-    def press_left(self) -> None: ...
+    def press_left(self) -> None:
+        """Press the left palm button."""
+        ...
 
-    def release_left(self) -> None: ...
+    def release_left(self) -> None:
+        """Release the left palm button."""
+        ...
 
-    def press_right(self) -> None: ...
+    def press_right(self) -> None:
+        """Press the right palm button."""
+        ...
 
-    def release_right(self) -> None: ...
+    def release_right(self) -> None:
+        """Release the right palm button."""
+        ...
 
-    def press_hold(self) -> None: ...
+    def press_hold(self) -> None:
+        """Press the feed hold button."""
+        ...
 
-    def release_hold(self) -> None: ...
+    def release_hold(self) -> None:
+        """Release the feed hold button."""
+        ...
 
-    def press_estop(self) -> None: ...
+    def press_estop(self) -> None:
+        """Press the on-screen E-stop button."""
+        ...
 
     def release_estop(self) -> None:
         """Release the E-stop button by twisting it."""
         ...
 
-    def set_spindle_auto(self, is_auto: bool) -> None: ...
+    def set_spindle_auto(self, is_auto: bool) -> None:
+        """Turn the spindle switch to AUTO if ``is_auto`` is true, and otherwise to OFF."""
+        ...
 
     def set_spindle_pot(self, fraction: float) -> None:
         """Turn the spindle override pot to a fraction of its range, 0 to 1."""
@@ -66,8 +82,9 @@ class PalmButtons:
     is_pair_invalid: bool = False
 
     def press(self, side: str, time_s: float) -> bool:
-        """Record a press, and return whether both buttons are now pressed and were pressed within the time
-        limit.
+        """Record a press, and return whether both buttons are now pressed.
+
+        The result is False if the buttons were not pressed within the time limit.
         """
         if side in self.press_times:
             return False
@@ -80,8 +97,9 @@ class PalmButtons:
         return not self.is_pair_invalid
 
     def release(self, side: str) -> bool:
-        """Record a release, and return whether the button was released before the other button was pressed
-        in time.
+        """Record a release, and return True if the other button was not pressed in time.
+
+        The result is False if this button was not pressed.
         """
         if self.press_times.pop(side, None) is None:
             return False
@@ -243,8 +261,9 @@ class StationControls:
             (station.press_left if side == "left" else station.press_right)()
 
     def release_all(self) -> None:
-        """Release all buttons, because the window has lost the keyboard focus and receives no release
-        events.
+        """Release all buttons when the window has lost the keyboard focus.
+
+        The window then receives no release events.
         """
         self.latched = ""
         for side in tuple(self.palms.press_times):

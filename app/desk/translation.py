@@ -50,8 +50,9 @@ _DATA, _END = "\u2068", "\u2069"  # Unicode's isolate characters, which are not 
 
 
 def mark_untranslated(text: str) -> str:
-    """Return a user text, such as a remark or a name, with a mark that prevents ``tr`` from translating the
-    text.
+    """Return a user text with a mark that prevents ``tr`` from translating the text.
+
+    A remark or a name is such a text.
     """
     return f"{_DATA}{text}{_END}" if text else ""
 
@@ -85,8 +86,9 @@ def _fill_message(message: Message, translate: Translate) -> str:
 
 
 def _is_untranslatable(name: str, value: MessageValue, of_program: bool) -> bool:
-    """Return whether a value must not be translated because it is a number, a name, or a word of the
-    program.
+    """Return whether a value must not be translated.
+
+    Such a value is a number, a name, or a word of the program.
     """
     if isinstance(value, Message):
         return False

@@ -159,6 +159,7 @@ class CodeStrip(Panel):
         self._press = press
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the current code with its meaning, or the word CODES if no code is shown."""
         self.add_target(self.find_full_area(), self._press)
         box = self.find_full_area().adjusted(1.2 * self.theme.u, 0.3 * self.theme.u, -0.6 * self.theme.u, 0)
         if self.entry is None:

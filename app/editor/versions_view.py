@@ -58,6 +58,7 @@ class VersionList(RowPanel):
         self._shown = now
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the versions around the selected version, and the comparison of the selected version."""
         u, history = self.theme.u, self._history
         high = self.theme.find_row_height(VERSION_ROW_HEIGHT, 9.0, is_touchable=True)
         rows = max(1, int((self.height() - 4.0 * u) / high))

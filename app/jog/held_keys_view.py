@@ -129,15 +129,23 @@ class HeldKeysModel(PageModel, Protocol):
     """
 
     @property
-    def held_jog(self) -> HeldJog: ...
+    def held_jog(self) -> HeldJog:
+        """Return the jog that runs while a key or touch is held down."""
+        ...
 
     @property
-    def directions(self) -> Sequence[JogDirection]: ...
+    def directions(self) -> Sequence[JogDirection]:
+        """Return the jog directions of the page, each with its key."""
+        ...
 
     @property
-    def is_active(self) -> bool: ...
+    def is_active(self) -> bool:
+        """Return whether a key is held down or the handwheel is selected."""
+        ...
 
-    def release_all(self) -> None: ...
+    def release_all(self) -> None:
+        """Stop the motion, because the page no longer receives key releases."""
+        ...
 
 
 class HeldKeysPage(ModelPage):

@@ -193,6 +193,7 @@ class JogPad(JogCross):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the rows of touch keys, the arrow keys and the homing keys, and set their touch targets."""
         self.controls.clear()
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
         u = self.theme.u

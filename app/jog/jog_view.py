@@ -76,6 +76,10 @@ class ManualPanel(TouchPanel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the keys for spindle, coolant and collet, and set their touch targets.
+
+        The keys for coolant and collet are drawn only if the machine has these functions.
+        """
         self.controls.clear()
         self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
         u, room, hand = self.theme.u, self.inside(), self._model.manual_functions
@@ -168,6 +172,7 @@ class ManualStrip(TouchPanel):
         self._shown = (skim.cut_step, skim.measured_axis, hand.is_shown, hand.is_spindle_turning(snapshot))
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the keys for manual functions and skim cut, with the change text or the footer above them."""
         self.controls.clear()
         u = self.theme.u
         painter.fill_rect(self.find_full_area(), "ground")

@@ -91,6 +91,7 @@ class ToolSettingPanel(Panel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the tool setting panel in mm or inches, and make each field a touch target."""
         unit = tr("MM") if self._mode.is_metric else tr("INCH")
         self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
         u = self.theme.u
@@ -249,6 +250,7 @@ class MillJogPanel(Panel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the tool, the preset, the tilted plane and the axes of the mill, in mm."""
         self.frame(painter, tr("TOOL, PRESET, TILTED PLANE  ·  MM"))
         u, room = self.theme.u, self.inside()
         row = QRectF(room.x(), room.y(), room.width(), _ROW_HEIGHT * u - 0.6 * u)

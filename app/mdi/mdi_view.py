@@ -58,6 +58,10 @@ class MdiLinePanel(Panel):
         return next(errors, self.diagnostics[0] if self.diagnostics else None)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the input line with its cursor and its first finding.
+
+        The frame is highlighted if the line is ready for Cycle Start.
+        """
         look, u = self.theme, self.theme.u
         title = tr("LINE  ·  READY FOR CYCLE START") if self.is_ready else tr("LINE")
         self.frame(painter, title, "lit" if self.is_ready else "frame", 0.3 if self.is_ready else 0.16)
@@ -116,6 +120,7 @@ class MdiHistoryPanel(RowPanel):
         self._placed: object = None
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the history of lines, highlight the recalled line and mark rejected lines."""
         self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
         u, room, count = self.theme.u, self.inside(), len(self.history_lines)
         fits, refused = self.count_fitting_rows(room, ROW_HEIGHT * u, count), dict(self.error_columns)
@@ -161,6 +166,7 @@ class ModalPanel(Panel):
     rows: RedrawingAttribute[tuple[ModalRow, ...]] = RedrawingAttribute(())
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw a label and a value for each row of the modal state."""
         self.frame(painter, tr("MODAL STATE"))
         u, room = self.theme.u, self.inside()
         high = min(2.7 * u, room.height() / max(1, len(self.rows)))

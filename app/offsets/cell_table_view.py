@@ -54,6 +54,7 @@ class CellPanel(RowPanel):
         self._wide = [_COLUMN_SHARES.get(name, 1.0) for name in cell_table.columns]
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the heading, the column heads and the visible rows of the table."""
         self.frame(painter, self._heading)
         room, u, count = self.inside(), self.theme.u, len(self._numbers)
         least = self.theme.find_row_height(HIGH, 10.0, is_touchable=True) + 0.5 * u

@@ -79,6 +79,7 @@ class ChangeHistoryList(RowPanel):
         self.hide()
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the visible changes, or a message that no offset has been changed."""
         u, room = self.theme.u, self.inside()
         if not self.history_entries:
             head = QRectF(room.x(), room.y(), room.width(), 3 * u)

@@ -70,6 +70,10 @@ class SecondaryOffsetTable(Panel):
         )
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw eight enlarged offsets if they are selected, or otherwise all secondary offsets.
+
+        Values are in mm or inches, and X is stored as a radius.
+        """
         unit = tr("MM") if self._mode.is_metric else tr("INCH")
         self.frame(painter, join_messages("  ·  ", (tr("SECONDARY OFFSETS  ·  X STORED AS A RADIUS"), unit)))
         room = self.inside().adjusted(-0.6 * self.theme.u, 0, 0.6 * self.theme.u, 0.4 * self.theme.u)

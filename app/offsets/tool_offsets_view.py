@@ -68,6 +68,11 @@ class ToolOffsetPanel(RowPanel):
         self._model.handle_key(key[rows > 0])
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the column heads and the visible rows of the tool offsets.
+
+        The title shows the unit, whether X is a diameter or a radius, and the master tool of relative
+        values.
+        """
         u, model = self.theme.u, self._model
         mode = model.value_mode
         x = tr("X IS A DIAMETER") if mode.is_diameter else tr("X IS A RADIUS")
@@ -225,6 +230,7 @@ class ToolShapePanel(Panel):
         self._shown = (model.tool_number, model.shape_row, model.tool_row, model.name, model.value_mode, last)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the fields of the tool shape in two columns, and the drawing of the tool on the right."""
         u, model = self.theme.u, self._model
         unit = tr("MM") if model.value_mode.is_metric else tr("INCH")
         title: str = join_messages(

@@ -172,6 +172,10 @@ class FilePrompt(RowPanel):
         self._mark(self._row + rows)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the prompt with the matching programs, or a message if the program was not found.
+
+        The last row shows the keys and the number of matching programs.
+        """
         u = self.theme.u
         self.frame(painter, self.title, "accent", 0.3)
         foot = QRectF(1.6 * u, self.height() - 3.2 * u, self.width() - 3.2 * u, 2.6 * u)

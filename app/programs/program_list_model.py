@@ -1,5 +1,6 @@
-"""Model of the program list without Qt, with search, sorting, preview, loading, file commands
-and transfer.
+"""Model of the program list without Qt.
+
+The model searches, sorts, previews, loads and transfers programs, and executes file commands.
 """
 
 from __future__ import annotations

@@ -52,6 +52,10 @@ class ProgramDetailPanel(Panel):
     part_thumbnail: RedrawingAttribute[Thumbnail | None] = RedrawingAttribute(None)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the preview of the part and the details of the program.
+
+        If the preview has an error, the details include the error.
+        """
         u = self.theme.u
         rows = list(make_details(self.program)) if self.program is not None else []
         preview_row_count = len(rows) - FULL_WIDTH_ROWS

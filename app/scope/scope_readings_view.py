@@ -91,6 +91,10 @@ class ScopeReadings(RowPanel):
         return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.u)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw one row per curve, or a message if no curve is selected.
+
+        If the cursors are shown, the time between them is drawn above the rows.
+        """
         room, shown = self.inside(), self.scope_model.shown
         u = self.theme.u
         if self.scope_model.cursors.shown:

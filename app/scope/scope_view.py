@@ -53,6 +53,7 @@ class ScopeHeadLine(Panel):
     head_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the texts of the header line, with a warning in a different color."""
         u = self.theme.u
         left, right, warn = self.head_texts
         room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
@@ -217,6 +218,10 @@ class ScopePage(ListPage):
         return self.make_labels({}, self.function_keys())
 
     def function_keys(self) -> Mapping[str, FunctionKey]:
+        """Return the function keys of the scope, or of the list of records if the list is open.
+
+        F8 is included only if the ANALYSES page exists.
+        """
         scope, open_ = self.scope_model, self.scope_tables.open_table
         if scope.side_panel is SidePanel.FILES:
             pictured = {

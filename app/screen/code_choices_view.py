@@ -89,6 +89,7 @@ class CodeChoiceList(RowPanel):
             painter.draw_text_line(box.adjusted(letters, 0, 0, 0), what, 1.7, "text", bold=False)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the code choices, with the words and an example of the selected choice."""
         u, shown = self.theme.u, self._help
         self.frame(painter, shown.title)
         if shown.selected_entry is None:

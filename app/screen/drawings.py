@@ -65,6 +65,10 @@ class SketchPanel(Panel):
         self._scale, self._middle, self._centre = 1.0, (0.0, 0.0), QPointF()
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the outlines of the sketch and the dimensions that have a value.
+
+        The dimension of the selected field is highlighted, and dimensions with errors have the alarm color.
+        """
         drawn, labels, here, wrong = self.displayed
         if not drawn.outlines:
             return

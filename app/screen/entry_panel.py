@@ -76,6 +76,7 @@ class LetterPad(Panel):
         self.setFocusProxy(text_field)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the keys of the touch keyboard, which fill the width of each row."""
         gap = 0.6 * self.theme.u
         high = (self.height() + gap) / len(self._rows)
         for row, keys in enumerate(self._rows):
@@ -126,6 +127,7 @@ class EntryPanel(Panel):
     entry_texts = RedrawingAttribute(EntryTexts())
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the subject, the change text, the input field and the footer."""
         u, asked = self.theme.u, self.entry_texts
         room = self.find_full_area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
         painter.draw_text_line(

@@ -87,6 +87,7 @@ class ProgramListing(RowPanel):
         super().scroll_by(rows)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the visible program lines, and scroll to the current line if the listing follows the run."""
         u = self.theme.u
         count = len(self._lines)
         title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"

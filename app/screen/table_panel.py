@@ -243,6 +243,7 @@ class TablePanel(RowPanel):
         return () if self.table.question and self._fit(len(notes)) < 1 else notes
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the head, the visible rows and the foot of the table, and make each row a touch target."""
         u, sheet = self.theme.u, self.table
         self.frame(painter, sheet.title)
         room, fits, high = self.inside(), self._count_fitting(), self._high
@@ -339,9 +340,13 @@ class ListModel(PageModel, Protocol):
     ``handle_escape`` returns False if only the list is shown.
     """
 
-    def prompt_text(self) -> str: ...
+    def prompt_text(self) -> str:
+        """Return the text that the prompt line shows for the page."""
+        ...
 
-    def on_close(self) -> None: ...
+    def on_close(self) -> None:
+        """Cancel unfinished entries and questions when the page closes."""
+        ...
 
 
 class ListPage(ModelPage):

@@ -65,6 +65,7 @@ class RestartStatePanel(Panel):
         self._press = press
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the state rows and the keys for the passes, or the reason why the line is rejected."""
         shown = self.content
         self.frame(
             painter,

@@ -62,6 +62,7 @@ class SearchEntryPanel(Panel):
         self._press = press
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the question ``LINE OR TEXT?`` and the entered text."""
         self.add_target(self.find_full_area(), self._press)
         u = self.theme.u
         room = self.find_full_area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
@@ -99,6 +100,10 @@ class StartedFunctionsPanel(Panel):
         self.error_text, self.is_confirmed = error_text, is_confirmed
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the functions that will start, the options, and the error text.
+
+        The frame is highlighted if the functions are confirmed.
+        """
         title = tr("CONFIRMED: READY FOR CYCLE START") if self.is_confirmed else tr("WILL START")
         self.frame(
             painter, title, "lit" if self.is_confirmed else "frame", 0.3 if self.is_confirmed else 0.16

@@ -51,6 +51,7 @@ class FunctionList(RowPanel):
         return max(ROW * self.theme.u, FINGERTIP_PX + GAP * self.theme.u)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the name and the use of each visible function, and make each row a touch target."""
         functions, high, room = self.model.functions, self._high, self.inside()
         fits = self.count_fitting_rows(room, high, len(functions))
         room = self.draw_scroll_keys(painter, room, fits, len(functions), self.model.at)

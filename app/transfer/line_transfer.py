@@ -26,19 +26,32 @@ class TransferProgress(Protocol):
     """
 
     @property
-    def done_bytes(self) -> int: ...
+    def done_bytes(self) -> int:
+        """Return the number of bytes that have been transferred."""
+        ...
 
     @property
-    def total_bytes(self) -> int: ...
+    def total_bytes(self) -> int:
+        """Return the size of the transfer in bytes, or 0 while the size is unknown."""
+        ...
 
     @property
-    def line_count(self) -> int: ...
+    def line_count(self) -> int:
+        """Return the number of lines that have been transferred."""
+        ...
 
     @property
-    def wait_reason(self) -> str: ...
+    def wait_reason(self) -> str:
+        """Return the reason for waiting, or an empty text if the transfer is not waiting.
+
+        The reason is ``held``, ``dc1``, ``sender``, ``frame`` or ``noise``.
+        """
+        ...
 
     @property
-    def received_text(self) -> str: ...
+    def received_text(self) -> str:
+        """Return the data received before the first % of a program."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +80,9 @@ class SerialLineTransfer(Protocol[T_co]):
     """
 
     @property
-    def progress(self) -> TransferProgress: ...
+    def progress(self) -> TransferProgress:
+        """Return the progress of the transfer, which any thread can read."""
+        ...
 
     def cancel(self) -> None:
         """Cancel the transfer.

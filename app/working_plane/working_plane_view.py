@@ -150,6 +150,10 @@ class WorkingPlaneView(Panel):
     # --- drawing -------------------------------------------------------------------------------------
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the faces and strokes of the scene at the selected instant, as seen by the camera.
+
+        Nothing is drawn while the scene, the instant or the camera is missing.
+        """
         room = self.inside()
         if self._scene is None or self._instant is None or self._camera is None:
             return

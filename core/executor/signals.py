@@ -211,8 +211,9 @@ class CommandedOutputs:
             self._written.pop(name, None)
 
     def find_mismatches(self) -> list[OutputMismatch]:
-        """Return the outputs that are not in their commanded state although the permitted delay
-        has passed.
+        """Return the outputs that are not in their commanded state.
+
+        An output is returned only after the permitted delay has passed.
         """
         actual = self._io.outputs()
         return [

@@ -305,8 +305,9 @@ class Snapshot:
 
     @property
     def tip(self) -> tuple[float, float]:
-        """Return the actual X and Z in machine coordinates, at which the pictures of a lathe
-        show the tool.
+        """Return the actual X and Z in machine coordinates.
+
+        The pictures of a lathe show the tool at this position.
         """
         return self.actual[self.axes.index("X")], self.actual[self.axes.index("Z")]
 

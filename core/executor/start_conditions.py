@@ -178,8 +178,9 @@ def find_start_refusal(context: MachineContext, state: MachineState, status: Con
 def find_first_move_refusal(
     context: MachineContext, status: ControlStatus, run_count: int
 ) -> tuple[str, str]:
-    """Return the code and the sentence of the refusal of the first move; both are empty if it is
-    permitted.
+    """Return the code and the sentence of the refusal of the first move.
+
+    Both are empty if the first move is permitted.
     """
     job = selected_job(status)
     if not status.requires_clearance or job is None:

@@ -35,8 +35,9 @@ TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count
 
 
 class SolutionSide(StrEnum):
-    """The requested side of the primary axis, relative to its symmetry point (SYM) or basic
-    position (SEQ).
+    """The requested side of the primary axis.
+
+    The side is relative to the symmetry point (SYM) or the basic position (SEQ) of the axis.
     """
 
     SYM_PLUS = "SYM+"

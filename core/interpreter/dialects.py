@@ -45,8 +45,9 @@ class _OmniTurn:
 
 
 def interpret_mdi_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
-    """Return a pass through one MDI line in the machine's dialect, starting from the state
-    ``setup.begin``.
+    """Return a pass through one MDI line in the machine's dialect.
+
+    The pass starts from the state ``setup.begin``.
     """
     if refused := _refusal(source.dialect, setup):
         return refused
@@ -154,8 +155,9 @@ class SharedProgram:
         self._strict = strict
 
     def __reduce__(self) -> tuple[object, ...]:
-        """Return the pickle data, which contain only the program text; the receiving process parses the
-        text again.
+        """Return the pickle data, which contain only the program text.
+
+        The receiving process parses the text again.
         """
         return _unread, (self.source, self._strict)
 

@@ -35,8 +35,9 @@ def load_called_files(source: ProgramSource, folders: Sequence[Path]) -> Program
 
 
 def _call_finder(dialect: Dialect) -> Callable[[ProgramSource], Iterator[str]] | None:
-    """Return the function that yields the names (in capitals) of the files that a source of this dialect
-    calls.
+    """Return the function that finds the files that a source of this dialect calls.
+
+    The function yields the file names in capitals. Returns None if the dialect does not call files.
     """
     if dialect is Dialect.SINUMERIK:
         from core.language.sinumerik.subprogram_files import find_called_files
@@ -71,8 +72,9 @@ def _candidate_paths(name: str, folders: Sequence[Path], dialect: Dialect) -> It
 
 
 def _alternative_names(name: str, dialect: Dialect) -> tuple[str, ...]:
-    """Return other possible file names for a call, because SINUMERIK can also call a main program by its
-    name.
+    """Return other possible file names for a call.
+
+    SINUMERIK can also call a main program by its name.
     """
     return (str(Path(name).with_suffix(".MPF")),) if dialect is Dialect.SINUMERIK else ()
 

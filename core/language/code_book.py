@@ -118,8 +118,9 @@ class CodeBook:
 
     @cached_property
     def _patterns(self) -> tuple[tuple[re.Pattern[str], dict[str, CodeBookEntry]], ...]:
-        """Return a pattern for each group of heads that differ only in their number, with the entries by
-        number.
+        """Return a pattern for each group of heads that differ only in their number.
+
+        Each pattern comes with the entries of the group by number.
         """
         families: dict[tuple[str, bool], dict[str, CodeBookEntry]] = {}
         for entry in self.entries:

@@ -31,8 +31,9 @@ class LineReader:
             self.index = find_non_blank(self.uppercase_text, self.index)
 
     def match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
-        """Return the match of the pattern at this position and move past it, or return None without a
-        match.
+        """Return the match of the pattern at this position, and move past it.
+
+        Returns None without a match.
         """
         match = pattern.match(self.uppercase_text, self.index)
         if match is not None:
@@ -95,7 +96,8 @@ def describe_typographic_character(character: str) -> tuple[str, str] | None:
 
 
 def to_ascii_upper(text: str) -> str:
-    """Return the text in capitals with the same length, without a change of non-ASCII characters such as
-    ``ß``.
+    """Return the text in capitals with the same length.
+
+    Non-ASCII characters such as ``ß`` do not change.
     """
     return text.upper() if text.isascii() else "".join(s.upper() if s.isascii() else s for s in text)

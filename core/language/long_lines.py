@@ -44,8 +44,9 @@ class LazyLines(Sequence[str]):
         return self.join_lines(there).split("\n") if there else []
 
     def join_lines(self, lines: range) -> str:
-        """Return one or more lines as one text with line ends, which is faster than joining individual
-        lines.
+        """Return one or more lines as one text with line ends.
+
+        This is faster than joining individual lines.
         """
         return self._text[self._starts[lines.start] : self._starts[lines.stop] - 1]
 

@@ -85,8 +85,9 @@ class ProgramSource:
 
 
 class SourceError(CodedError):
-    """Error for a file that is not a readable program text; ``str()`` returns the message for
-    the operator.
+    """Error for a file that is not a readable program text.
+
+    ``str()`` returns the message for the operator.
     """
 
     def __init__(self, diagnostic: Diagnostic) -> None:

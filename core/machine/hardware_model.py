@@ -86,8 +86,9 @@ class Hardware:
     )  # output name → s after which the output switches off if it is not refreshed
 
     def find_driver_table(self, kind: type[_Table]) -> _Table | None:
-        """Return the model of the driver table of this type, or None if the file does not contain the
-        table.
+        """Return the model of the driver table of this type.
+
+        Returns None if the file does not contain the table.
         """
         return next((each for each in self.tables.values() if isinstance(each, kind)), None)
 

@@ -127,8 +127,9 @@ class SpindleModel:
 
     @property
     def max_rpm(self) -> float:
-        """Return the highest speed in rpm, which is the only speed of a spindle that is not
-        ``controlled``.
+        """Return the highest speed in rpm.
+
+        A spindle that is not ``controlled`` runs only at this speed.
         """
         return self.rpm[1]
 

@@ -273,8 +273,9 @@ def _collet_close_time(reading: MachineReading, _place: str) -> DerivedValue:
 
 
 def _similar_axis_value(values: FileValues, place: str) -> DerivedValue:
-    """Return the same key of the first linear axis that has this key, because axes usually have equal
-    drives.
+    """Return the same key of the first linear axis that has this key.
+
+    Axes usually have equal drives.
     """
     _, name, key = place.split(".")
     said = [f"axis.{other}.{key}" for other in _LINEAR_AXIS_NAMES if name in _LINEAR_AXIS_NAMES]

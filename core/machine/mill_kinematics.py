@@ -139,8 +139,9 @@ class KinematicsReading:
         self.findings += [*self._check_rules()]
 
     def _check_rules(self) -> Iterator[FileFinding]:
-        """Yield findings about related values of the axes, which are checked only if these values are
-        valid.
+        """Yield findings about related values of the axes.
+
+        The rules are checked only if these values are valid.
         """
         values = self._values
         if len(self._names) > MAX_ROTARY_AXES:

@@ -104,8 +104,9 @@ WHY = (
 
 
 def check_palm_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield a finding for every input that is one of two palm buttons, because the control must not read
-    them.
+    """Yield a finding for every input that is one of two palm buttons.
+
+    The control must not read palm buttons individually.
     """
     for name in file.list_table_keys("io.in"):
         if _PALM.fullmatch(name):

@@ -32,11 +32,19 @@ class AxisLike(Protocol):
     """The properties of an axis in the machine file that the motion planner uses."""
 
     @property
-    def vmax(self) -> float: ...
+    def vmax(self) -> float:
+        """Return the maximum speed of the axis in mm/s, or degrees/s for a rotary axis."""
+        ...
+
     @property
-    def amax(self) -> float: ...
+    def amax(self) -> float:
+        """Return the maximum acceleration of the axis in mm/s², or degrees/s² for a rotary axis."""
+        ...
+
     @property
-    def count(self) -> float: ...
+    def count(self) -> float:
+        """Return the encoder and command step of the axis in mm, or degrees for a rotary axis."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

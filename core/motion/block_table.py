@@ -30,13 +30,27 @@ class ModalLike(Protocol):
     """
 
     @property
-    def min_css_rpm(self) -> float: ...
+    def min_css_rpm(self) -> float:
+        """Return the minimum spindle speed in rpm under constant surface speed."""
+        ...
+
     @property
-    def max_css_rpm(self) -> float | None: ...
+    def max_css_rpm(self) -> float | None:
+        """Return the maximum spindle speed in rpm under constant surface speed.
+
+        Returns None without a limit.
+        """
+        ...
+
     @property
-    def offset_c(self) -> float: ...
+    def offset_c(self) -> float:
+        """Return the shift of C in degrees."""
+        ...
+
     @property
-    def c_locked(self) -> bool: ...
+    def c_locked(self) -> bool:
+        """Return whether the spindle is engaged as the C axis."""
+        ...
 
 
 class MotionBlock(Protocol):
@@ -65,11 +79,19 @@ class MotionBlock(Protocol):
     travel: AxisMove | None
 
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> str:
+        """Return the kind of the block, such as ``feed``, ``rapid`` or ``arc``."""
+        ...
+
     @property
-    def rapid(self) -> bool: ...
+    def rapid(self) -> bool:
+        """Return whether the block is a rapid."""
+        ...
+
     @property
-    def modal(self) -> ModalLike: ...
+    def modal(self) -> ModalLike:
+        """Return the modal values that apply to the block."""
+        ...
 
 
 KIND_CODES = {"rapid": 0, "feed": 1, "arc": 2, "rotate": 3, "plane-line": 4, "plane-arc": 5, "thread": 6}
@@ -241,19 +263,40 @@ class MoveSeries(Protocol):
     """
 
     @property
-    def pattern(self) -> MotionBlock: ...
+    def pattern(self) -> MotionBlock:
+        """Return the block whose values apply to all moves, unless a column contains them."""
+        ...
+
     @property
-    def n(self) -> IntArray: ...
+    def n(self) -> IntArray:
+        """Return the block numbers of the moves."""
+        ...
+
     @property
-    def x0(self) -> FloatArray: ...
+    def x0(self) -> FloatArray:
+        """Return the start positions of the moves in X, in mm as radii."""
+        ...
+
     @property
-    def z0(self) -> FloatArray: ...
+    def z0(self) -> FloatArray:
+        """Return the start positions of the moves in Z, in mm."""
+        ...
+
     @property
-    def x(self) -> FloatArray: ...
+    def x(self) -> FloatArray:
+        """Return the end positions of the moves in X, in mm as radii."""
+        ...
+
     @property
-    def z(self) -> FloatArray: ...
+    def z(self) -> FloatArray:
+        """Return the end positions of the moves in Z, in mm."""
+        ...
+
     @property
-    def feed(self) -> FloatArray | None: ...
+    def feed(self) -> FloatArray | None:
+        """Return the feeds of the moves in mm/s or mm/rev, or None if the feed of ``pattern`` applies."""
+        ...
+
     def __len__(self) -> int: ...
     def __getitem__(self, at: slice, /) -> MoveSeries: ...
 

@@ -66,6 +66,7 @@ def _damaged() -> sqlite3.DatabaseError:
 
 
 def has_write_ahead_log(path: Path) -> bool:
+    """Return whether the write-ahead log of the store exists and is not empty."""
     log, _ = get_log_and_index_paths(path)
     return log.exists() and log.stat().st_size > 0
 

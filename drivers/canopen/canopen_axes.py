@@ -288,8 +288,9 @@ class CanopenAxes:
         return self._on and self.drives.is_powered
 
     def _actual_positions(self) -> tuple[float, ...]:
-        """Return the positions that the drives measure; for an axis without a drive, return the queued
-        position.
+        """Return the positions that the drives measure.
+
+        For an axis without a drive, the queued position is returned.
         """
         p = list(self.queue.commanded_state_at(self.now())[0])
         for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):

@@ -71,8 +71,9 @@ class EncoderConfig:
 
 @dataclass(frozen=True, slots=True)
 class OutputConfig:
-    """Output and its safe state; with None, the output is not changed when the machine enters the safe
-    state.
+    """Output and its safe state.
+
+    If the safe state is None, the output does not change when the machine enters the safe state.
     """
 
     terminal: CanTerminal

@@ -111,8 +111,9 @@ class CanEncoder:
         return 60.0 * (turns1 - turns0) / (t1 - t0)
 
     def read_angle(self) -> tuple[float, float] | None:
-        """Return the time in seconds and the revolutions of the last reply, or None before the
-        first reply.
+        """Return the time of the last reply in seconds and its revolutions.
+
+        Returns None before the first reply.
         """
         return self._reads[-1] if self._reads else None
 

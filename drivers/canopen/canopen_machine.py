@@ -246,8 +246,9 @@ class CanopenMachine:
             self.bus.mark_failed(str(error))
 
     def _wait_callback(self) -> float:
-        """Send SYNC and setpoints while the caller waits for a node, and return the seconds to the next
-        SYNC.
+        """Send SYNC and setpoints while the caller waits for a node.
+
+        Returns the time to the next SYNC in seconds.
         """
         left = self.axes.sync_schedule.due_time_s - self.clock.now()
         if left <= 0.0 and not self.bus.failure:

@@ -279,8 +279,9 @@ def get_enabling_word(state: DriveState) -> int:
 
 
 def get_fault_reset_word(state: DriveState, last_word: int) -> int:
-    """Return the control word that clears a fault by a rising edge of bit 7, without switching the power
-    on.
+    """Return the control word that clears a fault by a rising edge of bit 7.
+
+    The control word does not switch the power on.
     """
     if state is DriveState.FAULT and last_word != RESET:
         return RESET

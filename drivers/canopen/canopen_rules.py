@@ -166,7 +166,9 @@ def _check_families(file: MachineFileReading) -> Iterator[FileFinding]:
 
 
 def _check_cyclic_load(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about cyclic setpoints: the SYNC period in whole milliseconds, commit time and bus
+    """Yield findings about cyclic setpoints.
+
+    The rules are about the SYNC period, which must be in whole milliseconds, the commit time and the bus
     load.
     """
     values = file.values
@@ -307,8 +309,9 @@ def _is_c_on_spindle(file: MachineFileReading) -> bool:
 
 
 def _check_travel(file: MachineFileReading) -> Iterator[FileFinding]:
-    """Yield findings about axes whose travel exceeds the counting range or software limits of
-    their drives.
+    """Yield findings about axes whose travel is too long for their drives.
+
+    The travel must not exceed the counting range or the software limits of the drive.
     """
     values = file.values
     for axis in file.axes:

@@ -32,8 +32,9 @@ _POWER_ON_S = 1.0  # Seconds in which the drive must switch on.
 
 
 class CanopenSpindle:
-    """``core.ports.Spindle`` of a CiA 402 drive, which has power only while the spindle turns or
-    must turn.
+    """``core.ports.Spindle`` of a CiA 402 drive.
+
+    The drive has power only while the spindle turns or must turn.
     """
 
     def __init__(self, config: SpindleConfig, bus: CanBus) -> None:

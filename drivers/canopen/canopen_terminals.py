@@ -232,8 +232,9 @@ class CanopenIO:
             module.node.nmt.state = "OPERATIONAL"
 
     def run_cycle(self, now: float) -> str:
-        """Supervise the modules, send the outputs, and return the first fault, or an empty text without a
-        fault.
+        """Supervise the modules, and send the outputs.
+
+        Returns the first fault, or an empty text without a fault.
         """
         fault_text: str = ""
         for module in self.modules.values():

@@ -93,8 +93,9 @@ class Cia402Drive:
 
     @property
     def is_silent(self) -> bool:
-        """Return whether too many replies to SYNC are missing, so that the reported values may
-        be outdated.
+        """Return whether too many replies to SYNC are missing.
+
+        If so, the reported values may be outdated.
         """
         return self.missing_reply_count > self._patience
 

@@ -84,10 +84,10 @@ _ACKNOWLEDGE_TIMEOUT_S = 0.2  # Seconds in which a drive must acknowledge a targ
 
 
 class ProfiledFollower(SetpointFollower):
-    """Follower that sends each drive the end of the queue as its target, together with the speed of the
-    path.
+    """Follower that sends each drive the end of the queue as its target.
 
-    Only straight moves are possible, because each drive plans its own motion.
+    Each drive also receives the speed of the path. Only straight moves are possible, because each drive
+    plans its own motion.
     """
 
     mode = PP

@@ -44,7 +44,9 @@ class HostLink(Protocol):
     """
 
     @property
-    def end_signals(self) -> Sequence[int]: ...
+    def end_signals(self) -> Sequence[int]:
+        """Return the files that become readable when the connection ends."""
+        ...
 
     def send_request(self, message: Message) -> Message:
         """Send a request and return the reply.
@@ -57,7 +59,9 @@ class HostLink(Protocol):
         """End the connection; any thread may call this method."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Close the connection and release its resources."""
+        ...
 
 
 def clear_host_faults(link: HostLink) -> HostLink:

@@ -43,8 +43,9 @@ class GrblAxes:
         self._homing = ""
 
     def now(self) -> float:
-        """Return the time of the host's clock in seconds, because the controller does not have a readable
-        clock.
+        """Return the time of the host's clock in seconds.
+
+        The controller does not have a clock that TurnDesk can read.
         """
         return self._c.clock.now()
 

@@ -125,8 +125,9 @@ class GrblBlocks:
         return ticket
 
     def state(self) -> BlockState:
-        """Return the state of the blocks from the last report and the lines that were sent after that
-        report.
+        """Return the state of the blocks.
+
+        The state is the result of the last report and of the lines that were sent after that report.
         """
         c = self._c
         resting = self.is_quiet or c.is_lost or (c.fault != "" and self._is_motion_ended())

@@ -99,11 +99,11 @@ class GrblSpindle:
         self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
     def run_at(self, rpm: float) -> None:
-        """Turn the spindle at ``rpm``, signed and limited to the maximum of the machine; 0 stops the
-        spindle.
+        """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
 
-        Raises DriverError if the controller does not accept lines, or if the speed exceeds the limit of the
-        controller, which would reduce the speed without a message.
+        The speed is limited to the maximum of the machine. Raises DriverError if the controller does not
+        accept lines, or if the speed exceeds the limit of the controller, which would reduce the speed
+        without a message.
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())

@@ -55,8 +55,9 @@ def _value(settings: Mapping[int, str], number: int) -> float:
 
 
 class ReportedState:
-    """State of a controller, assembled from several reports, each of which contains only a part of the
-    state.
+    """State of a controller, assembled from several reports.
+
+    Each report contains only a part of the state.
     """
 
     def __init__(self, config: GrblConfig, clock: Clock) -> None:
@@ -109,10 +110,10 @@ class ReportedState:
         self._before_alarm = self._before_alarm if report.state == "Alarm" else report
 
     def is_plausible(self, report: StatusReport) -> bool:
-        """Return whether every axis could have moved to its reported position since the last report was
-        created.
+        """Return whether every axis could have moved to its reported position.
 
-        A report may be created long before it is read, because this computer may be delayed.
+        The available time starts when the last report was created. A report may be created long before it
+        is read, because this computer may be delayed.
         """
         if self.report is None or self.is_diameter_mode:
             return True
@@ -154,27 +155,31 @@ class ReportedState:
         return float(self.settings.get(group_start + index, "0")) if index >= 0 else 0.0
 
     def get_max_axis_speed(self, letter: str) -> float:
-        """Return the maximum speed of an axis in the controller's settings in mm/s, or 0 if it is not
-        reported.
+        """Return the maximum speed of an axis in the controller's settings, in mm/s.
+
+        Returns 0 if the speed is not reported.
         """
         return self.read_axis_setting(110, letter) / 60.0
 
     def get_max_wait(self, line: str) -> float:
-        """Return the maximum seconds that the controller waits for the spindle or coolant when it executes
-        a line.
+        """Return the maximum time in seconds that the controller waits when it executes a line.
+
+        The controller waits for the spindle or for coolant.
         """
         return get_max_firmware_wait(line, self.settings)
 
     @property
     def homing_setting(self) -> int:
-        """Return the homing setting $22, in which bit 0 enables homing and bit 1 permits homing of single
-        axes.
+        """Return the homing setting $22.
+
+        Bit 0 enables homing, and bit 1 permits homing of single axes.
         """
         return int(float(self.settings.get(_HOMING, "0")))
 
     def is_homed(self, letter: str) -> bool | None:
-        """Return whether the controller has homed an axis, or None if homing is disabled in the
-        controller.
+        """Return whether the controller has homed an axis.
+
+        Returns None if homing is disabled in the controller, or if its state is unknown.
         """
         index = self.axis_letters.find(letter)
         if not self.homing_setting & _HOMED or self.homed_flags is None or index < 0:

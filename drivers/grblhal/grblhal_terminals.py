@@ -171,8 +171,9 @@ class GrblIO:
                 self.write(name, output.safe_state)
 
     def describe_missing(self, name: str) -> str:
-        """Return the reason why the controller does not have an output, or an empty text if it has the
-        output.
+        """Return the reason why the controller does not have an output.
+
+        The text is empty if the controller has the output.
         """
         terminal = self._c.config.outputs[name].terminal
         if terminal in _COOLANT:
@@ -191,8 +192,9 @@ class GrblIO:
         )
 
     def list_available_terminals(self) -> frozenset[str]:
-        """Return the inputs and outputs that a program may use, with the names of
-        ``machine_requirements``.
+        """Return the inputs and outputs that a program may use.
+
+        Their names are those of ``machine_requirements``.
         """
         outputs = {
             Message("output {name}", name=name) for name in self._wanted if not self.describe_missing(name)
@@ -214,8 +216,9 @@ class GrblIO:
                 self._said_at[name] = self._c.clock.now()
 
     def send_changes(self) -> None:
-        """Send the changes that could not be sent while the controller was locked, jogging or in
-        feed hold.
+        """Send the output changes that could not be sent earlier.
+
+        Changes are delayed while the controller is locked, jogging or in feed hold.
         """
         for name in [name for name, ask in self._asks.items() if ask.is_done]:
             del self._asks[name]
@@ -276,8 +279,9 @@ class GrblProbe(FirstTouchInput):
         self._c.fast_polling_until = self._c.clock.now() + _ARMED_POLLING_S
 
     def check_touch(self) -> None:
-        """Check a new report for a touch; call this method once per cycle after the cycle of the
-        controller.
+        """Check a new report for a touch.
+
+        Call this method once per cycle, after the cycle of the controller.
         """
         now, report = self._c.clock.now(), self._c.report
         if report is self._report or report is None:

@@ -34,11 +34,23 @@ class GrblTransport(Protocol):
     ``read`` and ``write`` never wait, and raise TransportLostError if the connection is lost.
     """
 
-    def read(self) -> bytes: ...
+    def read(self) -> bytes:
+        """Return the received bytes without waiting, or empty bytes if none were received.
 
-    def write(self, data: bytes) -> None: ...
+        Raises TransportLostError if the connection is lost.
+        """
+        ...
 
-    def close(self) -> None: ...
+    def write(self, data: bytes) -> None:
+        """Send bytes to the controller without waiting.
+
+        Raises TransportLostError if the connection is lost.
+        """
+        ...
+
+    def close(self) -> None:
+        """Close the connection to the controller."""
+        ...
 
 
 def parse_tcp_address(port: str) -> tuple[str, int] | None:
@@ -144,8 +156,9 @@ class GrblTcpTransport:
             raise TransportLostError(str(error)) from error
 
     def close(self) -> None:
-        """Close the connection after receiving the remaining bytes, because a simulator would fail
-        otherwise.
+        """Close the connection after receiving the remaining bytes.
+
+        Otherwise, a simulator would fail.
         """
         with suppress(OSError):
             self._socket.shutdown(socket.SHUT_WR)

@@ -52,6 +52,7 @@ class HuanyangInverter:
 
     @property
     def valid_response_count(self) -> int:
+        """Return the number of consecutive valid responses."""
         return self._good
 
     def check_parameters(self, comm_timeout_s: float, max_hz: float) -> list[str]:
@@ -105,6 +106,7 @@ class HuanyangInverter:
         self.stop()
 
     def close(self) -> None:
+        """Close the serial line of the inverter."""
         self._wire.close()
 
     def _control(self) -> int:

@@ -193,8 +193,9 @@ class CanopenPlant(SimulatedPlant):
         self._at = clock.now()
 
     def advance(self) -> float:
-        """Advance the model step by step to the present time of the clock, and return this time
-        in seconds.
+        """Advance the model step by step to the present time of the clock.
+
+        Returns this time in seconds.
         """
         now = self.clock.now()
         with self.lock:

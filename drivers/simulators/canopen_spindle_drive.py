@@ -142,8 +142,9 @@ class SimulatedSpindleDrive:
             self.power_states.apply_control_word(value)
 
     def _change_mode(self, mode: int) -> None:
-        """Change the mode of operation, if the spindle is at standstill and the drive is not executing
-        positions.
+        """Change the mode of operation if the drive is at rest.
+
+        The spindle must be at standstill, and the drive must not be executing positions.
         """
         if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
@@ -166,15 +167,17 @@ class SimulatedSpindleDrive:
 
     @property
     def is_idle(self) -> bool:
-        """Return whether the drive stays unchanged until a frame arrives or the speed of the
-        motor changes.
+        """Return whether the drive stays unchanged until the next event.
+
+        The event is the arrival of a frame or a change of the motor speed.
         """
         obeyed = self.power_states.is_powered == (self._ordered is not None)
         return obeyed and not self.is_axis_mode and not self.power_states.is_braking
 
     def advance(self, now: float) -> None:
-        """Command the motor speed that the mode and the power state require, and end braking at
-        standstill.
+        """Command the motor speed that the mode and the power state require.
+
+        Braking ends when the motor is at standstill.
         """
         dt, self.last_step_s = now - self.last_step_s, now
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:

@@ -98,8 +98,9 @@ class TcpConnection:
 def run_simulator(
     connection: PtyConnection | TcpConnection, firmware: GrblFirmware, should_continue: Callable[[], bool]
 ) -> None:
-    """Connect the simulator to the host while ``should_continue`` returns true, and then close the
-    connection.
+    """Connect the simulator to the host while ``should_continue`` returns true.
+
+    The connection is closed at the end.
     """
     try:
         while should_continue():

@@ -172,10 +172,10 @@ class GrblMotion:
         return speed if block.is_jog or block.is_thread else min(speed * self.feed_override, max_speed)
 
     def _limit_in_direction(self, first: int, heading: Position) -> float:
-        """Return the limit along a direction from the settings of X and Z, as ``planner.c`` of grblHAL
-        does.
+        """Return the limit along a direction from the settings of X and Z.
 
-        ``first`` is the number of the setting for X.
+        The calculation is the same as in ``planner.c`` of grblHAL. ``first`` is the number of the setting
+        for X.
         """
         x, z = abs(heading[0]), abs(heading[1])
         along_x = self._registers[first] / x if x else math.inf
@@ -183,10 +183,10 @@ class GrblMotion:
         return min(along_x, along_z) if x or z else self._registers[first]
 
     def _allowed_speed(self, accel: float, turns_per_s: float) -> float:
-        """Return the highest speed in mm/s that permits all corners ahead and the stop at the end of the
-        path.
+        """Return the highest speed that permits all corners ahead, in mm/s.
 
-        ``accel`` is the acceleration in the present block in mm/s².
+        The speed also permits the stop at the end of the path. ``accel`` is the acceleration in the present
+        block in mm/s².
         """
         before = self.block_queue[0]
         left = max(before.length_mm - self._s, 0.0)
@@ -203,10 +203,9 @@ class GrblMotion:
         return min(most, math.sqrt(brakes)) + _MIN_SPEED
 
     def _corner_speed(self, previous: PlannedBlock, block: PlannedBlock) -> float:
-        """Return the speed limit at the corner between two blocks in mm/s, from the junction deviation
-        ``$11``.
+        """Return the speed limit at the corner between two blocks in mm/s.
 
-        The limit is 0 if the path reverses.
+        The limit results from the junction deviation ``$11``. The limit is 0 if the path reverses.
         """
         (x0, z0), (x1, z1) = previous.get_direction_at(previous.length_mm), block.get_direction_at(0.0)
         cosine = x0 * x1 + z0 * z1

@@ -125,7 +125,9 @@ class WaitContext(Protocol):
     is_in_hold: bool
 
     @property
-    def commanded_rpm(self) -> float: ...
+    def commanded_rpm(self) -> float:
+        """Return the commanded spindle speed in rpm, signed, with the override and the limits applied."""
+        ...
 
 
 @dataclass(slots=True)

@@ -64,8 +64,9 @@ class ServoThread:
         )  # Runs one period of the thread; the argument is its length in s.
 
     def find_cell(self, pin: str) -> str:
-        """Return the name of the cell for one of TurnDesk's pins, and create the cell if it does
-        not exist.
+        """Return the name of the cell for one of TurnDesk's pins.
+
+        The cell is created if it does not exist.
         """
         cell = self._cell.get(pin, pin)
         self.cells.setdefault(cell, 0.0)
@@ -128,8 +129,9 @@ class HalPlant(SimulatedPlant):
     run_periods: Callable[[float], None]
 
     def advance(self) -> float:
-        """Advance the model period by period to the present time of the clock, and return this time in
-        seconds.
+        """Advance the model period by period to the present time of the clock.
+
+        Returns this time in seconds.
         """
         now = self.clock.now()
         with self.lock:

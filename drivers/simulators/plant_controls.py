@@ -100,8 +100,9 @@ class PlantControls(StationControls):
             self._servo(axis).push(distance)
 
     def switch_output(self, name: str, state: bool) -> None:
-        """Switch an output independently of the control, as a blown fuse or a manually operated
-        relay does.
+        """Switch an output independently of the control.
+
+        This simulates a blown fuse or a manually operated relay.
         """
         with self._locked_time() as now:
             self._plant.terminals.write(name, state, now)
@@ -128,8 +129,9 @@ class PlantControls(StationControls):
             self._plant.spindle.faults.ignores_stop = ignored
 
     def spindle_fault(self, text: str) -> None:
-        """Trip the inverter with the fault ``text``, so that the spindle coasts; an empty text ends the
-        fault.
+        """Trip the inverter with the fault ``text``, so that the spindle coasts.
+
+        An empty text ends the fault.
         """
         with self._locked_time():
             self._plant.spindle.faults.fault_text = text

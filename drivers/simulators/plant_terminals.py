@@ -20,8 +20,9 @@ class SimulatedToolSetter:
         self.kept: tuple[float, tuple[float, ...]] | None = None
 
     def update(self, t: float, x: float, z: float, readings: tuple[float, ...]) -> None:
-        """Update the input at time ``t`` from the axis positions ``x`` and ``z``, and latch the encoder
-        readings.
+        """Update the input at time ``t`` from the axis positions ``x`` and ``z``.
+
+        At a touch, the encoder readings are latched.
         """
         config = self._config
         half = config.width_mm / 2.0

@@ -112,8 +112,9 @@ class PredictedMotion:
         return self._rows[first_point - first : end_point - first]
 
     def get_cutting_flags(self, first_point: int, end_point: int) -> BoolArray:
-        """Return whether an axis is cutting at each grid point from ``first_point`` to ``end_point``,
-        exclusive.
+        """Return whether an axis is cutting at each grid point of a range.
+
+        The range is from ``first_point`` to ``end_point``, exclusive.
         """
         first = self._points.start
         return self._cuts[first_point - first : end_point - first]

@@ -162,8 +162,9 @@ class SimulatedServo:
     def states(
         self, setpoints: SetpointPolynomial, response: ServoResponse, steps: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position, velocity and load after ``steps`` grid points, for a single number or an
-        array.
+        """Return the position, velocity and load after ``steps`` grid points.
+
+        ``steps`` is a single number or an array.
         """
         assert self._loop is not None
         dt = self._step
@@ -360,10 +361,10 @@ class ServoLoop:
     def get_states_at(
         self, setpoints: SetpointPolynomial, response: ServoResponse, k: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position at grid point ``k``, the length of the last move, and the change of this
-        length.
+        """Return the position at grid point ``k``, the last move, and the change of the last move.
 
-        Lengths are in mm or degrees, and times are in grid intervals.
+        The last move and its change are lengths. Lengths are in mm or degrees, and times are in grid
+        intervals.
         """
         (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
         slow, fast = slow_part * self.slow_mode ** (k - 1), fast_part * self.fast_mode ** (k - 1)

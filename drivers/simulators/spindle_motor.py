@@ -53,14 +53,22 @@ class SimulatedSpindle(Protocol):
     """Spindle as its controller uses it; rpm and revolutions are signed."""
 
     @property
-    def speed(self) -> float: ...
+    def speed(self) -> float:
+        """Return the actual speed in rpm, signed."""
+        ...
 
     @property
-    def revolutions(self) -> float: ...
+    def revolutions(self) -> float:
+        """Return the signed revolutions of the spindle."""
+        ...
 
-    def advance_to(self, now: float) -> None: ...
+    def advance_to(self, now: float) -> None:
+        """Advance the spindle to time ``now``, and execute the commands that become due."""
+        ...
 
-    def command_speed(self, time_s: float, rpm: float) -> None: ...
+    def command_speed(self, time_s: float, rpm: float) -> None:
+        """Queue a command for the signed speed ``rpm`` at time ``time_s``."""
+        ...
 
 
 class SpindleMotor:

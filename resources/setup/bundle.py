@@ -82,8 +82,9 @@ def fetch_wheels(folder: Path, machine: str) -> None:
 
 
 def build_product(folder: Path) -> None:
-    """Build the wheel of TurnDesk from a copy of the source, so that it contains no files of an earlier
-    build.
+    """Build the wheel of TurnDesk from a copy of the source.
+
+    The wheel therefore does not contain files of an earlier build.
     """
     with tempfile.TemporaryDirectory() as work:
         copy = Path(work) / "turndesk"

@@ -25,8 +25,9 @@ _MODE = 0o100644
 
 
 def in_one_package(wheel: bytes) -> bytes:
-    """Return a wheel whose packages are parts of ``turndesk``, with sorted files that all have the same
-    time.
+    """Return a wheel whose packages are parts of ``turndesk``.
+
+    The files are sorted and all have the same time.
     """
     with zipfile.ZipFile(io.BytesIO(wheel)) as archive:
         files = {moved(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")}

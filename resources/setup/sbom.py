@@ -77,10 +77,10 @@ def _package(name: str, files: list[Path]) -> Component:
 
 
 def _qt(name: str, version: str) -> list[Component]:
-    """Return the component for Qt, which is part of a Python package and has the same version as this
-    package.
+    """Return the component for Qt, which is part of a Python package.
 
-    The CPE of the component identifies known vulnerabilities of Qt.
+    Qt has the same version as this package. The CPE of the component identifies known vulnerabilities of
+    Qt.
     """
     if name != "pyside6-essentials":
         return []

@@ -51,15 +51,17 @@ def write_list(texts: Mapping[str, str]) -> dict[str, str]:
 
 
 def _folder(file: str) -> str:
-    """Return the first part of an id, which is the name of the package, such as ``jog`` or
-    ``interpreter``.
+    """Return the first part of an id.
+
+    This part is the name of the package, such as ``jog`` or ``interpreter``.
     """
     return Path(file).parts[1].removesuffix(".py") if file else "tables"
 
 
 def _most_similar(text: str, folder: str, gone: Mapping[str, str]) -> str:
-    """Return the id of the deleted text that ``text`` replaces, or an empty text if there is no similar
-    text.
+    """Return the id of the deleted text that ``text`` replaces.
+
+    Returns an empty text if no similar text exists.
     """
     found, best = "", _SIMILAR
     for name, english in gone.items():

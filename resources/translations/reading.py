@@ -40,8 +40,9 @@ def texts_of(tree: ast.Module) -> Iterator[str]:
 
 
 def composed_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield the line and text of every string that is composed of parts, with ``{}`` in place of each
-    value.
+    """Yield the line and text of every string that is composed of parts.
+
+    In the text, ``{}`` is in place of each value.
     """
     skipped = _skipped(tree)
     for node in ast.walk(tree):
@@ -78,8 +79,9 @@ def _name(node: ast.expr) -> str:
 
 
 def _pieces(node: ast.expr) -> list[str | None] | None:
-    """Return the parts of a composed string, with None for each value, or None if the node is
-    not a string.
+    """Return the parts of a composed string, with None for each value.
+
+    Returns None if the node is not a string.
     """
     if isinstance(node, ast.Constant):
         return [node.value] if isinstance(node.value, str) else None

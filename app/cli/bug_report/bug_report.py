@@ -159,8 +159,9 @@ def _names_in(folder: Path) -> Iterator[str]:
 
 
 def _names_of_runs() -> Iterator[str]:
-    """Yield the program names contained in the file names of run logs, such as
-    ``20260102T030405000000-PIN``.
+    """Yield the program names in the file names of run logs.
+
+    The file name ``20260102T030405000000-PIN``, for example, contains the program name PIN.
     """
     for path in (find_data_folder() / "logs").glob("*.jsonl"):
         yield path.stem.partition("-")[2]

@@ -1,7 +1,6 @@
-"""Output of ``prove --compare OFFSETS``, which compares parts, times and findings with a second set of
-offsets.
+"""Output of ``prove --compare OFFSETS``, which compares the proof with a second set of offsets.
 
-``core/proving/offset_comparison.py`` compares the parts.
+The output compares parts, times and findings. ``core/proving/offset_comparison.py`` compares the parts.
 """
 
 from __future__ import annotations

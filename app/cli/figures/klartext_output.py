@@ -105,8 +105,9 @@ def _position_json(swivel: PlanePosition) -> Json:
 
 
 def _plane_json(swivel: PlanePosition) -> Json:
-    """Return the plane of a PLANE block, which is its frame by rows, its origin, and the target angles of
-    the axes.
+    """Return the plane of a PLANE block as JSON.
+
+    The JSON contains the frame of the plane by rows, the origin, and the target angles of the axes.
     """
     q120, q121, q122 = (round_degrees(target) for target in swivel.system.target_angles)
     return {

@@ -92,8 +92,9 @@ def _join_digits(count: IntArray, negative: npt.NDArray[np.bool_], decimal_place
 
 
 def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
-    """Return the twelve digits of each number as characters (12, m), with the most significant
-    digit first.
+    """Return the twelve digits of each number as characters, with the most significant digit first.
+
+    The shape of the result is (12, m).
     """
     groups = np.stack([count // 10**8, count // 10**4 % 10**4, count % 10**4])
     fours = _four_digit_table()[groups].view(np.uint8)
@@ -102,8 +103,9 @@ def _digit_table(count: IntArray) -> npt.NDArray[np.uint8]:
 
 @cache
 def _four_digit_table() -> npt.NDArray[np.uint32]:
-    """Return the four digits of each number from 0 to 9999, packed as four characters in one integer
-    (10000,).
+    """Return the four digits of each number from 0 to 9999.
+
+    Each integer of the result packs four characters. The shape of the result is (10000,).
     """
     return np.frombuffer("".join([f"{each:04d}" for each in range(10_000)]).encode(), np.uint32)
 

@@ -42,15 +42,17 @@ def round_millimeters(mm: float) -> float:
 
 
 def get_length_converter(dialect: Dialect) -> Callable[[float], float]:
-    """Return the function that converts lengths from mm to the output unit, inches for OmniTurn and
-    otherwise mm.
+    """Return the function that converts lengths from mm to the output unit.
+
+    The output unit is inches for OmniTurn and otherwise mm.
     """
     return to_inches if dialect is Dialect.OMNITURN else round_millimeters
 
 
 def get_volume_converter(dialect: Dialect) -> Callable[[float], float]:
-    """Return the function that converts volumes from mm³ to cubic inches for OmniTurn, and otherwise leaves
-    them in mm³.
+    """Return the function that converts volumes from mm³ to the output unit.
+
+    The output unit is cubic inches for OmniTurn and otherwise mm³.
     """
     scale = MM_PER_INCH**3 if dialect is Dialect.OMNITURN else 1.0
     return lambda mm3: round(mm3 / scale, 6)

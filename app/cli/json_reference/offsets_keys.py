@@ -8,8 +8,9 @@ from core.store.store_rows import MillRow, PresetRow, SecondaryRow, ShapeRow, To
 
 
 def _inch_keys(columns: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
-    """Return columns of the store as ``offsets --json`` prints them, with lengths of lathe tools
-    in inches.
+    """Return columns of the store as ``offsets --json`` prints them.
+
+    Lengths of lathe tools are in inches.
     """
     return tuple(key._replace(unit="in" if key.unit == "mm" else key.unit) for key in columns)
 

@@ -79,8 +79,9 @@ class ProofCache:
             sys.stderr.write(f"turndesk: proofs cannot be stored in {self._folder} ({error.strerror})\n")
 
     def delete_oldest(self) -> None:
-        """Delete the oldest proofs if the cache is too large, and delete temporary files of killed
-        processes.
+        """Delete the oldest proofs if the cache is too large.
+
+        Temporary files of killed processes are also deleted.
         """
         try:
             there = [_File(path, *_stamp(path)) for path in self._folder.glob("??/*")]

@@ -103,11 +103,11 @@ def _initialize_worker() -> None:
 
 
 class WorkDistributor(Generic[WorkUnit, UnitResult]):
-    """Distributor of units of work to workers, which returns results in the order in which the units
-    finish.
+    """Distributor of units of work to workers.
 
-    If a worker is killed, all workers of its pool end. Their units are then repeated one at a time, each in
-    a separate worker. A unit that kills its worker again is the cause.
+    The distributor returns results in the order in which the units finish. If a worker is killed, all
+    workers of its pool end. Their units are then repeated one at a time, each in a separate worker. A unit
+    that kills its worker again is the cause.
     """
 
     def __init__(

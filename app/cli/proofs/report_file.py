@@ -27,8 +27,9 @@ class _Pages(Protocol):
         """Add the HTML of the next program under its name."""
 
     def finish(self) -> None:
-        """Write the complete file to the disk, so that a full disk is detected before the old report is
-        replaced.
+        """Write the complete file to the disk.
+
+        A full disk is thus detected while the old report still exists.
         """
 
     def close(self) -> None:

@@ -184,10 +184,9 @@ class CheckRow(NamedTuple):
         return NOT_CHECKED if self.state == NOT_CHECKED else "ok"
 
     def mark_unchecked(self, measured_names: Container[str]) -> CheckRow:
-        """Return the row with the state ``NOT_CHECKED`` if hardware did not report the row and the row does
-        not fail.
+        """Return the row with the state ``NOT_CHECKED`` if no hardware reported the row.
 
-        ``measured_names`` has the names of the rows that hardware reported.
+        A failed row does not change. ``measured_names`` has the names of the rows that hardware reported.
         """
         if self.name in measured_names or self.state in FAILED_STATES:
             return self

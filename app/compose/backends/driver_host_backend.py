@@ -1,5 +1,6 @@
-"""Connection of a machine through the driver host, which runs in a separate process, or in this one for
-tests.
+"""Connection of a machine through the driver host.
+
+The driver host runs in a separate process, or in this process for tests.
 """
 
 from __future__ import annotations

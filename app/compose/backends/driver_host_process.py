@@ -148,8 +148,9 @@ class DriverHostProcess:
             self.process.wait()
 
     def _read_first_message(self, sock: socket.socket) -> Message:
-        """Return the first message of the driver host, which reports either readiness or the reason for a
-        failure.
+        """Return the first message of the driver host.
+
+        The message reports either readiness or the reason for a failure.
         """
         inbox = MessageDecoder()
         sock.settimeout(_START_TIMEOUT_S)

@@ -28,11 +28,11 @@ def add_inverter(
     close: Callable[[], None],
     encoder: SpindleEncoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
-    """Return the ports with the inverter as spindle, and a function that closes the spindle and then the
-    devices.
+    """Return the ports with the inverter as spindle, and a function that closes the devices.
 
-    ``close`` closes the other devices. It is also called if the inverter does not respond. ``encoder`` is
-    an encoder that measures the spindle speed. Raises DriverError if the inverter does not respond.
+    The function closes the spindle and then the other devices. ``close`` closes the other devices. It is
+    also called if the inverter does not respond. ``encoder`` is an encoder that measures the spindle speed.
+    Raises DriverError if the inverter does not respond.
     """
     try:
         thread, joined = _attended(machine, ports, clock, encoder)
@@ -127,8 +127,9 @@ class AxisOnlySamples:
         self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
 
     def take(self, max_rows: int = 8192) -> FloatArray:
-        """Return the samples with unknown spindle speed and revolutions, and with the inverter's
-        last load.
+        """Return the samples with unknown spindle speed and revolutions.
+
+        The samples contain the last load of the inverter.
         """
         rows = self._inner.take(max_rows)
         rows[:, self._spindle] = float("nan")

@@ -101,8 +101,9 @@ def _measured_names(machine: Machine, connected: ConnectedMachine) -> set[str]:
 
 
 def _wait_until_settled(clock: Clock, ports: MachinePorts, machine: Machine) -> None:
-    """Poll the axes until all inputs are known, because a controller may read auxiliary inputs one at a
-    time.
+    """Poll the axes until all inputs are known.
+
+    Polling is necessary because a controller may read auxiliary inputs one at a time.
     """
     began = clock.now()
     while (waited := clock.now() - began) < _MAX_WAIT_S:

@@ -56,8 +56,9 @@ def create_sim_config(machine: Machine) -> SimConfig:
 
 
 def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> SimToolSetter | None:
-    """Return the simulated tool setter, or None if the machine file has no tool setter or there are no tool
-    tips.
+    """Return the simulated tool setter, or None if it cannot be simulated.
+
+    The result is None if the machine file has no tool setter or there are no tool tips.
     """
     model = machine.hardware.find_driver_table(SetterModel)
     return SimToolSetter(model.x, model.z, model.width, tips) if model is not None and tips else None

@@ -150,8 +150,9 @@ class ControlClient:
         self._outbox.put(StationAction(name, values, self.clock.now()))
 
     def pass_line(self, line: socket) -> None:
-        """Pass a socket to the control, which receives stop keys from the socket, and close the socket
-        here.
+        """Pass a socket to the control, and close the socket in this process.
+
+        The control receives stop keys from the socket.
         """
         self._outbox.put(line)
 

@@ -296,12 +296,12 @@ class ControlServer:
             self.executor.post(FeedHold(stop.kind.source_text, stop.press_number))
 
     def _post_commands(self) -> None:
-        """Send commands to the executor in order, in a separate thread, because reading a program takes
-        time.
+        """Send commands to the executor in order.
 
-        A stop takes precedence over waiting commands. Commands that start a motion and were sent before the
-        stop are dropped. With a real-time policy, the thread has the lowest priority, so that reading never
-        delays a tick by a time slice.
+        This method runs in a separate thread, because reading a program takes time. A stop takes precedence
+        over waiting commands. Commands that start a motion and were sent earlier than the stop are dropped.
+        With a real-time policy, the thread has the lowest priority, so that reading never delays a tick by
+        a time slice.
         """
         lower_thread(READING)
         while not self.closing_event.is_set():

@@ -39,10 +39,10 @@ class StartedControl(NamedTuple):
 
 
 def socket_paths(folder: Path) -> list[Path]:
-    """Return the paths of the sockets at which controls of this data folder listen, with the usual path
-    first.
+    """Return the paths of the sockets at which controls of this data folder listen.
 
-    The list is empty if the paths are too long for a socket. Another screen cannot find such a control.
+    The usual path is the first. The list is empty if the paths are too long for a socket. Another screen
+    cannot find such a control.
     """
     paths = [folder / f"{name}.sock" for name in PLACES]
     return paths if all(len(os.fsencode(path)) < _PATH_LENGTH for path in paths) else []

@@ -21,7 +21,9 @@ _TEXT, _DRIVES = "text", "drives"
 class SettingsReader(Protocol):
     """Reader of settings in the store."""
 
-    def read_setting(self, key: str) -> object: ...
+    def read_setting(self, key: str) -> object:
+        """Return the setting that the store has for this key."""
+        ...
 
 
 def get_settings_key(machine: Machine) -> str:

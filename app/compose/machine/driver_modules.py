@@ -48,8 +48,9 @@ _OWN_MODULES = (
 
 @cache
 def driver_modules() -> tuple[DriverModule, ...]:
-    """Return the modules of all drivers and optional features, in the order in which findings
-    are reported.
+    """Return the modules of all drivers and optional features.
+
+    The order of the modules is the order in which findings are reported.
     """
     added = [
         (DriverModule(module, tables), extra.preceding_table)

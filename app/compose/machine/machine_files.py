@@ -43,10 +43,10 @@ def _known_checks(silenced: tuple[str, ...], source: str) -> None:
 
 
 def load_machine(path: Path | None = None) -> Machine:
-    """Return the machine that the file ``path`` describes, or the shipped simulated lathe if ``path`` is
-    None.
+    """Return the machine that the file ``path`` describes.
 
-    Raises MachineFileError that lists every finding, or if the file cannot be read.
+    If ``path`` is None, return the shipped simulated lathe. Raises MachineFileError if the file cannot be
+    read or has errors. The exception lists every finding.
     """
     if path is None:
         return _shipped(DEFAULT_MACHINE_FILE)

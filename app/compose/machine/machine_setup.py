@@ -127,8 +127,9 @@ def store_machine(machine_file: str | None, persistence: Persistence) -> None:
 
 
 def machine_file_in_use(settings: SettingsReader) -> str | None:
-    """Return the path of the machine file in use, the name of a shipped machine, or None if neither is
-    stored.
+    """Return the path of the machine file in use, or the name of a shipped machine.
+
+    The result is None if neither is stored.
     """
     place = settings.read_setting(_SETTINGS_KEY)
     return place if isinstance(place, str) else None

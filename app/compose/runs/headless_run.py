@@ -66,8 +66,9 @@ class HeadlessToolLife:
         book.load_count = 1
 
     def update(self, snapshot: Snapshot, proof: Proof) -> None:
-        """Count the use of tools, report tools that must be replaced, and block the next part if
-        necessary.
+        """Count the use of tools, and report tools that must be replaced.
+
+        The method blocks the next part if necessary.
         """
         if not self._book.load_count:
             return

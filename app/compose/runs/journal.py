@@ -1,5 +1,6 @@
-"""Journal of the operator screen, which saves events, part counts and executed program versions in the
-store.
+"""Journal of the operator screen.
+
+The journal saves events, part counts and executed program versions in the store.
 """
 
 from __future__ import annotations
@@ -342,8 +343,9 @@ class Journal(Persistence):
         )
 
     def move_program_data(self, old: str, new: str) -> None:
-        """Rename a program with its versions, counts and records, and wait until the change is
-        on the disk.
+        """Rename a program with its versions, counts and records.
+
+        The method waits until the change is on the disk.
         """
         store = self._store
         if store is not None:

@@ -1,5 +1,6 @@
-"""Interfaces of pages, start handlers and watchers attached to TurnDesk, and the order in which
-they close.
+"""Interfaces of pages, start handlers and watchers that are attached to TurnDesk.
+
+The module also defines the order in which they close.
 """
 
 from __future__ import annotations
@@ -18,7 +19,9 @@ DRIVERS_CLOSE_TIMEOUT_S = 10.0  # Seconds for stopping an inverter and for a dri
 class AttachedModel(Protocol):
     """Model of a page or of a background worker, which closes together with TurnDesk."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """End the work of the model when TurnDesk closes."""
+        ...
 
 
 class StartHandler(Protocol):
@@ -34,7 +37,9 @@ class StartHandler(Protocol):
 class FrameWatcher(Protocol):
     """Object that observes every frame and may add a reminder to the prompt line."""
 
-    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None: ...
+    def observe(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
+        """Update the watcher from the snapshot and the loaded program, once per frame."""
+        ...
 
     def due_reminder(self) -> str:
         """Return a reminder of what the operator must do soon, or an empty text without a reminder."""
@@ -57,8 +62,9 @@ class ClosingSequence:
     wait_for_step: WaitFunction = wait_for_end  # Waits for one closing step.
 
     def close(self, model_steps: Iterable[ClosingStep]) -> None:
-        """Stop the machine and close its drivers, close all workers together, and then execute
-        ``final_steps``.
+        """Stop the machine and close its drivers, and then close all workers together.
+
+        After that, the steps in ``final_steps`` are executed.
         """
         close_in_order(
             [*self.stop_steps, ClosingStep("drivers", self.close_drivers, DRIVERS_CLOSE_TIMEOUT_S)],

@@ -1,5 +1,6 @@
-"""Code help of the editor and the MDI page, which shows the meaning of a code and completions
-while typing.
+"""Code help of the editor and the MDI page.
+
+The code help shows the meaning of a code and completions while the operator types.
 """
 
 from __future__ import annotations
@@ -36,10 +37,10 @@ class CodeHelp:
         self.current_entry = None if code_book is None else code_book.at(line, column)
 
     def open_choices(self) -> bool:
-        """List the completions of the typed text, or without completions, the chapter of the code at the
-        cursor.
+        """List the completions of the typed text, or the chapter of the code at the cursor.
 
-        Return False without a code book, because the text is still being proved for the first time.
+        The chapter is listed if there are no completions. Returns False without a code book, because the
+        text is still being proved for the first time.
         """
         if self._book is None:
             return False

@@ -99,8 +99,9 @@ class FunctionKey(NamedTuple):
 
 @dataclass(slots=True)
 class InputField:
-    """Input field that accepts any character if ``words`` is True, and otherwise only characters of
-    numbers.
+    """Input field for text or for numbers.
+
+    If ``words`` is True, the field accepts any character. Otherwise it accepts only characters of numbers.
     """
 
     words: bool = False

@@ -125,8 +125,9 @@ _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an
 
 
 class ProgramFileMonitor:
-    """Monitor that compares the file with the loaded program in a separate thread, because a network drive
-    may hang.
+    """Monitor that compares the file with the loaded program in a separate thread.
+
+    The separate thread is necessary because a network drive may hang.
     """
 
     def __init__(
@@ -146,10 +147,9 @@ class ProgramFileMonitor:
 
     @property
     def difference_text(self) -> str:
-        """Return the message about the difference between the files and the loaded text, or an empty text
-        if they are equal.
+        """Return the message about the difference between the files and the loaded text.
 
-        If a file cannot be read, the message says so.
+        The message is empty if they are equal. If a file cannot be read, the message reports this.
         """
         loaded, since = self._loaded(), self._since
         if loaded.source is None:

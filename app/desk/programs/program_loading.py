@@ -29,9 +29,9 @@ ApproachLegs = tuple[tuple[float, float, bool], ...]
 
 
 class FirstMoveResult(NamedTuple):
-    """Result of the first-move check, with a verdict for a start at the current position and a verdict for
-    Cycle Repeat.
+    """Result of the first-move check.
 
+    The result has one verdict for a start at the current position and one verdict for Cycle Repeat.
     ``legs`` is the path that is drawn. ``zero_position`` is the machine position X and Z in mm at which the
     tool tip is at part zero.
     """
@@ -99,8 +99,9 @@ class PartProof:
         return replace(proof, errors=(*proof.errors, *errors), warnings=self.warning_texts)
 
     def merge_diagnostics(self, diagnostics: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        """Return these diagnostics and the given diagnostics without duplicates, sorted by line
-        and column.
+        """Return these diagnostics and the given diagnostics without duplicates.
+
+        The diagnostics are sorted by line and column.
         """
         known = {(each.line, each.code) for each in diagnostics}
         own = (each for each in self.diagnostics if (each.line, each.code) not in known)

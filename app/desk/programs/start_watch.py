@@ -42,8 +42,9 @@ if TYPE_CHECKING:
 
 
 class PreviousPart(NamedTuple):
-    """The program that made the part in the chuck, with the interrupted job if the program was
-    interrupted.
+    """The program that made the part in the chuck.
+
+    If the program was interrupted, this object also contains the interrupted job.
     """
 
     job: Job
@@ -52,8 +53,9 @@ class PreviousPart(NamedTuple):
 
 
 class FirstMoveQuery(NamedTuple):
-    """Data for one first-move check, such as the job, the kind of start, the axis positions and the active
-    tool.
+    """Data for one first-move check.
+
+    The data include the job, the kind of start, the axis positions and the active tool.
     """
 
     job: Job

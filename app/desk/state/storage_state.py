@@ -21,8 +21,9 @@ class StorageState:
         self._problem, self._waiting = problem, waiting
 
     def set_file_readers(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
-        """Set the functions of the program file monitor, for ``read_file_difference`` and
-        ``recheck_file``.
+        """Set the functions of the program file monitor.
+
+        ``read_file_difference`` and ``recheck_file`` call these functions.
         """
         self._difference, self._recheck_file = difference, recheck
 
@@ -31,8 +32,9 @@ class StorageState:
         return self._problem()
 
     def read_unsaved(self) -> str:
-        """Return a text that lists the data waiting in memory to be saved, or an empty text if no data
-        waits.
+        """Return a text that lists the data waiting in memory to be saved.
+
+        The text is empty if no data are waiting.
         """
         return self._waiting()
 

@@ -27,8 +27,9 @@ def format_fixed(value: float, decimals: int) -> str:
 
 
 def format_length(mm: float, metric: bool) -> str:
-    """Return a length or coordinate in mm as text, with 4 decimals if ``metric``, and otherwise 5 decimals
-    in inches.
+    """Return a length or coordinate in mm as text.
+
+    If ``metric`` is true, the text is in mm with 4 decimals. Otherwise it is in inches with 5 decimals.
     """
     return format_fixed(mm, 4) if metric else format_fixed(mm / MM_PER_INCH, 5)
 
@@ -56,8 +57,9 @@ def format_feed(value: float, metric: bool, per_rev: bool) -> str:
 
 
 def format_surface_speed(mm_s: float, metric: bool) -> str:
-    """Return a surface speed in mm/s as text without a sign, in m/min if ``metric``, and otherwise in
-    ft/min.
+    """Return a surface speed in mm/s as text without a sign.
+
+    If ``metric`` is true, the text is in m/min. Otherwise it is in ft/min.
     """
     return format_fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
 
@@ -107,7 +109,8 @@ def format_wall_time(utc_time: str, today: str = "%H:%M") -> str:
 
 
 def format_local_time(utc_time: str, *, seconds: bool = True) -> str:
-    """Return a UTC time of the store (ISO 8601) as local date and time, with seconds if ``seconds`` is
-    true.
+    """Return a UTC time of the store (ISO 8601) as local date and time.
+
+    The text contains seconds if ``seconds`` is true.
     """
     return datetime.fromisoformat(utc_time).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")

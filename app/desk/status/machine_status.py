@@ -146,8 +146,9 @@ def _find_tool_text(modal: ModalState) -> str:
 
 
 def _find_secondary_offset(modal: ModalState) -> str:
-    """Return the text that follows T, which is the secondary offset, or the cutting edge and the zero
-    offset.
+    """Return the text that follows T.
+
+    The text is the secondary offset, or the cutting edge and the zero offset.
     """
     if modal.edge is not None:
         return f"D{modal.edge} G{modal.settable}" if modal.settable else f"D{modal.edge}"

@@ -84,8 +84,9 @@ def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tu
 
 
 def make_alarm_prompt(snapshot: Snapshot, release: str, *, is_field_open: bool = False) -> str:
-    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt, or an empty text without
-    either.
+    """Return the prompt for an alarm or an E-stop, which replaces a page's prompt.
+
+    The prompt is empty if there is neither an alarm nor an E-stop.
     """
     if snapshot.state is MachineState.FAULT:
         if not snapshot.alarms:
@@ -120,8 +121,9 @@ def reason(status: MachineStatus) -> str:
 
 
 def describe_cause(alarm: Alarm) -> str:
-    """Return the cause of an alarm, followed by the most likely cause in the catalog if that cause is
-    different.
+    """Return the cause of an alarm.
+
+    If the most likely cause in the catalog is different, it follows this cause.
     """
     likely = alarm.causes[0] if alarm.causes else ""
     cause = translate_cause(alarm)

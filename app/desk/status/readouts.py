@@ -303,8 +303,10 @@ def make_position_readout(
 
 
 def _find_x_label(snapshot: Snapshot, readout: ReadoutKind) -> str:
-    """Return a text that says whether X is a diameter or radius on a lathe, or names the coordinate system
-    on a mill.
+    """Return the label of X.
+
+    On a lathe, the label shows whether X is a diameter or a radius. On a mill, it names the coordinate
+    system.
     """
     if snapshot.axes != LATHE_AXES:
         return name_system(None if readout is ReadoutKind.HOME else snapshot.swivel)
@@ -356,8 +358,9 @@ class FeedReadout:
 
 @dataclass(frozen=True, slots=True)
 class SpindleReadout:
-    """Commanded and measured speed in rpm, surface speed, override, and the setting of the
-    AUTO/OFF switch.
+    """Commanded and measured speed, surface speed, override, and setting of the spindle switch.
+
+    The commanded and measured speeds are in rpm. The spindle switch has the positions AUTO and OFF.
     """
 
     direction: str

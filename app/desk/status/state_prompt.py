@@ -58,8 +58,9 @@ def _prompt(desk: Desk, snapshot: Snapshot, loaded: LoadedProgram, page: str) ->
 
 
 def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
-    """Return the reminders of the watchers, or an empty text during an alarm, an interrupted job or a
-    refusal.
+    """Return the reminders of the watchers.
+
+    The text is empty during an alarm, an interrupted job or a refusal.
     """
     waits = snapshot.state in {MachineState.ESTOP, MachineState.FAULT} or snapshot.interrupted_line
     if waits or prompt.startswith(prompt_line.WILL_NOT_START):
@@ -78,8 +79,9 @@ def find_start_refusal(desk: Desk, snapshot: Snapshot) -> str:
 
 
 def find_time_left(snapshot: Snapshot, loaded: LoadedProgram) -> float:
-    """Return the time to the end of the cycle at the current override, in seconds, or inf if it
-    is unknown.
+    """Return the time to the end of the cycle at the current override, in seconds.
+
+    The time is inf if it is unknown.
     """
     picture = loaded.picture
     if picture is None or loaded.proof is None:

@@ -30,6 +30,7 @@ class AccessExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Create the sign-in by PIN and attach it to the user access of TurnDesk."""
         from app.extras.access.sign_in import get_sign_in
 
         get_sign_in(desk.user_access)
@@ -37,18 +38,24 @@ class AccessExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the ACCESS LEVELS function, which follows LAMPS AND SOUND in the list."""
         from app.extras.access.access_levels import AccessLevelsFunction
         from app.extras.access.sign_in import get_sign_in
 
         return ((AccessLevelsFunction(desk, persistence, get_sign_in(desk.user_access)), "LAMPS AND SOUND"),)
 
     def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
+        """Ask for the user's PIN on the command line, and return True because this feature supports PINs.
+
+        ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
+        """
         from app.extras.access.access_command import require_pin
 
         require_pin(store, row, remedy)
         return True
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of ``turndesk access``, which follow ``scope FILE --json``."""
         from app.extras.access.access_command import OUTPUTS
 
         return OUTPUTS

@@ -1,5 +1,6 @@
-"""Page of the analyses: path error, thread passes, ball bar and responses, each with a drawing
-and a table.
+"""Page of the analyses, each with a drawing and a table.
+
+The analyses are path error, thread passes, ball bar and responses.
 """
 
 from __future__ import annotations
@@ -108,6 +109,7 @@ class DescriptionLine(Panel):
     words = RedrawingAttribute("")
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the description of the analysis, or the reason why it has no result."""
         u = self.theme.u
         room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
         painter.draw_text_line(QRectF(room), self.words, 1.8, "text")

@@ -38,6 +38,7 @@ class DriveTestPad(JogCross):
         self._model = model
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the arrow keys, and name the direction key that the operator must hold down."""
         self.controls.clear()
         self.frame(painter, tr("DRIVE TEST  ·  PRESS ARROW, THEN HOLD IT"))
         asked = self._model.held_jog.requested_direction

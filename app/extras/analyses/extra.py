@@ -28,6 +28,7 @@ class AnalysesExtra(OptionalFeature):
 
     @property
     def pages(self) -> Sequence[PageDescription]:
+        """Return the descriptions of the pages ANALYSES and DRIVE TEST."""
         from app.desk.page_description import PageDescription
 
         return (
@@ -50,6 +51,7 @@ class AnalysesExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Register the models of the analyses and the drive test, which are created at their first use."""
         desk.page_registry.attach_lazily(_ANALYSES, partial(_analyses, desk, machine))
         desk.page_registry.attach_lazily(_DRIVE_TESTS, partial(_drive_tests, desk, machine))
 

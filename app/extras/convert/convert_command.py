@@ -1,5 +1,6 @@
-"""Command ``turndesk convert FILE``, which converts a program of another control to OmniTurn and
-proves it.
+"""The command ``turndesk convert FILE``, which converts a program of another control to OmniTurn.
+
+The command also proves the converted program.
 """
 
 from __future__ import annotations

@@ -23,6 +23,7 @@ class DrawingsExtra(OptionalFeature):
     drawing_suffixes = (".dxf", ".svg")
 
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
+        """Add the DRAWING form if ``model`` is the model of the shapes."""
         from app.extras.drawings.drawings_setup import add_drawing_form
         from app.extras.shapes.shapes_model import ShapesModel
 
@@ -30,11 +31,13 @@ class DrawingsExtra(OptionalFeature):
             add_drawing_form(model, desk, machine)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of ``turndesk profile``, which follow ``access table --json``."""
         from app.extras.drawings.profile_command import OUTPUTS
 
         return {"access table --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
+        """Return the screen texts of the DRAWING form, including texts that its table does not contain."""
         from app.extras.drawings.drawing_form import DRAWING_SHAPE
         from app.extras.shapes.shape_form import list_translatable_texts
 

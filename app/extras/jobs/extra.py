@@ -28,6 +28,7 @@ class JobsExtra(OptionalFeature):
 
     @property
     def pages(self) -> Sequence[PageDescription]:
+        """Return the description of the JOBS page."""
         from app.desk.page_description import PageDescription
 
         return (
@@ -46,6 +47,7 @@ class JobsExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Attach the job queue to TurnDesk, with its page and its key in the program list."""
         from app.extras.jobs.jobs_setup import attach_jobs
 
         attach_jobs(desk, machine, journal, loading_steps)
@@ -53,11 +55,13 @@ class JobsExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the JOBS function, which follows MEASURED PARTS in the list."""
         from app.extras.jobs.jobs_watch import JobsFunction
 
         return ((JobsFunction(desk), "MEASURED PARTS"),)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of ``turndesk jobs``, which follow ``shift --json``."""
         from app.extras.jobs.jobs_command import OUTPUTS
 
         return OUTPUTS

@@ -26,6 +26,11 @@ class MtconnectExtra(OptionalFeature):
     preceding_table = "setter"
 
     def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        """Start the MTConnect adapter, and return the function that stops it.
+
+        The result is None if the machine file has no [mtconnect] table or the adapter cannot run.
+        ``report`` shows the reason if the adapter cannot run.
+        """
         if desk.machine.machine is None or _TABLE not in desk.machine.machine.hardware.tables:
             return None
         from app.extras.mtconnect.adapter_setup import start_adapter
@@ -35,6 +40,11 @@ class MtconnectExtra(OptionalFeature):
     def start_headless(
         self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
     ) -> CloseFunction | None:
+        """Start the MTConnect adapter for a run without a screen, and return the function that stops it.
+
+        The result is None if the machine file has no [mtconnect] table or the adapter cannot run. A run
+        that is faster than real time is not reported, and ``report`` shows the reason.
+        """
         if _TABLE not in machine.hardware.tables:
             return None
         from app.extras.mtconnect.adapter_setup import start_headless_adapter
@@ -42,6 +52,10 @@ class MtconnectExtra(OptionalFeature):
         return start_headless_adapter(machine, snapshot, report, is_real_time=real_time)
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+        """Add a row that shows whether MTConnect agents can connect and the device model is valid.
+
+        No row is added if the machine file has no [mtconnect] table.
+        """
         if _TABLE in machine.hardware.tables:
             from app.extras.mtconnect.mtconnect_command import check_mtconnect
 

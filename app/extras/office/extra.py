@@ -33,6 +33,11 @@ class OfficeExtra(OptionalFeature):
     preceding_table = "setter"
 
     def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        """Start the status page and the announcements, and return the function that stops them.
+
+        The result is None if the machine file has neither a [status_page] table nor an [announce] table.
+        ``report`` shows an error if one of the services fails.
+        """
         if desk.machine.machine is None or _TABLES.isdisjoint(desk.machine.machine.hardware.tables):
             return None
         from app.extras.office.office_setup import start_office
@@ -40,11 +45,16 @@ class OfficeExtra(OptionalFeature):
         return start_office(desk, desk.machine.machine, journal, report)
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
+        """Return declarations of the data on the office status page and in announcements."""
         from app.extras.office.office_reference import OUTPUTS
 
         return OUTPUTS
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+        """Add rows that show whether the status page can be opened and the MQTT broker responds.
+
+        No row is added if the machine file has neither a [status_page] table nor an [announce] table.
+        """
         if not _TABLES.isdisjoint(machine.hardware.tables):
             from app.extras.office.office_check import check_office
 

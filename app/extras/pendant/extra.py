@@ -21,6 +21,10 @@ class PendantExtra(OptionalFeature):
     preceding_table = "setter"
 
     def remove_own_inputs(self, machine: Machine) -> Machine:
+        """Return the machine without the inputs and the handwheel of the pendant.
+
+        The machine is returned unchanged if the machine file has no [pendant] table.
+        """
         if _TABLE not in machine.hardware.tables:
             return machine
         from app.extras.pendant.pendant_setup import remove_pendant
@@ -28,6 +32,10 @@ class PendantExtra(OptionalFeature):
         return remove_pendant(machine)
 
     def add_ports(self, machine: Machine, connected: ConnectedMachine) -> ConnectedMachine:
+        """Return the connected machine with its pendant.
+
+        The machine is returned unchanged if the machine file has no [pendant] table.
+        """
         if _TABLE not in machine.hardware.tables:
             return connected
         from app.extras.pendant.pendant_setup import add_pendant

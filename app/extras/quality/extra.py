@@ -34,6 +34,7 @@ class QualityExtra(OptionalFeature):
 
     @property
     def pages(self) -> Sequence[PageDescription]:
+        """Return the description of the MEASURED PARTS page."""
         from app.desk.page_description import PageDescription
 
         return (
@@ -55,6 +56,7 @@ class QualityExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Attach the measured parts and the sampling plan to TurnDesk if production data are available."""
         from app.extras.quality.quality_setup import attach_quality
 
         attach_quality(desk, machine)
@@ -62,6 +64,7 @@ class QualityExtra(OptionalFeature):
     def list_special_functions(
         self, desk: Desk, machine: Machine, persistence: Persistence, worker: LatestRequestWorker
     ) -> Sequence[tuple[SpecialFunction, str]]:
+        """Return the functions MEASURED PARTS, which follows SCOPE, and shift report, which follows JOBS."""
         from app.desk.data_folder import find_data_folder
         from app.extras.quality.quality_setup import MeasuredPartsFunction
         from app.extras.quality.shift_function import ShiftReportFunction
@@ -71,6 +74,7 @@ class QualityExtra(OptionalFeature):
         return ((parts, "SCOPE"), (report, "JOBS"))
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of measured parts and shifts, which follow ``offsets history --json``."""
         from app.extras.quality.quality_json_keys import OUTPUTS
 
         return OUTPUTS

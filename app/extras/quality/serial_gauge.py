@@ -119,7 +119,9 @@ class Gauge(Protocol):
         """Return the readings and error messages that have arrived since the last call."""
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Stop receiving, so that the serial port can be closed."""
+        ...
 
 
 class NoGauge:

@@ -1,5 +1,6 @@
-"""Shift report in the list of special functions (F10): its results, the selection of the shift,
-and saving.
+"""Shift report in the list of special functions (F10).
+
+The function shows the results of a shift, selects the shift, and saves the report.
 """
 
 from __future__ import annotations

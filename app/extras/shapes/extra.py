@@ -28,16 +28,19 @@ class ShapesExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Register the model of the shapes, which is created at its first use."""
         desk.page_registry.attach_lazily(
             "app.extras.shapes.shapes_model.ShapesModel", partial(_shapes, desk, machine)
         )
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of ``turndesk shapes``, which follow ``store verify --json``."""
         from app.extras.shapes.shapes_command import OUTPUTS
 
         return {"store verify --json": OUTPUTS}
 
     def words(self) -> Sequence[str]:
+        """Return the screen texts of all shapes and calculators in every dialect."""
         from app.extras.shapes.shape_form import list_translatable_texts
         from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIALECT
 

@@ -29,6 +29,7 @@ class SharingExtra(OptionalFeature):
 
     @property
     def pages(self) -> Sequence[PageDescription]:
+        """Return the description of the SHARED PROGRAMS page."""
         from app.desk.page_description import PageDescription
 
         return (
@@ -46,21 +47,34 @@ class SharingExtra(OptionalFeature):
     def attach_models(
         self, desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps
     ) -> None:
+        """Attach the page of shared programs to TurnDesk.
+
+        Without a store or a [sharing] table, the page shows the reason why no programs are shared.
+        """
         from app.extras.sharing.sharing_setup import attach_sharing
 
         attach_sharing(desk, machine, journal)
 
     def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+        """Start the synchronization thread, and return the function that stops it.
+
+        The result is None if the machine file has no [sharing] table or the location cannot be used.
+        """
         from app.extras.sharing.sharing_setup import start_sharing
 
         return start_sharing(desk, journal)
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON outputs of ``turndesk share``, with the output that precedes them."""
         from app.extras.sharing.share_command import OUTPUTS, PRECEDING_COMMAND
 
         return {PRECEDING_COMMAND: OUTPUTS}
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
+        """Add a row that shows whether the shared location responds and is set up.
+
+        No row is added if the machine file has no [sharing] table.
+        """
         from app.extras.sharing.sharing_check import check_sharing
 
         check_sharing(machine, results)

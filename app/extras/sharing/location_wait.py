@@ -1,5 +1,6 @@
-"""Waiting of a command for the shared location, which may never respond if it is on a failed
-network drive.
+"""Waiting of a command for the shared location.
+
+The location may never respond if it is on a failed network drive.
 """
 
 from __future__ import annotations

@@ -19,6 +19,7 @@ class ToolTables(OptionalFeature):
     }
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
+        """Return the JSON output of the tool table import, which follows ``offsets history --json``."""
         from app.extras.tool_tables.import_command import IMPORT
 
         return {"offsets history --json": (IMPORT,)}

@@ -45,6 +45,7 @@ class AlarmNotice(Panel):
         self.setVisible(bool(message or alarms))
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the active alarms, or the message of M00 or M01 if there are no alarms."""
         if self._alarms:
             self._draw_alarm(painter, *self._alarms)
         else:
@@ -163,6 +164,7 @@ class AlarmList(RowPanel):
         return self.logged_stops[self.marked].recording_name if self.marked < len(self.logged_stops) else ""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the logged alarms and stops, or a message if the log is empty."""
         u = self.theme.u
         room = self.inside()
         if not self.logged_stops:

@@ -73,6 +73,7 @@ class StationDock(TouchPanel):
         return self._row(38.7, 6.5)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the controls of the operator station, and set their touch targets."""
         self.controls.clear()
         desk = self._desk
         self._mushroom(painter)

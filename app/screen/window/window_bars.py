@@ -67,6 +67,7 @@ class TitleLine(Panel):
         self._shown = (program, state, tone, machine, clock)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the page title, program, machine state, signed-in user, machine name and clock."""
         program, state, tone, machine, clock = self._shown
         u, high = self.theme.u, self.height()
         painter.fill_rect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
@@ -145,6 +146,10 @@ class PromptLine(Panel):
         self.message_text, self.message_kind = text, kind
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the message, the question and the state.
+
+        If the main text has changed, a screen reader speaks it.
+        """
         area = self.find_full_area()
         painter.fill_rect(area, "panel")
         if self.main_text != self._announced:
@@ -235,6 +240,7 @@ class CommentLine(Panel):
     text = RedrawingAttribute("")
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the last comment of the program."""
         u = self.theme.u
         room = self.find_full_area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
         painter.draw_text_line(room, self.text, 2.0, "accent", bold=False, raw=True)
@@ -261,6 +267,7 @@ class FunctionKeyBar(Panel):
         self._press = press
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw each function key that has a label, with disabled keys in a softer color."""
         u = self.theme.u
         gap = 0.6 * u
         wide = (self.width() + gap) / len(self.key_labels)
@@ -301,6 +308,7 @@ class LampStrip(Panel):
         self._press = press
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the lamps in one row, and make each lamp with a key a touch target."""
         u = self.theme.u
         gap = 0.6 * u
         wide = (self.width() + gap) / max(1, len(self.lamps))
@@ -387,6 +395,7 @@ class NoticeRows(Panel):
         return self.needed_height_px
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the notices one below another, reduced in height if the area is too low."""
         share, top = (
             self.height() / max(1, self.needed_height_px),
             0.0,

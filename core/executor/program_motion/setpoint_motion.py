@@ -262,8 +262,9 @@ class SetpointMotion:
         return _make_plan(self._section.scale_path(overrides, None), self._queue.find_plan(t), t, stop=True)
 
     def _refill(self, feed: ReadAhead) -> None:
-        """Append blocks that were read ahead before the axes come near the braking end of the
-        path section.
+        """Append blocks that were read ahead.
+
+        The blocks are appended before the axes come near the braking end of the path section.
         """
         now = self._context.now
         left = (self._pass.end_time_s if self._pass is not None else self._queue.planned_end_s) - now

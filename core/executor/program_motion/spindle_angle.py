@@ -85,8 +85,9 @@ class SpindleAnglePredictor:
         return state
 
     def _fit_readings(self) -> tuple[list[float], float]:
-        """Return the coefficients of the cubic relative to the last reading, and the angle of
-        this reading.
+        """Return the coefficients of the cubic, and the angle of the last reading.
+
+        The cubic is relative to the last reading.
         """
         last, base = self._reads[-1]
         times, turns = zip(*self._reads, strict=True)

@@ -354,8 +354,9 @@ class ThreadRetract(NamedTuple):
             raise AlarmError("thread-lost", self._describe_thread_state(position[1]), self.block.line)
 
     def make_retract_block(self, position: Sequence[float]) -> Block:
-        """Return a rapid along X alone from ``position``, which contains X, Z and C in machine
-        coordinates.
+        """Return a rapid along X alone from ``position``.
+
+        ``position`` contains X, Z and C in machine coordinates.
         """
         block = self.block
         return dataclasses.replace(

@@ -67,8 +67,9 @@ class Drawing:
 
 
 def calculate_arc_tolerance(unit: float) -> float:
-    """Return the largest permitted distance between a curve and the arcs that replace it, in
-    drawing units.
+    """Return the largest permitted distance between a curve and the arcs that replace it.
+
+    The distance is in drawing units.
     """
     return _NEAREST / unit if unit else _OF_UNKNOWN
 

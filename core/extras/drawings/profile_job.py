@@ -163,8 +163,9 @@ def propose_fields(
     metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, FieldValue]:
-    """Return the fields for ``make_profile_program``: the given values, and proposals for the
-    other fields.
+    """Return the fields for ``make_profile_program``.
+
+    The fields are the given values, and proposals for the other fields.
     """
     inside = profile.side is ContourSide.INSIDE
     fields: dict[str, FieldValue] = {"UNIT": "METRIC" if metric else "INCH", **given_values}

@@ -225,8 +225,9 @@ def _without_face(elements: list[Element]) -> list[Element]:
 
 
 def _fall(element: Element) -> float:
-    """Return the steepness of an element's fall toward the chuck in radians, negative if the
-    element rises.
+    """Return the steepness of an element's fall toward the chuck, in radians.
+
+    The steepness is negative if the element rises.
     """
     ways = (element.start_direction, element.end_direction)
     found = (math.atan2(-direction[0], max(-direction[1], 0.0)) for direction in ways)
@@ -359,8 +360,9 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
 
 
 def join_elements(elements: Iterable[Element]) -> list[Element]:
-    """Return the elements with collinear lines and concentric arcs joined, and without very
-    short elements.
+    """Return the elements with collinear lines and concentric arcs joined.
+
+    Very short elements are removed.
     """
     found: list[Element] = []
     for each in elements:

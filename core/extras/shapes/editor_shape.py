@@ -125,8 +125,9 @@ class FilledShape:
         return code.add_comment(self.make_comment(settings)) if self.shape.noted else code.lines
 
     def make_comment(self, settings: ProgramSettings) -> str:
-        """Return the comment with the name of the shape, and the value and word of each field
-        with a value.
+        """Return the comment that describes the shape.
+
+        The comment contains the name of the shape, and the value and word of each field with a value.
         """
         said = [self.shape.name]
         for each in self.fields:

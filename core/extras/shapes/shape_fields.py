@@ -155,8 +155,9 @@ DEFAULT_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the tool 
 
 @dataclass(frozen=True, slots=True)
 class ShopData:
-    """Data of the machine and its tools, such as the maximum rpm, the live tool, and tools by T number in
-    mm.
+    """Data of the machine and its tools.
+
+    The data include the maximum rpm, the live tool, and the tools by T number in mm.
     """
 
     max_rpm: float = 3500.0

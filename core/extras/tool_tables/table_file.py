@@ -17,8 +17,9 @@ _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
 
 
 class Format(NamedTuple):
-    """A format of tool tables: its name for users, its file suffixes, and the function that
-    reads its text.
+    """A format of tool tables.
+
+    The format has a name for users, file suffixes, and a function that reads the text of a table.
     """
 
     title: str

@@ -159,8 +159,9 @@ class State:
 
     @property
     def displayed_angles(self) -> RotaryAngles:
-        """Return the displayed angles of A, B and C in degrees, with None for each axis that the machine
-        lacks.
+        """Return the displayed angles of A, B and C in degrees.
+
+        The angle is None for each axis that the machine lacks.
         """
         if self._shown is None:
             axes = {axis.name: self.get_displayed_angle(axis) for axis in self.kinematics.rotary_axes}
@@ -375,8 +376,9 @@ class State:
         slides: bool,
         curved: bool,
     ) -> float:
-        """Return the path speed at which the slowest axis moves at its maximum speed, in mm/s or
-        degrees/s.
+        """Return the path speed of a rapid in mm/s or degrees/s.
+
+        At this speed, the slowest axis moves at its maximum speed.
         """
         if curved and slides:
             return min(slide.vmax for slide in self.kinematics.linear_axes)

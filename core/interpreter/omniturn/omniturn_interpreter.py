@@ -143,8 +143,9 @@ class Interpreter(InterpreterPass):
                 yield each
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series where
-        possible.
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
+
+        The moves are combined where possible.
         """
         if self._program.structure.loop_ends or len(self._program.executable_lines) >= LONG_PROGRAM_LINES:
             from core.interpreter.omniturn.motion.move_series import SeriesReader
@@ -334,11 +335,10 @@ class StoppablePass(Interpreter):
     """A pass that can stop before any line, in each loop pass and call, and then continue."""
 
     def run_to_line(self, line: int) -> Iterator[Block]:
-        """Yield the blocks before the next execution of this line (from 1), so that ``is_at_line`` is then
-        True.
+        """Yield the blocks up to the next execution of this line, counted from 1.
 
-        The method can be called again with a later line. At the first error, the iterator ends and
-        ``has_errors`` is True.
+        After the last block, ``is_at_line`` is True. The method can be called again with a later line. At
+        the first error, the iterator ends and ``has_errors`` is True.
         """
         self._flow.stop_before(line)
         return self._until_stop()

@@ -81,8 +81,9 @@ class StyleChecker:
         self._places: dict[str, int] = {}  # kind → index in ``findings``
 
     def record_deviation(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
-        """Record ``count`` occurrences of a deviation; ``line`` and ``column`` are the location of the
-        first.
+        """Record ``count`` occurrences of a deviation.
+
+        ``line`` and ``column`` are the location of the first occurrence.
         """
         at = self._places.get(kind)
         if at is not None and not self._strict:

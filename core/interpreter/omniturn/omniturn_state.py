@@ -1,5 +1,6 @@
-"""State that changes during a pass, with direct attributes for fast access, and conversion to a
-checkpoint.
+"""State that changes during a pass, and its conversion to a checkpoint.
+
+The state has direct attributes for fast access.
 """
 
 from __future__ import annotations
@@ -125,8 +126,9 @@ class State:
         self.update_derived_values()
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state unless it equals the present state, so that blocks continue to share one
-        object.
+        """Set the modal state unless it equals the present state.
+
+        Blocks therefore continue to share one object.
         """
         if modal != self.modal:
             self.modal = modal

@@ -114,8 +114,9 @@ class Statement:
         return 0 if self.code_word is None else self.code_word.column
 
     def get_block_text(self, name: str) -> str:
-        """Return the text of one block of the line, or the text of the whole line if the line has only one
-        block.
+        """Return the text of one block of the line.
+
+        If the line has only one block, the text of the whole line is returned.
         """
         return self.text if self.block_texts is None else self.block_texts.get(name, self.text)
 

@@ -34,8 +34,9 @@ class LineVisits:
     flow_positions: list[FlowPosition]
 
     def find_visit_number(self, block: int) -> int:
-        """Return the number (from 1) of the visit in which this block was executed, or 1 for an earlier
-        block.
+        """Return the number (from 1) of the visit in which this block was executed.
+
+        Returns 1 for an earlier block.
         """
         return max(1, bisect_left(self.earlier_block_counts, block))
 
@@ -69,8 +70,9 @@ class LineVisits:
         return anchor, number - nth + 1
 
     def make_line_visit(self, number: int) -> LineVisit:
-        """Return the visit with its loop passes and calls for display, from the outermost to the
-        innermost.
+        """Return the visit with its loop passes and calls for display.
+
+        The passes and calls are in order from the outermost to the innermost.
         """
         return LineVisit(
             number,

@@ -19,8 +19,9 @@ def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> fl
 
 
 def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
-    """Return the point of a row that is nearest to (x, z) in mm, or None if the start of the row is
-    unknown.
+    """Return the point of a row that is nearest to (x, z), in mm.
+
+    Returns None if the start of the row is unknown.
     """
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     length = hypot(x1 - x0, z1 - z0)

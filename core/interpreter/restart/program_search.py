@@ -234,10 +234,10 @@ class BlockSearch:
         return RestartPoint(line, point, clear, None, visit, skipped_lines=(first, last), axis_positions=at)
 
     def _nearest(self, line: int, direction: int, interruption: Interruption | None) -> int:
-        """Return the nearest suitable line in one direction, or 0 if none of the first few lines is
-        suitable.
+        """Return the nearest suitable line in one direction.
 
-        Each candidate line is checked like a requested line.
+        Each candidate line is checked like a requested line. Returns 0 if none of the first few lines is
+        suitable.
         """
         near = [
             each

@@ -29,8 +29,9 @@ class LineRange(NamedTuple):
     start_line: int = 0
 
     def make_message(self, line: int) -> Message:
-        """Return the reason why a program cannot be restarted from this line, which must be within the
-        range.
+        """Return the reason why a program cannot be restarted from this line.
+
+        The line must be within the range.
         """
         return Message(self.reason, line=line, begin=self.start_line)
 
@@ -48,8 +49,9 @@ class RestartSuitability:
         self._calls = _calls(program)
 
     def explain_unsuitable(self, line: int) -> str:
-        """Return the reason why a restart from this line is not possible, or an empty string if the text
-        allows it.
+        """Return the reason why a restart from this line is not possible.
+
+        The reason is empty if the text of the program allows a restart.
         """
         if not 1 <= line <= self.line_count:
             return Message(
@@ -63,17 +65,17 @@ class RestartSuitability:
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
     def is_repeated(self, line: int) -> bool:
-        """Return whether a line is in a loop or subroutine, so that it may be executed several times or
-        never.
+        """Return whether a line is in a loop or subroutine.
+
+        Such a line may be executed several times or never.
         """
         return any(each.first <= line <= each.last for each in self.repeated_ranges)
 
     def find_nearest(self, line: int, direction: int) -> int:
-        """Return the nearest suitable line after (``direction`` 1) or before (-1) this line, or 0 without
-        one.
+        """Return the nearest suitable line in one direction, or 0 without one.
 
-        Loops and subroutines are skipped. From inside a subroutine, the backward search continues at its
-        first call.
+        ``direction`` is 1 to search forward and -1 to search backward. Loops and subroutines are skipped.
+        From inside a subroutine, the backward search continues at its first call.
         """
         if direction < 0:
             line = self._line_after_call(line)

@@ -137,10 +137,10 @@ class OmniturnSearch:
         return StoppablePass(self._program, setup)
 
     def _run_to_visit(self, line_pass: StoppablePass, line: int, nth: int) -> tuple[str, bool]:
-        """Run to the ``nth`` visit of a line, and return why its state is unknown and whether an axis has
-        moved.
+        """Run to the ``nth`` visit of a line.
 
-        The reason is empty if the state is known.
+        Returns the reason why the state is unknown, and whether an axis has moved. The reason is empty if
+        the state is known.
         """
         moved = False
         for number in range(nth):
@@ -421,8 +421,9 @@ def _input_lines(program: Program, lines: RestartSuitability) -> list[int]:
 
 
 def _same_state(one: StoppablePass, other: StoppablePass) -> bool:
-    """Return whether both passes are at the same point in the same state, so that they continue
-    identically.
+    """Return whether both passes are at the same point in the same state.
+
+    If so, they continue identically.
     """
     a, b = one.checkpoint, other.checkpoint
     if (

@@ -49,8 +49,9 @@ class Retract:
 
 
 class ToolPosition(NamedTuple):
-    """A position in a program, at the end of or within ``block_number``, with the tool tip at
-    (x, z) in mm.
+    """Position of the tool tip in a program, at (x, z) in mm.
+
+    The position is at the end of ``block_number`` or within this block.
     """
 
     block_number: int

@@ -53,8 +53,9 @@ class SavedPass(Generic[PartsType]):
         return hash(self._name)
 
     def copy_parts(self, *instead: object) -> PartsType:
-        """Return a copy of the saved parts, in which the objects ``instead`` replace the first shared
-        objects.
+        """Return a copy of the saved parts with other shared objects.
+
+        The objects ``instead`` replace the first shared objects in the copy.
         """
         places = (*instead, *self._shared[len(instead) :])
         return deepcopy(self._parts, {id(old): new for old, new in zip(self._shared, places, strict=True)})

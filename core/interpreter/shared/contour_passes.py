@@ -70,8 +70,9 @@ class RoughingPlanner:
         self._free = area.find_spans(0.0)
 
     def add_pass(self, depth: float) -> None:
-        """Add one pass through all spans at a depth in mm, which must exceed the depths of all earlier
-        passes.
+        """Add one pass through all spans at a depth in mm.
+
+        The depth must exceed the depths of all earlier passes.
         """
         spans = self._area.find_spans(depth)
         before = self._done[-1][0] if self._done else 0.0
@@ -145,8 +146,9 @@ class RoughingPlanner:
         self._go(level, target)
 
     def _sink(self, depth: float) -> None:
-        """Add a move down to the distance ``lift`` above a depth that has already been cut at this
-        position.
+        """Add a move down to the distance ``lift`` above a depth in mm.
+
+        The depth has already been cut at this position.
         """
         if depth - self._lift > self._at[0]:
             self._go(depth - self._lift, self._at[1])
@@ -248,8 +250,9 @@ class ContourFrame(NamedTuple):
 
 
 def make_contour_frame(start: Point, first: Point, last: Point) -> ContourFrame:
-    """Return the frame of a contour from ``first`` to ``last``, which are in the same quadrant of
-    ``start``.
+    """Return the frame of a contour from ``first`` to ``last``.
+
+    Both points are in the same quadrant of ``start``.
     """
     a, b = _off(start, first), _off(start, last)
     x = 1.0 if a[0] + b[0] > 0 else -1.0

@@ -50,8 +50,9 @@ class AdjustedMoveFactory(ABC):
 
     @abstractmethod
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move along an element, to be inserted after ``block`` with the same line, feed and
-        state.
+        """Return a new move along an element, to be inserted after ``block``.
+
+        The move has the line, feed and state of ``block``.
         """
 
     def make_motionless_block(self, block: Block, point: Point) -> Block:
@@ -221,12 +222,11 @@ _END_CLEARANCE_RATIO = 0.5
 
 
 def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float) -> bool:
-    """Return whether the center of a nose with the radius ``nose_radius_mm`` comes too close to the
-    contour.
+    """Return whether the center of a tool nose comes too close to the contour.
 
-    The elements of the contour start with the nearest element. Near the end of the contour, an approach
-    that is not perpendicular always comes closer than the radius. At this point, only
-    ``_END_CLEARANCE_RATIO`` times the radius is required.
+    The nose has the radius ``nose_radius_mm``. The elements of the contour start with the nearest element.
+    Near the end of the contour, an approach that is not perpendicular always comes closer than the radius.
+    At this point, only ``_END_CLEARANCE_RATIO`` times the radius is required.
     """
     if path.length < SAME_POINT_TOLERANCE_MM:
         return False

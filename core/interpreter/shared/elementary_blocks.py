@@ -113,11 +113,10 @@ class Block:
         return (self.mx, self.mz, self.mc) if self.travel is None else self.travel.end
 
     def reach(self) -> tuple[float, float, float, float]:
-        """Return (min x, max x, min z, max z) of the block without its start point, in mm in the program
-        frame.
+        """Return (min x, max x, min z, max z) of the block without its start point.
 
-        The start point belongs to the previous block. Arcs and moves of a virtual mill include all points
-        of their path.
+        The values are in mm in the program frame. The start point belongs to the previous block. Arcs and
+        moves of a virtual mill include all points of their path.
         """
         if self.plane is not None:
             (low_x, low_z, _), (high_x, high_z, _) = (
@@ -143,8 +142,9 @@ class Block:
 
     @property
     def length(self) -> float:
-        """Return the path length to which the feed applies in mm, or in degrees if only rotary axes or C
-        move.
+        """Return the path length to which the feed applies, in mm.
+
+        The length is in degrees if only rotary axes or C move.
         """
         if self.travel is not None:
             return self.travel.length
@@ -319,7 +319,8 @@ class SectionEndDetector:
 
 
 def _is_thread_exit(block: Block) -> bool:
-    """Return whether a block after a thread is the pull-out of the thread or a rapid straight
-    outward in X.
+    """Return whether a block after a thread leaves the thread.
+
+    The block is the pull-out of the thread, or a rapid straight outward in X.
     """
     return block.kind is BlockKind.THREAD or (block.kind is BlockKind.RAPID and block.z == block.z0)

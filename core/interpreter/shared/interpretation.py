@@ -29,8 +29,9 @@ MAX_CALL_DEPTH = 16
 
 
 class ToolUsage:
-    """The tool numbers used so far in the order of first use, and the used tools whose offsets were never
-    set.
+    """Tool numbers used so far, in the order of first use.
+
+    The class also records the used tools whose offsets were never set.
     """
 
     def __init__(self) -> None:
@@ -77,8 +78,9 @@ class InterpreterPass(ABC):
         """
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
-        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series where
-        possible.
+        """Generate the same blocks as ``generate_blocks``, with straight moves combined into series.
+
+        The moves are combined where possible.
         """
         return self.generate_blocks()
 
@@ -160,7 +162,9 @@ class NumberedLine(Protocol):
     """A line of a program with its ``number``, counted from 1."""
 
     @property
-    def number(self) -> int: ...
+    def number(self) -> int:
+        """Return the number of the line in the program, counted from 1."""
+        ...
 
 
 Line = TypeVar("Line", bound=NumberedLine)

@@ -59,8 +59,9 @@ class MachineRequirement(NamedTuple):
 
     @property
     def builder_m_code(self) -> int:
-        """Return the number of the required M function that this machine lacks, or 0 for other
-        requirements.
+        """Return the number of the required M function that this machine lacks.
+
+        Returns 0 for other requirements.
         """
         number = self.function.removeprefix(BUILDER_M_PREFIX)
         return int(number) if self.function != number and number.isdigit() else 0

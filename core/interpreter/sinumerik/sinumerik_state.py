@@ -161,8 +161,9 @@ class State:
         )
 
     def set_modal(self, modal: ModalState) -> None:
-        """Set the modal state unless it equals the present state, so that blocks continue to share one
-        object.
+        """Set the modal state unless it equals the present state.
+
+        Blocks therefore continue to share one object.
         """
         if modal != self.modal:
             self.modal = modal
@@ -238,10 +239,9 @@ class State:
             self.log.add(replace(finding, severity=Severity.WARNING))
 
     def compute_rpm_at(self, x: float) -> float:
-        """Return the commanded signed speed in rpm with the tip at radius ``x`` in the program frame, in
-        mm.
+        """Return the commanded signed speed in rpm with the tip at radius ``x``.
 
-        The speed is 0 if the spindle is stopped.
+        The radius is in the program frame, in mm. The speed is 0 if the spindle is stopped.
         """
         modal = self.modal
         if not modal.spindle:

@@ -44,8 +44,9 @@ def _dwell(match: re.Match[str]) -> str:
 
 
 def _plain(value: float) -> str:
-    """Return a number in program notation, without a zero before the decimal point and without trailing
-    zeros.
+    """Return a number in program notation.
+
+    The notation has no zero at the start before the decimal point and no trailing zeros.
     """
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return text[1:] if text.startswith("0.") else text

@@ -263,8 +263,9 @@ class _Scanner:
         )
 
     def _letter_o(self, start: int, index: int) -> int:
-        """Report the letter O at ``index`` in the word that starts at ``start``, and return the end of the
-        word.
+        """Report the letter O at ``index`` in the word that starts at ``start``.
+
+        Returns the end of the word.
         """
         match = _ZERO_LETTER.match(self._code.text, index)
         end = match.end() if match else index + 1

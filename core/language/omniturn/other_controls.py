@@ -119,8 +119,9 @@ _TOOL = re.compile(r"T0*([0-9]{1,2})([0-9]{2})")
 
 
 def explain_foreign_word(word: str) -> tuple[str, str] | None:
-    """Return the explanation and the remedy for a code or letter of other controls, or None for any other
-    word.
+    """Return the explanation and the remedy for a code or letter of other controls.
+
+    Returns None for any other word.
     """
     return _EQUIVALENTS.get(word)
 

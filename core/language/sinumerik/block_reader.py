@@ -81,8 +81,9 @@ class BlockReader(FormulaReader):
         return self.uppercase_text[self.index :].lstrip()
 
     def match(self, pattern: re.Pattern[str], *, in_original: bool = False) -> re.Match[str] | None:
-        """Return the match of the pattern at this position and move past it, or return None without a
-        match.
+        """Return the match of the pattern at this position, and move past it.
+
+        Returns None without a match.
         """
         match = pattern.match(self.original_text if in_original else self.uppercase_text, self.index)
         if match is not None:

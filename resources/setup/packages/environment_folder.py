@@ -46,8 +46,9 @@ def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str
 
 
 def _without_traces(packages: Path) -> None:
-    """Delete compiled files, and the files in which pip records data about this computer and the present
-    time.
+    """Delete compiled files and files that depend on this computer.
+
+    In the latter files, pip records data about this computer and the present time.
     """
     for compiled in [*packages.rglob("__pycache__")]:
         shutil.rmtree(compiled)

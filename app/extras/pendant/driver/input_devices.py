@@ -111,7 +111,9 @@ class EventSource(Protocol):
         """
         ...
 
-    def fileno(self) -> int: ...
+    def fileno(self) -> int:
+        """Return the file descriptor of the device, on which a thread can wait for events."""
+        ...
 
     def read_pressed_keys(self) -> frozenset[int]:
         """Return the codes of all pressed keys.
@@ -127,7 +129,9 @@ class EventSource(Protocol):
         """
         ...
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Close the device."""
+        ...
 
 
 @dataclass(frozen=True, slots=True)

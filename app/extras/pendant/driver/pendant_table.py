@@ -201,8 +201,9 @@ def _find_double_use(buttons: Mapping[str, str]) -> Iterator[FileFinding]:
 
 
 def _wheel(file: MachineFileReading) -> str:
-    """Return the address of the handwheel on the pendant, or an empty string if the handwheel is
-    not there.
+    """Return the address of the handwheel on the pendant.
+
+    The address is empty if the pendant does not have the handwheel.
     """
     path = f"{_WHEEL}.at"
     at = file.values.text(path) if file.values.has_values(path) else ""

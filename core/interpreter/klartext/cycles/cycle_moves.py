@@ -147,8 +147,9 @@ class CycleTool:
         return self._state.tool_radius_mm / self._state.transformation.scale_factor
 
     def find_radius_mm(self, tool: int) -> float | None:
-        """Return the radius of another tool in mm from TOOL DEF or the tool table, or None if it is
-        undefined.
+        """Return the radius of another tool in mm, or None if the radius is undefined.
+
+        The radius is from TOOL DEF or from the tool table.
         """
         found = find_tool_radius_mm(self._state, tool)
         return None if found is None else found / self._state.transformation.scale_factor
@@ -225,8 +226,9 @@ class CycleTool:
         self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
     def warn_unoriented(self) -> None:
-        """Log a warning that the direction of the cutting edge is unknown because the spindle cannot be
-        oriented.
+        """Log a warning that the direction of the cutting edge is unknown.
+
+        The direction is unknown because the spindle cannot be oriented.
         """
         text = "Cycle {number} moves the cutting edge away from the wall, but {unoriented}."
         hint = "Program Q214=0, or turn the cutting edge by hand when the program stops for this adjustment."
@@ -357,8 +359,9 @@ class CycleTool:
         return make_orientation_block(self._state, angle)
 
     def stop_program(self, message: str) -> Block:
-        """Return a program stop for a manual action by the operator, after which Cycle Start continues the
-        program.
+        """Return a block that stops the program for a manual action by the operator.
+
+        Cycle Start continues the program.
         """
         return self._state.make_action_block(ProgramStop(optional=False, message=message))
 

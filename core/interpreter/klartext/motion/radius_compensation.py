@@ -36,8 +36,9 @@ _MAX_CCA = 360.0
 
 
 class CompensatedContour:
-    """The elements of a contour, with the path of the tool center offset to one side by the tool radius in
-    mm.
+    """Contour with the path of the tool center, offset to one side of the contour.
+
+    The offset is the tool radius in mm.
     """
 
     def __init__(self, elements: list[PathElement], side: str, tool_radius_mm: float) -> None:
@@ -137,8 +138,9 @@ def plan_departure_path(
     radius: float,
     feed: float | None,
 ) -> Iterator[PathElement]:
-    """Yield the departure of DEP from a contour that ends at ``contour_end`` in ``direction`` (a unit
-    vector).
+    """Yield the elements of a departure with DEP.
+
+    The contour ends at ``contour_end`` in ``direction``, which is a unit vector.
     """
     start = _offset_point(contour_end, direction, side, radius)
     made = PathElement(start, start, feed, state.line_number, state.text, node.column)
@@ -180,11 +182,11 @@ def _arc_in(
 
 
 def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
-    """Return the radius of the arc of the tool center, and 1 if the arc center is on the left, or -1
-    otherwise.
+    """Return the radius of the arc of the tool center in mm, and the side of the arc center.
 
-    With a positive R, the arc is on the side of the tool; with a negative R, it is on the side of the
-    workpiece. Without compensation, the arc center is on the left.
+    The side is 1 if the arc center is on the left, or -1 if it is on the right. With a positive R, the arc
+    is on the side of the tool. With a negative R, the arc is on the side of the workpiece. Without
+    compensation, the arc center is on the left. Raises ProgramError if the tool radius is too large for R.
     """
     word = entry.node.find_word("R")
     assert word is not None

@@ -94,8 +94,9 @@ def _entry(entry: CodeEntry) -> str:
 
 
 def _rules(entry: CodeEntry) -> list[str]:
-    """Return the rules of an entry: limits of its words, conditions that reject the code, and other
-    findings.
+    """Return the rules of an entry as text.
+
+    The rules are the limits of the words, the conditions that reject the code, and other findings.
     """
     rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
     if entry.required_words is not None:

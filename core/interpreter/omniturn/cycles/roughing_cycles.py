@@ -55,10 +55,10 @@ _CORNERS = frozenset({"C", "R"})
 
 
 def read_contour(state: State, statement: Statement, lines: Sequence[Statement]) -> list[Element]:
-    """Return the contour from its first point, in mm in the coordinate frame of the cycle's line
-    ``statement``.
+    """Return the contour from its first point, in mm.
 
-    The active state does not change. Raises ProgramError for a line that is not allowed in a contour.
+    The coordinates are in the frame of the cycle's line ``statement``. The active state does not change.
+    Raises ProgramError for a line that is not allowed in a contour.
     """
     reader = _Reader(state, statement)
     for each in lines:
@@ -109,8 +109,9 @@ class _Reader:
             self._move(line)
 
     def finish(self) -> list[Element]:
-        """Return the elements, and log a warning if the modes at the end differ from the modes at the
-        start.
+        """Return the elements of the contour.
+
+        If the modes at the end of the contour differ from the modes at the start, a warning is logged.
         """
         for mode in _MODES:
             if getattr(self._own.modal, mode) != getattr(self._state.modal, mode):
@@ -169,8 +170,9 @@ class _Reader:
         return own.move(BlockKind.FEED, line.line, "", start, 0.0)
 
     def _shift(self, block: Block) -> Point:
-        """Return the shift from the frame of this block to the frame of the cycle in mm, with X as a
-        radius.
+        """Return the shift from the frame of this block to the frame of the cycle.
+
+        The shift is in mm, with X as a radius.
         """
         return block.offset_x - self._state.offset_x, block.offset_z - self._state.offset_z
 
@@ -293,11 +295,11 @@ def _make_view(state: State, statement: Statement, contour: list[Element]) -> Co
 
 
 def plan_box_cycle(state: State, statement: Statement) -> list[CycleMove]:
-    """Return the motions of G74, which cuts equal passes of at most I from the start to X with the
-    allowance U.
+    """Return the motions of G74, which cuts a box in equal passes.
 
-    The tool enters each pass at the feed, because it may cut material at a shoulder. The cycle ends at the
-    start point. Raises ProgramError for invalid words.
+    The depth of each pass is at most I. The passes go from the start point toward X, where they leave the
+    allowance U. The tool enters each pass at the feed, because it may cut material at a shoulder. The cycle
+    ends at the start point. Raises ProgramError for invalid words.
     """
     x = _corner(state, statement, "X", state.x, state.secondary_x)
     z = _corner(state, statement, "Z", state.z, state.secondary_z)

@@ -1,5 +1,6 @@
-"""Execution of both branches of conditional calls (M95, M97), with a copy of the pass for the
-other branch.
+"""Execution of both branches of conditional calls (M95, M97).
+
+A copy of the pass executes the other branch.
 """
 
 from __future__ import annotations
@@ -28,8 +29,9 @@ class BranchRecord(Protocol):
     """Protocol for the record of the branches that passes have executed."""
 
     def is_known(self, branch_pass: BranchingPass) -> bool:
-        """Return whether another pass was in the same state, so that the remaining program is already
-        checked.
+        """Return whether another pass was in the same state.
+
+        If so, the remaining program is already checked.
         """
         ...
 
@@ -58,8 +60,9 @@ class BranchingPass(Interpreter):
 
     @property
     def block_count(self) -> int:
-        """Return the number of blocks so far, including the blocks of the original pass before the copy was
-        made.
+        """Return the number of blocks so far.
+
+        The number includes the blocks of the original pass up to the time of the copy.
         """
         return self._state.blocks
 
@@ -105,8 +108,9 @@ class BranchingPass(Interpreter):
         return twin
 
     def _known_input(self, statement: Statement) -> bool | None:
-        """Return whether the input of the call is closed, or None if it has not been read since the last
-        action.
+        """Return whether the input of the call is closed.
+
+        Returns None if the input has not been read since the last action.
         """
         if self._held_to != self._state.blocks:
             self._held = {}

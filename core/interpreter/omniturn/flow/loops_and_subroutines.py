@@ -317,8 +317,9 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         self.next_index = line - 1
 
     def _update_end(self) -> None:
-        """Set the end of execution to the end of the frame or to the stop line, whichever is
-        reached first.
+        """Set the end of execution to the end of the frame or to the stop line.
+
+        The one that is reached first applies.
         """
         stop, end = self._stop, self.active_frame.end_index
         self.end_index = stop if stop is not None and self.next_index <= stop < end else end

@@ -80,7 +80,9 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
         self._log = log
 
     def check_line(self, statement: Statement) -> None:
-        """Raise ProgramError if a corner needs a following move and the line does not start with a plain
+        """Check that a line completes a pending corner.
+
+        Raises ProgramError if a corner needs a following move and the line does not start with a plain
         move.
         """
         held = self._held

@@ -129,10 +129,10 @@ def _is_usual(state: State, feed: float) -> bool:
 
 
 def passes_feed_checks(state: State, feed: float) -> bool:
-    """Return whether a move at another feed (mm/s or mm/rev) passes all checks except the check of its
-    length.
+    """Return whether a move at another feed passes all checks except the length check.
 
-    Requires ``state.fast``, which means that a move at the active feed has passed the checks.
+    The feed is in mm/s or mm/rev. The function requires ``state.fast``, which means that a move at the
+    active feed has passed the checks.
     """
     if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
         return False

@@ -105,7 +105,8 @@ class RewordedMoveFactory(AdjustedMoveFactory):
         return self._placed(block, element, replace_move_words(block, element))
 
     def insert_move(self, block: Block, element: Element) -> Block:
-        """Return a new move along an element, to be inserted after ``block`` with the same line, feed and
-        state.
+        """Return a new move along an element, to be inserted after ``block``.
+
+        The move has the line, feed and state of ``block``.
         """
         return self._placed(block, element, format_move(block.modal, element))

@@ -100,8 +100,9 @@ class LineColumns(NamedTuple):
         self.g[index], self.has_fifth_decimal[index], self.is_plain_move[index] = g, fine, True
 
     def list_moves(self) -> list[PlainMove | None]:
-        """Return each line in the form of ``parse_plain_move``, or None for a line that is not a plain
-        move.
+        """Return each line in the form of ``parse_plain_move``.
+
+        The entry is None for a line that is not a plain move.
         """
         x, z, f = (_column_values(column) for column in self[:3])
         rows = zip(x, z, f, self.g.tolist(), self.has_fifth_decimal.tolist(), strict=True)

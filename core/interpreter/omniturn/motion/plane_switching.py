@@ -157,8 +157,9 @@ def read_plane_length_mm(state: State, statement: Statement, letter: str, defaul
 
 
 def make_plane_error(statement: Statement, code: str, text: str, hint: str, letter: str = "") -> ProgramError:
-    """Return an error for a line of plane switching, located at the word ``letter`` if the line has this
-    word.
+    """Return an error for a line of plane switching.
+
+    The error is located at the word ``letter`` if the line has this word.
     """
     assert statement.plane_line is not None
     word = statement.plane_line.words.get(letter)

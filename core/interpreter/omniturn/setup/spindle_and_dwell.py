@@ -112,8 +112,9 @@ def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
 
 
 def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) -> None:
-    """Record the time that C needs to turn by ``turn_deg`` degrees, if its drive does not report the
-    position.
+    """Record the time that C needs to turn by ``turn_deg`` degrees.
+
+    The time is recorded only if the drive of C does not report the position.
     """
     limits = state.setup.limits
     if limits.has_c_feedback or turn_deg <= _ARRIVAL_TOLERANCE:

@@ -241,10 +241,9 @@ class CycleCall:
         hint: str = _POINT,
         maximum: int = MAX_PASSES,
     ) -> int:
-        """Return the number of passes for a total depth, with at most ``depth_per_pass`` per pass, both in
-        mm.
+        """Return the number of passes for a total depth in mm.
 
-        Raises ProgramError if the number is too high.
+        Each pass is at most ``depth_per_pass`` deep, in mm. Raises ProgramError if the number is too high.
         """
         count = count_passes(total_depth, depth_per_pass)
         self.check_parameter(count <= min(maximum, MAX_PASSES), name, text, hint, count=f"{count:,}")

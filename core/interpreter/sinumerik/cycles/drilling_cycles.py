@@ -271,8 +271,9 @@ def _steps_to_spindle_angle(cycle: CycleCall, hole: HolePositions, angle: float)
 
 
 def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float) -> list[CycleStep]:
-    """Return the steps that lock the spindle as the C axis at the present position and rotate it to an
-    angle.
+    """Return the steps that lock the spindle as the C axis and rotate it to an angle.
+
+    The spindle is locked at the present position. The angle is in degrees.
     """
     turn, speed = compute_shortest_turn(cycle.state, angle), cycle.state.setup.limits.max_axis_speeds[2]
     turned = [position._replace(feed=speed, c_travel_deg=turn)] if turn else []

@@ -207,10 +207,9 @@ def _uses_active_feed(cycle: CycleCall) -> bool:
 
 
 def make_tap_block(state: State, statement: Statement) -> Block:
-    """Return the block of G331 (into the hole) or G332 (out of the hole), with C locked, lead K and speed
-    S.
+    """Return the block of G331 (into the hole) or G332 (out of the hole).
 
-    Raises ProgramError for invalid words.
+    C is locked, K is the lead, and S is the speed. Raises ProgramError for invalid words.
     """
     word = statement.g_words.get("motion")
     code = f"G{int(state.motion)}"

@@ -225,7 +225,8 @@ def _cut(
 
 
 def _extend_line(a: Point, b: Point, distance: float) -> Point:
-    """Return the point beyond ``b`` on the line from ``a`` through ``b``, at the distance ``distance``
-    along Z.
+    """Return the point beyond ``b`` on the line from ``a`` through ``b``.
+
+    The point is at the distance ``distance`` from ``b`` along Z.
     """
     return b[0] + (b[0] - a[0]) / (b[1] - a[1]) * distance, b[1] + distance

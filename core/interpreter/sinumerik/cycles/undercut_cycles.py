@@ -170,11 +170,11 @@ _UNSUPPORTED_HINT = "program the undercut block by block"
 
 
 def run_undercut(cycle: CycleCall) -> Iterator[Block]:
-    """Return the blocks of CYCLE940, which cuts forms E and F in one pass, and forms A and B in passes of
-    _MID.
+    """Return the blocks of CYCLE940, which cuts an undercut.
 
-    The first seven parameters and the order of all parameters follow the manufacturer's programming manual.
-    Raises ProgramError before the first block.
+    Forms E and F are cut in one pass, and forms A and B are cut in passes of _MID. The first seven
+    parameters and the order of all parameters follow the manufacturer's programming manual. Raises
+    ProgramError before the first block.
     """
     form = cycle.read_text("FORM")
     text = "{name} is {form}, which is not supported"

@@ -292,8 +292,9 @@ def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: i
 def find_label_index(
     jump_keyword: ControlKeyword, target: str, program: Routine, start_index: int
 ) -> int | None:
-    """Return the index of the line with this label or block number in the jump's search
-    direction, or None.
+    """Return the index of the line with this label or block number.
+
+    Returns None if the line does not exist in the jump's search direction.
     """
     places = program.find_label_lines(target)
     next_hit = next((place for place in places if place > start_index), None)

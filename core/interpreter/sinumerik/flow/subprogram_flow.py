@@ -77,10 +77,10 @@ class SavedFunctions:
 def pass_arguments(
     state: State, line: LexedBlock, heading: ControlStatement | None
 ) -> tuple[VariableScope, list[tuple[str, str]]]:
-    """Return the variables of the called program, and pairs of its VAR parameters and the caller's
-    variables.
+    """Return the variables of the called program, and the variables of its VAR parameters.
 
-    Raises ProgramError if the arguments do not match the parameters.
+    The second value contains pairs of a VAR parameter and the caller's variable. Raises ProgramError if the
+    arguments do not match the parameters.
     """
     parameters = () if heading is None else heading.parameters
     arguments = line.arguments or ()
@@ -367,8 +367,9 @@ class Flow(ControlFlow[_Call]):
                 raise line.make_error(jump.column, ENDLESS_LOOP_CODE, text, hint)
 
     def _is_repeated_state(self) -> bool:
-        """Return whether a backward jump occurs in the same state as an earlier jump, so that the loop is
-        endless.
+        """Return whether a backward jump occurs in the same state as an earlier jump.
+
+        If so, the loop is endless.
         """
         if self._loops is None:
             return False

@@ -78,8 +78,9 @@ class Variables:
     def assign_values(
         self, letters: str, first_element: str, values: ValueList, compute_formula: Callable[[Formula], float]
     ) -> int:
-        """Assign values to elements, starting at ``first_element``, and return the number of surplus
-        values.
+        """Assign values to elements, starting at ``first_element``.
+
+        Returns the number of surplus values.
         """
         places = _r_places() if letters == "R" else self.variable_scope.list_elements(letters)
         places = places[places.index(first_element) :]

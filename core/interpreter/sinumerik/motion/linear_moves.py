@@ -277,8 +277,9 @@ def make_straight_block(state: State, statement: Statement) -> Block:
 
 
 def make_rapid_block(state: State, statement: Statement, travel: AxisTravel) -> Block:
-    """Return a rapid on which all axes arrive at the same time and the slowest axis moves at its maximum
-    speed.
+    """Return a rapid on which all axes arrive at the same time.
+
+    The slowest axis moves at its maximum speed.
     """
     return make_travel_block(
         state,

@@ -44,8 +44,9 @@ _MAX_CORNER_TURN_RAD = 2.0 * pi / 3.0  # rad; largest turn at which G451 uses th
 
 
 class CompensationStage:
-    """Stage that accepts the blocks of a program in order, and compensates them while G41 or G42
-    is active.
+    """Stage that compensates the blocks of a program while G41 or G42 is active.
+
+    The stage accepts the blocks in order.
     """
 
     def __init__(self, state: State, log: DiagnosticLog, *, is_in_transformed_plane: bool = False) -> None:
@@ -257,10 +258,9 @@ class _Contour(ContourStage):
         return [element.reversed() for element in reversed(back)]
 
     def _path_to_end(self, end: _ContourEnd) -> list[Element]:
-        """Return a straight path to the contour, or with KONT a path around the end of the contour if
-        necessary.
+        """Return a straight path to the contour, or a path around its end if necessary.
 
-        Raises ProgramError if the path cuts the contour.
+        A path around the end is possible only with KONT. Raises ProgramError if the path cuts the contour.
         """
         radius, direct_line = self.nose_radius_mm, Line(end.nose_start, end.nose_end)
         if not radius or not is_gouging(direct_line, end.contour, radius):

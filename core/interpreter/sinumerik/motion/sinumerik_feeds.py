@@ -58,12 +58,11 @@ def convert_feed(state: State, statement: Statement, word: Word) -> float:
 def check_block_feed(
     state: State, statement: Statement, x0: float, x1: float, *, in_degrees: bool = False
 ) -> float:
-    """Return the feed of a block from radius ``x0`` to ``x1``, in mm (or degrees) per second or per
-    revolution.
+    """Return the feed of a block from radius ``x0`` to ``x1``.
 
-    A feed per revolution of the live tool is converted to a feed per second, because the live tool has a
-    constant speed. Raises ProgramError with alarm 10860 without a feed, or with a TurnDesk code if the
-    spindle has no speed under G95.
+    The feed is in mm (or degrees) per second or per revolution. A feed per revolution of the live tool is
+    converted to a feed per second, because the live tool has a constant speed. Raises ProgramError with
+    alarm 10860 without a feed, or with a TurnDesk code if the spindle has no speed under G95.
     """
     modal = state.modal
     word = statement.words.get("FB")

@@ -80,8 +80,9 @@ def _refused(state: State, statement: Statement, code: int, word: Word) -> Progr
 
 
 def _warn_missing_function(state: State, statement: Statement, code: int, word: Word) -> None:
-    """Log a warning, once, that this machine lacks a machine-builder function and therefore does
-    not start.
+    """Log a warning, once, that this machine lacks a machine-builder function.
+
+    Without the function, the machine does not start.
     """
     if f"M{code}" in state.told:
         return

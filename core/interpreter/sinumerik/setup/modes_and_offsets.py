@@ -27,10 +27,10 @@ def activate_settable_offset(state: State, statement: Statement) -> None:
 
 
 def execute_frame(state: State, statement: Statement) -> None:
-    """Execute TRANS, ROT, SCALE and MIRROR, which replace the frame, or their A forms, which add to the
-    frame.
+    """Execute TRANS, ROT, SCALE and MIRROR, or their A forms.
 
-    A block without axis words resets the frame. Raises ProgramError for invalid words.
+    TRANS, ROT, SCALE and MIRROR replace the frame, and the A forms add to the frame. A block without axis
+    words resets the frame. Raises ProgramError for invalid words.
     """
     key = statement.frame_word
     if key is None:

@@ -203,8 +203,9 @@ def compute_shortest_turn(state: State, angle: float) -> float:
 
 
 def _spindle_turn(state: State, statement: Statement, word: Word) -> float:
-    """Return the signed travel of C in degrees, which is the shorter distance if the word has no position
-    form.
+    """Return the signed travel of C in degrees.
+
+    If the word has no position form, a C axis with modulo takes the shorter distance.
     """
     if word.name == "M":
         word = word._replace(value=0.0, formula=None)
