@@ -243,7 +243,7 @@ def reasons() -> list[str]:
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute)
     ]
-    given = [arg for call in calls if call.func.attr in {"start_feed_hold"} for arg in call.args]  # type: ignore[attr-defined]
+    given = [arg for call in calls if call.func.attr == "start_feed_hold" for arg in call.args]  # type: ignore[attr-defined]
     words = [part.value for arg in given for part in ast.walk(arg) if isinstance(part, ast.Constant)]
     return [word for word in words if isinstance(word, str) and word.isupper()]
 
