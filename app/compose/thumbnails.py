@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from app.desk.background_work import ProgressCallback
     from core.executor.job import Job
     from core.machine.machine_model import Machine
-    from core.part.solid_picture import ImageArray
+    from core.part.part_scene import ImageArray
     from core.proving.program_tools import PartSettings
 
 WIDE, HIGH = 168, 112  # pixels
@@ -63,7 +63,8 @@ class ThumbnailCache:
     def _made(self, job: Job, setting: PartSettings, watch: ProgressCallback) -> ImageArray | None:
         from core.part.solid_picture import SolidPicture
         from core.part.solid_view import SolidView, fit_view
-        from core.proving.part_history import StepCollector, make_finished_part
+        from core.proving.finished_part import make_finished_part
+        from core.proving.part_history import StepCollector
         from core.proving.program_timeline import Timeline
 
         gathered = StepCollector(setting)

@@ -22,7 +22,8 @@ from core.proving.checks.part_checks import is_serious
 if TYPE_CHECKING:
     from app.desk.desk import Desk
     from app.path.path_picture import ProgramPicture
-    from core.part.solid_picture import ImageArray, SolidPicture
+    from core.part.part_scene import ImageArray
+    from core.part.solid_picture import SolidPicture
     from core.part.solid_view import SolidView
     from core.part.surface_points import Solid
     from core.proving.part_history import PartHistory

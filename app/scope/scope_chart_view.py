@@ -10,7 +10,8 @@ from PySide6.QtGui import QColor, QPainter
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.scope.scope_curves import CurvePoints, ScopeCurve, ScopePicture
+from app.scope.curve_points import CurvePoints
+from app.scope.scope_curves import ScopeCurve, ScopePicture
 from app.scope.signals import Quantity
 from app.scope.time_window import TimeCursors
 from app.screen.chart import Chart, ChartPlot, find_curve_color, make_line_pen, set_curve_points

@@ -1,4 +1,4 @@
-"""Areas of pockets with islands, their insets, and the rings that clear one level.
+"""Areas of pockets with islands, and their insets.
 
 A boundary is a list of closed loops, and each loop is a list of consecutive elements. The area is to the
 left of each loop, so a loop is counterclockwise around a pocket and clockwise around an island. Coordinates
@@ -8,16 +8,11 @@ The offset is exact, because lines remain lines and arcs remain arcs. A point be
 no point of the boundary is closer than the distance. Every section of an offset element that is closer to
 any other element is therefore omitted (``offset_to_left``, ``split_at_edges``). This also applies if the
 area is divided into several parts or an island merges with a wall.
-
-The rings are offsets of the boundary that are at most one tool radius apart. This clears every point,
-because a point between two rings is closer to the outer ring than their distance. A larger distance would
-leave stock in corners.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import pairwise
 from math import ceil, dist, pi
 
@@ -37,7 +32,6 @@ from core.geometry.lines_and_arcs import (
     min_distance,
     turn_angle,
 )
-from core.message import Message
 
 ElementLoop = list[Element]
 ContainsPoint = Callable[[Point], bool]
@@ -52,9 +46,6 @@ _MIN_PART_MM = 0.002  # mm; shorter parts of an offset are overlaps of two round
 _MAX_TAIL_MM = 0.5  # mm; a longer dead end is an error
 _SIDE_OFFSET_MM = 1e-5  # mm from a part, on either side, at which the area is tested
 _HALF_TURN = pi - 1e-9
-_MAX_RINGS = 2000
-_LINK_RADII = 4.0  # tool radii; the tool moves to a ring farther away above the workpiece
-_RAMP_RADII = 4.0  # tool radii that a ramp should be long
 
 
 class AreaError(Exception):
@@ -341,136 +332,6 @@ class AreaCheck:
         return sum(each.winding_number(element.point_at(element.length / 2.0)) for each in self._windings) > 0
 
 
-@dataclass(frozen=True, slots=True)
-class ClearingRing:
-    """One clearing ring, which starts at the point where the tool reaches it.
-
-    If ``moves_at_depth`` is True, the tool moves to the ring at the depth of the ring; otherwise it comes
-    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually the same ring, or a
-    wider ring if this ring is too short.
-    """
-
-    loop: ElementLoop
-    moves_at_depth: bool
-    ramp_loop: ElementLoop
-
-
-@dataclass(slots=True)
-class _AreaPatch:
-    """A connected part of the area at one distance.
-
-    The patch has an outer ring, its islands, and the patches inside it.
-    """
-
-    outer: ElementLoop
-    holes: list[ElementLoop] = field(default_factory=list)
-    inner: list[_AreaPatch] = field(default_factory=list)
-
-    def holds(self, point: Point) -> bool:
-        return sum(Winding(loop).winding_number(point) for loop in (self.outer, *self.holes)) > 0
-
-
-def make_clearing_rings(
-    area: Sequence[ElementLoop],
-    first_inset: float,
-    ring_distance: float,
-    radius: float,
-    *,
-    conventional: bool,
-    position: Point,
-) -> list[ClearingRing]:
-    """Return the rings that clear an area.
-
-    The outermost ring is ``first_inset`` mm inside the area, and the rings are ``ring_distance`` mm apart.
-    If ``conventional`` is True, the rings are clockwise (conventional milling with M3). Raises AreaError if
-    the tool does not fit.
-    """
-    outmost = _find_patches(inset_loops(area, first_inset))
-    if not outmost:
-        raise AreaError("the tool does not fit anywhere inside the contour")
-    layer, apart = outmost, first_inset
-    for _ in range(_MAX_RINGS):
-        apart += ring_distance
-        within = _find_patches(inset_loops(area, apart))
-        for patch in within:
-            home = next((each for each in layer if each.holds(patch.outer[0].start)), None)
-            (home.inner if home is not None else outmost).append(patch)
-        layer = within
-        if not layer:
-            break
-    else:
-        raise AreaError(
-            Message("clearing needs more than {most_rings} concentric passes", most_rings=_MAX_RINGS)
-        )
-    return _order_rings(
-        outmost, AreaCheck(area), first_inset, radius, conventional=conventional, position=position
-    )
-
-
-def _find_patches(loops: Sequence[ElementLoop]) -> list[_AreaPatch]:
-    """Return the connected parts of an area, each with its islands."""
-    outers = sorted((loop for loop in loops if is_counterclockwise(loop)), key=_size)
-    found = [_AreaPatch(loop) for loop in outers]
-    for hole in loops:
-        if is_counterclockwise(hole):
-            continue
-        home = next((each for each in found if Winding(each.outer).winding_number(hole[0].start) > 0), None)
-        if home is None:
-            raise AreaError("an island touches the edge of its pocket")
-        home.holes.append(hole)
-    return found
-
-
-def _size(loop: ElementLoop) -> float:
-    return sum(element.length for element in loop)
-
-
-def _order_rings(
-    outmost: Sequence[_AreaPatch],
-    room: AreaCheck,
-    distance: float,
-    radius: float,
-    *,
-    conventional: bool,
-    position: Point,
-) -> list[ClearingRing]:
-    """Return the rings in machining order, each starting at the point where the tool reaches it."""
-    made: list[ClearingRing] = []
-    for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
-        loop = start_loop_near(_sense(ring, against=conventional), position)
-        link = (
-            Line(position, loop[0].start) if dist(position, loop[0].start) > SAME_POINT_TOLERANCE_MM else None
-        )
-        straight = index > 0 and (
-            link is None or (link.length <= _LINK_RADII * radius and room.contains_element(link, distance))
-        )
-        ramp = loop
-        if not straight and _size(loop) < _RAMP_RADII * radius:
-            wider = next((each for each in reversed(around) if _size(each) >= _RAMP_RADII * radius), None)
-            if wider is not None:
-                wider = start_loop_near(_sense(wider, against=conventional), loop[0].start)
-                gap = dist(wider[0].start, loop[0].start) > SAME_POINT_TOLERANCE_MM
-                if not gap or room.contains_element(Line(wider[0].start, loop[0].start), distance):
-                    ramp = wider
-        made.append(ClearingRing(loop, straight, ramp))
-        position = loop[0].start
-    return made
-
-
-def _iter_inner_first(
-    patches: Sequence[_AreaPatch], outer_rings: list[ElementLoop]
-) -> Iterator[tuple[ElementLoop, list[ElementLoop]]]:
-    """Yield each ring, with the outer rings around it, after the rings inside it."""
-    for patch in patches:
-        yield from _iter_inner_first(patch.inner, [*outer_rings, patch.outer])
-        for ring in (*patch.holes, patch.outer):
-            yield ring, outer_rings
-
-
-def _sense(loop: ElementLoop, *, against: bool) -> ElementLoop:
-    return [element.reversed() for element in reversed(loop)] if against else list(loop)
-
-
 def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
     """Return the loop with a new start near a point.
 
@@ -505,14 +366,14 @@ def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], Element
 
     If ``length`` is greater than the length of the loop, the loop is repeated.
     """
-    first_elements: list[Element] = []
+    way: list[Element] = []
     left, at = length, 0
     while left > SAME_POINT_TOLERANCE_MM:
         element = loop[at % len(loop)]
         if element.length > left + SAME_POINT_TOLERANCE_MM:
-            first_elements.append(element.section_between(element.start, element.point_at(left)))
-            return first_elements, start_loop_at(loop, at % len(loop), left)
-        first_elements.append(element)
+            way.append(element.section_between(element.start, element.point_at(left)))
+            return way, start_loop_at(loop, at % len(loop), left)
+        way.append(element)
         left -= element.length
         at += 1
-    return first_elements, start_loop_at(loop, at % len(loop), 0.0)
+    return way, start_loop_at(loop, at % len(loop), 0.0)

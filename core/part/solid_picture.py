@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.part.solid_bodies import DepthArray, ImageLayer, ToolBody, make_tool_layers
+from core.part.part_scene import SHADES, ImageArray, PartColors, PartScene, make_color_table
+from core.part.solid_bodies import DepthArray, ImageLayer, make_tool_layers
 from core.part.solid_view import SolidView
 from core.part.surface_points import (
     MISSING_RADIUS,
@@ -26,7 +27,6 @@ from core.part.surface_points import (
     SurfacePatch,
 )
 
-ImageArray = npt.NDArray[np.uint32]
 IndexArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 CodeArray = npt.NDArray[np.int16]
@@ -39,36 +39,9 @@ _FAR = 1e5  # pixels; the greatest distance of a point from the middle of the pa
 _BLOCK = 1 << 15  # points processed together, so that the data fits into the CPU cache
 _LIGHT = (-0.38, 0.62, 0.69)  # right, up, toward the viewer
 _BISECTOR = (-0.207, 0.337, 0.919)  # halfway between light and viewer
-_SHADES = 256
 _STEEP = 0.5  # cosine between a wall's normal and the radius, below which the wall is not round
 _EDGE = 8.0  # pixels of depth
 _FACING = 0.02  # radians beyond the horizon that are also drawn
-
-
-class PartColors(NamedTuple):
-    """Colors of the part and of the objects around it, as 0xRRGGBB.
-
-    ``outside``, ``bore``, ``section`` and ``hit`` are the colors of the part. ``chuck``, ``holder`` and
-    ``insert`` are the colors of the objects around it. ``ground`` is the background color as 0xAARRGGBB.
-    """
-
-    outside: int = 0xB9C3CC
-    bore: int = 0xC9B48A
-    section: int = 0xD98E4A
-    hit: int = 0xE5322D
-    ground: int = 0x00000000
-    chuck: int = 0x6F6A61
-    holder: int = 0x6C7A89
-    insert: int = 0xE8B923
-
-
-class PartScene(NamedTuple):
-    """The objects around the part: a chuck or collet, and a tool."""
-
-    chuck: Solid | None = None
-    tool: ToolBody | None = None
-
-
 _OUTSIDE, _BORE, _SECTION, _HIT = range(4)
 _FACING_AWAY = -2  # used instead of a color
 
@@ -97,7 +70,7 @@ class SolidPicture:
 
     def __init__(self, colors: PartColors | None = None) -> None:
         self.colors = colors or PartColors()
-        self._table = _make_color_table(self.colors)
+        self._table = make_color_table(self.colors)
         self._surface: SolidSurface | None = None
         self._made_of: tuple[object, ...] = ()
         self._held: tuple[tuple[object, ...], ImageLayer] | None = None  # chuck or collet in the last view
@@ -324,8 +297,8 @@ class _PictureDrawing:
         if rough.any():
             self._smooth(pixel, shade, rough)
         codes = np.full(inside.shape, -1, np.int16)
-        level = np.clip(shade * np.float32(_SHADES), 0, _SHADES - 1).astype(np.int16)
-        codes[pixel] = np.where(shade < 0.0, _FACING_AWAY, level + colour * _SHADES)
+        level = np.clip(shade * np.float32(SHADES), 0, SHADES - 1).astype(np.int16)
+        codes[pixel] = np.where(shade < 0.0, _FACING_AWAY, level + colour * SHADES)
         codes = _remove_specks(codes.reshape(self.height, self.width))
         depth = (inside >> _POINT).astype(np.int32).reshape(codes.shape)
         _draw_edges(codes, depth)
@@ -369,10 +342,10 @@ class _PictureDrawing:
         ray += group.rays.start
         if group.columns is not None:
             row = group.columns[row]
-        across, tangential, along = _wall_normals(wall, row, ray, self.surface)
+        across, way, along = _wall_normals(wall, row, ray, self.surface)
         if wall.faces_axis:
-            across, tangential, along = -across, -tangential, -along
-        shade = self._shade(2 * ray, across, tangential, along)
+            across, way, along = -across, -way, -along
+        shade = self._shade(2 * ray, across, way, along)
         rough = np.abs(across) < _STEEP
         colour: CodeArray | int = _OUTSIDE
         if wall.bore_radius_px is not None:  # a slot through the axis is not a bore
@@ -398,14 +371,14 @@ class _PictureDrawing:
         return np.repeat(np.maximum(shade, np.float32(0.5)), count)
 
     def _shade(
-        self, halves: IntArray, across: Float32Array, tangential: Float32Array, along: Float32Array
+        self, halves: IntArray, across: Float32Array, way: Float32Array, along: Float32Array
     ) -> Float32Array:
         """Return the brightness of surface normals given along r, the part's angle and Z.
 
         The direction of phi is opposite to the part's angle.
         """
         near, up = self.near[halves], self.up[halves]
-        return self._light(across * near + tangential * up, across * up - tangential * near, along)
+        return self._light(across * near + way * up, across * up - way * near, along)
 
     def _light(self, towards: Float32Array, above: Float32Array, along: Float32Array) -> Float32Array:
         """Return the brightness of surface normals from 0 to 1, or -1 for normals that point away.
@@ -445,11 +418,11 @@ def _wall_normals(
     if surface.is_turned:
         size = 1.0 / np.sqrt(1.0 + along * along)
         return size, np.zeros_like(size), along * size
-    before, next_radius = r[row, ray - 1], r[row, (ray + 1) % surface.ray_count]
+    before, behind = r[row, ray - 1], r[row, (ray + 1) % surface.ray_count]
     ring = np.maximum(own, np.float32(1e-3)) * np.float32(2.0 * math.pi / surface.ray_count)
-    tangential = -np.clip(_smoother(own - before, next_radius - own), -50.0, 50.0) / ring
-    size = 1.0 / np.sqrt(1.0 + along * along + tangential * tangential)
-    return size, tangential * size, along * size
+    way = -np.clip(_smoother(own - before, behind - own), -50.0, 50.0) / ring
+    size = 1.0 / np.sqrt(1.0 + along * along + way * way)
+    return size, way * size, along * size
 
 
 def _sum_neighbors(values: Float32Array, step: int) -> Float32Array:
@@ -461,8 +434,8 @@ def _sum_neighbors(values: Float32Array, step: int) -> Float32Array:
     return total
 
 
-def _smoother(before: Float32Array, next_change: Float32Array) -> Float32Array:
-    return np.where(np.abs(before) < np.abs(next_change), before, next_change)
+def _smoother(before: Float32Array, behind: Float32Array) -> Float32Array:
+    return np.where(np.abs(before) < np.abs(behind), before, behind)
 
 
 def _remove_specks(codes: CodeArray) -> CodeArray:
@@ -474,8 +447,8 @@ def _remove_specks(codes: CodeArray) -> CodeArray:
         away = turned[:, :-1] == _FACING_AWAY
         np.copyto(turned[:, :-1], turned[:, 1:], where=away)
     for turned in (codes.T, codes):
-        before, own, next_codes = turned[:-2], turned[1:-1], turned[2:]
-        low, high = np.minimum(before, next_codes), np.maximum(before, next_codes)
+        before, own, behind = turned[:-2], turned[1:-1], turned[2:]
+        low, high = np.minimum(before, behind), np.maximum(before, behind)
         turned[1:-1] = np.maximum(low, np.minimum(high, own))
     return codes
 
@@ -488,23 +461,7 @@ def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
     for picture, deep in ((codes, depth), (codes.T, depth.T)):
         sunk = deep[:-2] + deep[2:]
         sunk -= 2 * deep[1:-1]
-        is_deeper = sunk > _EDGE * _DEPTH
-        is_deeper &= picture[1:-1] >= 0
+        behind = sunk > _EDGE * _DEPTH
+        behind &= picture[1:-1] >= 0
         own = picture[1:-1]
-        own[is_deeper] -= (own[is_deeper] & (_SHADES - 1)) // 3
-
-
-def _make_color_table(colors: PartColors) -> ImageArray:
-    """Return the color table (colors, shades) of 0xAARRGGBB values.
-
-    A color is dark at a brightness of 0, unchanged at 0.7, and lighter above that.
-    """
-    share = np.linspace(0.0, 1.0, _SHADES)
-    rows = []
-    for colour in colors[:4]:
-        rgb = np.array([(colour >> 16) & 255, (colour >> 8) & 255, colour & 255])[:, None]
-        dark = rgb * np.minimum(share / 0.7, 1.0)
-        light = dark + (255.0 - dark) * np.maximum((share - 0.7) / 0.3, 0.0) * 0.9
-        red, green, blue = np.clip(light, 0, 255).astype(np.uint32)
-        rows.append((np.uint32(0xFF) << 24) | (red << 16) | (green << 8) | blue)
-    return np.array(rows, np.uint32)
+        own[behind] -= (own[behind] & (SHADES - 1)) // 3

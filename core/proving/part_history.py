@@ -1,9 +1,6 @@
-"""The part at any time of a program, reproduced from stored copies, and the finished part for a picture.
+"""The part at any time of a program, reproduced from stored copies.
 
 All results are independent arrays, because another thread may display them.
-
-The finished part is the material in the chuck just before the last piece is parted off. If no piece is
-parted off, it is the material at the end or before the collet opens, whichever has the smaller volume.
 """
 
 from __future__ import annotations
@@ -12,14 +9,12 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 
-from core.interpreter.shared.actions import ColletSwitch
 from core.message import Message
+from core.part.part_scene import PartScene
 from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
-from core.part.solid_picture import PartScene
 from core.part.stock_spec import StockSpec
 from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 from core.part.swept_edge import FloatArray, Point
@@ -87,13 +82,13 @@ class StepCollector:
         """Return the reason why the part cannot be made, as a sentence, or an empty text."""
         if self._blocks <= MAX_MOVES:
             return ""
-        hint = "use 'turndesk prove --stock' for longer programs"
+        way = "use 'turndesk prove --stock' for longer programs"
         return Message(
             "The program has {blocks} blocks, but TurnDesk can simulate the part for at most "
             "{most_moves} blocks; {details}",
             blocks=self._blocks,
             most_moves=MAX_MOVES,
-            details=hint,
+            details=way,
         )
 
     def collected_steps(self) -> ProgramSteps | None:
@@ -439,71 +434,3 @@ def _halves(making: PartSimulation) -> tuple[SectionHalf | None, SectionHalf | N
     )
     half = SectionHalf(edges, part.inner_radii.copy(), part.outer_radii.copy())
     return half, half
-
-
-class FinishedPart(NamedTuple):
-    """The finished part with the dimensions of its stock, in mm.
-
-    ``back_z_mm`` and ``front_z_mm`` are the ends of the stock in Z, and ``radius_mm`` is the radius of the
-    stock.
-    """
-
-    solid: Solid
-    back_z_mm: float
-    front_z_mm: float
-    radius_mm: float
-
-
-def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> FinishedPart | None:
-    """Return the finished part, or None if nothing is cut.
-
-    ``report_progress`` receives the block number regularly and may raise to cancel.
-    """
-    history = PartHistory(steps)
-
-    def at(block: int) -> PartInstant:
-        return history.at(block, 0.0, lambda: report_progress(block))
-
-    pieces = at(history.block_count).parted_piece_count
-    ends = [history.block_count, *_find_block_before_opening(history)]
-    if pieces:
-        ends = [_find_block_before_last_piece(at, history.block_count, pieces)]
-    held = [(volume, end) for end in ends if (volume := _section_volume(at(end).x_plus_half)) > 0.0]
-    stock = history.stock
-    if not held or stock is None:
-        return None
-    solid = history.make_solid(at(min(held)[1]))
-    return (
-        FinishedPart(solid, stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm)
-        if solid is not None
-        else None
-    )
-
-
-def _find_block_before_opening(history: PartHistory) -> list[int]:
-    """Return the number of the block before the collet last opens, or an empty list."""
-    for step in reversed(history.steps):
-        if not isinstance(step, TipMove | LiveToolStep) and step.action == ColletSwitch(closed=False):
-            return [max(step.n - 1, 0)]
-    return []
-
-
-def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, pieces: int) -> int:
-    """Return the last block before the last piece is parted off.
-
-    A binary search is possible, because the number of pieces never decreases.
-    """
-    before, upper = 0, last
-    while upper - before > 1:
-        middle = (before + upper) // 2
-        before, upper = (middle, upper) if at(middle).parted_piece_count < pieces else (before, middle)
-    return before
-
-
-def _section_volume(half: SectionHalf | None) -> float:
-    """Return the volume in mm³ of the body that results from rotating the section about the axis."""
-    if half is None:
-        return 0.0
-    wide = half.column_edges[1:] - half.column_edges[:-1]
-    rings = (half.outer_radii**2 - half.inner_radii**2).clip(min=0.0)
-    return float(math.pi * (rings * wide).sum())

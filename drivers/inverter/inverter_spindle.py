@@ -9,15 +9,11 @@ from typing import Protocol
 
 from core.message import Message
 from core.ports import Clock, DriverError, Fault
+from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT, SpeedComparison
 from drivers.inverter.family_files import load_family
 from drivers.inverter.family_table import FamilyTable
 from drivers.inverter.huanyang_hy import HuanyangInverter
-from drivers.inverter.inverter_control import (
-    MAX_SILENCE_S,
-    PRESS_ESTOP_TEXT,
-    InverterControl,
-    SpeedComparison,
-)
+from drivers.inverter.inverter_control import MAX_SILENCE_S, InverterControl
 from drivers.inverter.inverter_family import InverterFamily
 from drivers.inverter.inverter_table import InverterTable
 from drivers.inverter.modbus_rtu import ModbusMaster

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from core.part.part_scene import ImageArray, PartColors, PartScene
 from core.part.solid_bodies import RoundAxis, ToolBody, make_chuck_solid
-from core.part.solid_picture import ImageArray, PartColors, PartScene, SolidPicture
+from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView
 from core.part.stock import Clamping, make_bar
 from core.part.surface_points import Solid, make_turned_solid

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
+from core.part.part_scene import ImageArray, PartColors
 from core.part.polar_field import field_from_section
-from core.part.solid_picture import ImageArray, PartColors, SolidPicture
+from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView, fit_view
 from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
 

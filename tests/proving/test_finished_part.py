@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.proving.part_history import FinishedPart, make_finished_part
+from core.proving.finished_part import FinishedPart, make_finished_part
 from tests.path.test_part_player import HEAD, SHAFT, picture
 
 INCH = 25.4

@@ -7,15 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.scope.scope_curves import (
-    CurveColumns,
-    LiveCurves,
-    PictureRequest,
-    RecordingCurves,
-    make_points,
-    make_round_range,
-    update_range,
-)
+from app.scope.curve_points import CurveColumns, make_points, make_round_range, update_range
+from app.scope.scope_curves import LiveCurves, PictureRequest, RecordingCurves
 from app.scope.signals import Quantity, find_default_keys, list_signals
 from app.scope.time_window import Trigger, TriggerEvent
 from core.executor.snapshot import MachineState

@@ -37,6 +37,7 @@ from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
 from core.language.klartext import klartext_nodes as nodes
+from core.language.klartext import klartext_words
 from core.language.klartext.canonical_text import format_name
 from core.language.klartext.klartext_faults import FILE_MISSING, LABEL_NOT_FOUND, make_unsupported_error
 from core.language.klartext.named_files import TableRow
@@ -317,7 +318,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         if not isinstance(node, nodes.CycleCall):
             yield from self._with_cycle(node.m_functions, 1, has_moved=False)
 
-    def _behind(self, codes: Sequence[nodes.MFunction], comment: str) -> Iterator[Block]:
+    def _behind(self, codes: Sequence[klartext_words.MFunction], comment: str) -> Iterator[Block]:
         state = self._state
         if any(code.number in m_functions.PROGRAM_END_CODES for code in codes):
             yield from self._path.finish_program()
@@ -332,7 +333,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 self._flow.end_program()
 
     def _with_cycle(
-        self, codes: Sequence[nodes.MFunction], column: int, *, has_moved: bool
+        self, codes: Sequence[klartext_words.MFunction], column: int, *, has_moved: bool
     ) -> Iterator[Block]:
         """Yield the blocks of the cycle that M99 or M89 calls.
 

@@ -6,6 +6,7 @@ The conversion normalizes signs, the order of words and blanks.
 from __future__ import annotations
 
 from core.language.klartext import klartext_nodes as nodes
+from core.language.klartext import klartext_words
 from core.message import Message
 
 _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
@@ -39,8 +40,7 @@ def _short(node: nodes.Node) -> str:
     match node:
         case nodes.BeginBlock() | nodes.EndBlock():
             unit = "INCH" if node.is_inch else "MM"
-            name = "BEGIN" if isinstance(node, nodes.BeginBlock) else "END"
-            made = _joined(Message("{name} PGM", name=name), node.name, unit)
+            made = _joined(Message("{name} PGM", name=type(node).__name__.upper()), node.name, unit)
         case nodes.BlankCorner():
             made = _joined(
                 Message("BLK FORM 0.{part}", part=node.part_number), node.tool_axis, _axes(node.corner)
@@ -68,7 +68,7 @@ def _path(node: nodes.PathFunction) -> str:
 
 def _tool_call(node: nodes.ToolCall) -> str:
     words = (("S", node.speed), (f"F{node.feed_base}", node.feed), ("DL", node.length), ("DR", node.radius))
-    tool = _value(node.tool, plus=False) if isinstance(node.tool, nodes.Value) else ""
+    tool = _value(node.tool, plus=False) if isinstance(node.tool, klartext_words.Value) else ""
     if isinstance(node.tool, (int, str)):
         tool = format_name(node.tool)
     shown = [f"{word}{_value(value, plus=word[0] == 'D')}" for word, value in words if value is not None]
@@ -88,27 +88,27 @@ def _positioning(made: nodes.RotaryPositioning) -> str:
     )
 
 
-def _codes(codes: tuple[nodes.MFunction, ...]) -> str:
+def _codes(codes: tuple[klartext_words.MFunction, ...]) -> str:
     return " ".join(_joined(f"M{code.number}", _retract(code.retract), _feed(code.feed)) for code in codes)
 
 
-def _axes(words: tuple[nodes.AxisWord, ...]) -> str:
+def _axes(words: tuple[klartext_words.AxisWord, ...]) -> str:
     return " ".join(f"{'I' if word.is_incremental else ''}{word.axis}{_value(word.value)}" for word in words)
 
 
-def _feed(feed: nodes.FeedWord | None) -> str:
+def _feed(feed: klartext_words.FeedWord | None) -> str:
     if feed is None:
         return ""
     return _FEEDS[feed.kind] if feed.value is None else f"F{feed.base}{_value(feed.value, plus=False)}"
 
 
-def _retract(retract: nodes.RetractWord | None) -> str:
-    if retract is None:
+def _retract(way: klartext_words.RetractWord | None) -> str:
+    if way is None:
         return ""
-    return "MB MAX" if retract.distance is None else f"MB{_value(retract.distance, plus=False)}"
+    return "MB MAX" if way.distance is None else f"MB{_value(way.distance, plus=False)}"
 
 
-def _value(value: nodes.Value, *, plus: bool = True) -> str:
+def _value(value: klartext_words.Value, *, plus: bool = True) -> str:
     if value.parameter_number is not None:
         return (
             f"{'-' if value.is_negative else '+' if plus else ''}{value.parameter_kind}"

@@ -12,7 +12,6 @@ from core.language.formulas import Parameter
 from core.language.klartext import q_parameters
 from core.language.klartext.klartext_faults import CONTOUR_FORMULAS, make_unsupported_error
 from core.language.klartext.klartext_nodes import (
-    AxisWord,
     ContourDefinition,
     ContourPart,
     CoordinateTransform,
@@ -21,12 +20,12 @@ from core.language.klartext.klartext_nodes import (
     CycleLine,
     CycleParameter,
     DatumShift,
-    FeedWord,
     GlobalDefinition,
     Node,
     PatternDefinition,
     PatternPart,
 )
+from core.language.klartext.klartext_words import AxisWord, FeedWord
 from core.language.klartext.line_cursor import LineCursor, read_axis_words, read_feed, read_words_by_name
 from core.language.klartext.path_block import ROTATION_PATTERN, read_remaining_m_functions
 from core.message import Message

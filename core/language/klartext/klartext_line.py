@@ -13,16 +13,8 @@ from core.language.klartext.klartext_faults import (
     UnsupportedCodes,
     make_syntax_error,
 )
-from core.language.klartext.klartext_nodes import (
-    AxisWord,
-    FeedWord,
-    HeadingLine,
-    KlartextLine,
-    Node,
-    PathFunction,
-    StopBlock,
-    Value,
-)
+from core.language.klartext.klartext_nodes import HeadingLine, KlartextLine, Node, PathFunction, StopBlock
+from core.language.klartext.klartext_words import AxisWord, FeedWord, Value
 from core.language.klartext.line_cursor import LineCursor
 from core.language.line_reading import find_comment_start
 from core.message import Message
@@ -188,8 +180,6 @@ _KEYWORDS: dict[str, Callable[[LineCursor, int], Node]] = {
     "FUNCTION": structure_blocks.read_function_block,
     "STOP": _stop,
 }
-
-
 _SYNONYMS = {"CYCLE DEF": "CYCL DEF", "CYCLE CALL": "CYCL CALL"}  # variants that some postprocessors write
 _STARTS = _any_of((*_SYNONYMS, *_KEYWORDS), r"(?![A-Z])")
 

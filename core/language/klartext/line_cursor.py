@@ -16,7 +16,7 @@ from core.language.klartext.klartext_faults import (
     make_syntax_error,
     make_unsupported_error,
 )
-from core.language.klartext.klartext_nodes import AxisWord, FeedWord, RetractWord, Value
+from core.language.klartext.klartext_words import AxisWord, FeedWord, RetractWord, Value
 from core.language.line_reading import (
     LineReader,
     describe_typographic_character,

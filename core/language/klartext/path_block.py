@@ -7,15 +7,8 @@ from typing import NamedTuple
 
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import make_syntax_error
-from core.language.klartext.klartext_nodes import (
-    AxisWord,
-    CornerBlock,
-    FeedWord,
-    MFunction,
-    MFunctionBlock,
-    PathFunction,
-    Pole,
-)
+from core.language.klartext.klartext_nodes import CornerBlock, MFunctionBlock, PathFunction, Pole
+from core.language.klartext.klartext_words import AxisWord, FeedWord, MFunction
 from core.language.klartext.line_cursor import (
     LineCursor,
     check_not_repeated,

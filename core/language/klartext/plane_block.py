@@ -7,7 +7,8 @@ import re
 from collections.abc import Callable
 
 from core.language.klartext.klartext_faults import make_syntax_error
-from core.language.klartext.klartext_nodes import AxisWord, PlaneBlock, RotaryPositioning
+from core.language.klartext.klartext_nodes import PlaneBlock, RotaryPositioning
+from core.language.klartext.klartext_words import AxisWord
 from core.language.klartext.line_cursor import (
     LineCursor,
     check_not_repeated,

@@ -15,7 +15,6 @@ from core.language.klartext.klartext_faults import (
     make_unsupported_error,
 )
 from core.language.klartext.klartext_nodes import (
-    AxisWord,
     BeginBlock,
     BlankCorner,
     CoordinateTransform,
@@ -31,8 +30,8 @@ from core.language.klartext.klartext_nodes import (
     TcpmSwitch,
     ToolCall,
     ToolDefinition,
-    Value,
 )
+from core.language.klartext.klartext_words import AxisWord, Value
 from core.language.klartext.line_cursor import (
     LineCursor,
     check_not_repeated,

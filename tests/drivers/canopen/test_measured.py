@@ -13,7 +13,7 @@ from core.executor.executor import Executor
 from core.executor.snapshot import MachineState
 from core.ports import MachinePorts
 from drivers.canopen.canopen_encoder import MeasuredSpindle
-from drivers.inverter.inverter_control import SpeedComparison
+from drivers.inverter.command_monitor import SpeedComparison
 from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from tests.drivers.canopen.bench import can_machine
 from tests.drivers.canopen.test_encoder import OWN

@@ -12,7 +12,8 @@ import resources
 from app.compose.backends.inverter_backend import FaultClearingAxes, find_unknown_parts, halt_with_inverter
 from app.compose.machine.machine_files import parse_machine
 from core.ports import UnknownPart
-from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT, InverterThread
+from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT
+from drivers.inverter.inverter_control import InverterThread
 from drivers.inverter.inverter_spindle import InverterSpindle, create_inverter_control
 from tests.drivers.contract.lockstep import LockstepClock
 from tests.drivers.contract.rig import Fault

@@ -20,7 +20,7 @@ from app.compose.machine.machine_files import load_machine
 from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
-from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT
+from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT
 from drivers.wakeups import ManualClock, RealClock
 from tests.coded import raises_code
 from tests.drivers.inverter.benches import FAMILIES, FOLDER, OWN, memory_of

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from drivers.inverter.inverter_control import PRESS_ESTOP_TEXT, RESPONSE_TIME_S, CommandMonitor
+from drivers.inverter.command_monitor import PRESS_ESTOP_TEXT, RESPONSE_TIME_S, CommandMonitor
 from drivers.inverter.inverter_family import InverterState
 from tests.texts import text
 

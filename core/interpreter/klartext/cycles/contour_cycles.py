@@ -10,16 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 
+from core.geometry.clearing_rings import ClearingRing, make_clearing_rings
 from core.geometry.contour_offset import GougeError, offset_known_contour
 from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Arc, Element, Point, left_normal
 from core.geometry.pocket_area import (
     AreaCheck,
     AreaError,
-    ClearingRing,
     ElementLoop,
     close_loop,
     inset_loops,
-    make_clearing_rings,
     split_loop,
     start_loop_at,
 )

@@ -18,8 +18,8 @@ from core.interpreter.klartext.cycles.contour_cycles import (
 )
 from core.interpreter.klartext.cycles.cycle_moves import CycleTool
 from core.interpreter.klartext.cycles.hole_cycles import HOLE_CYCLES
+from core.interpreter.klartext.cycles.milling_cycle_table import MILLING_CYCLES
 from core.interpreter.klartext.cycles.older_cycles import LAST_LINE_NUMBERS, OLDER_CYCLES, OlderCycleData
-from core.interpreter.klartext.cycles.pocket_cycles import MILLING_CYCLES
 from core.interpreter.klartext.cycles.point_patterns import (
     compute_circle_points,
     compute_points,
@@ -43,7 +43,6 @@ from core.language.klartext.klartext_faults import (
     make_unsupported_error,
 )
 from core.language.klartext.klartext_nodes import (
-    AxisWord,
     ContourDefinition,
     ContourPart,
     CycleCall,
@@ -52,8 +51,8 @@ from core.language.klartext.klartext_nodes import (
     PatternDefinition,
     PlaneBlock,
     RotaryPositioning,
-    Value,
 )
+from core.language.klartext.klartext_words import AxisWord, Value
 from core.language.klartext.named_files import TableRow
 from core.message import Message
 
@@ -71,8 +70,6 @@ _PROGRAM = re.compile(r"(?:PGM\b|%)\s*", re.IGNORECASE)  # text before the name 
 # words for the set-up distance in cycle 19
 _SET_UP_WORDS = frozenset({"ABST", "DIST", "SETUP", "SET-UP", "SET UP"})
 _CYLINDER_CYCLES = {27: "surface", 28: "slot", 29: "ridge", 39: "contour"}
-
-
 _DefinitionNode = CycleDefinition | CycleLine | PatternDefinition | ContourDefinition
 
 

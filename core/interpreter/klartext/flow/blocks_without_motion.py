@@ -19,6 +19,7 @@ from core.interpreter.shared.control_flow import ENDLESS_LOOP_CODE, EndlessLoopD
 from core.interpreter.shared.job_setup import MillTool
 from core.language.diagnostics import ProgramError, Severity
 from core.language.klartext import klartext_nodes as nodes
+from core.language.klartext import klartext_words
 from core.language.klartext.klartext_faults import PROGRAM_RAISED_ERROR, TOOL_UNKNOWN, make_unsupported_error
 from core.language.klartext.klartext_nodes import SystemRead, SystemWrite
 from core.language.klartext.structure_blocks import MAX_REPEATS
@@ -35,7 +36,7 @@ def execute_flow_block(
     if isinstance(node, nodes.Label):
         flow.execute_label(node)
     elif isinstance(node, nodes.LabelCall):
-        repeat = node.repeat_count or nodes.Value(0.0)
+        repeat = node.repeat_count or klartext_words.Value(0.0)
         times = word_values.number(state, repeat, "REP", MAX_REPEATS, 0.0)
         flow.call_label(line, node, math.floor(times))
     elif word_values.value(state, node.condition):

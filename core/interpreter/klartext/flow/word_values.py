@@ -17,7 +17,7 @@ from core.language.klartext.klartext_faults import (
     INPUT_VALUE_INCORRECT,
     MissingValueError,
 )
-from core.language.klartext.klartext_nodes import AxisWord, FeedWord, Value
+from core.language.klartext.klartext_words import AxisWord, FeedWord, Value
 from core.language.klartext.q_parameters import CONDITION_OPERATOR
 from core.message import Message
 

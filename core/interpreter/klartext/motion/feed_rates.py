@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from core.interpreter.klartext.klartext_state import POINT_TOLERANCE, State
 from core.language.diagnostics import Severity
 from core.language.klartext.klartext_faults import INPUT_VALUE_INCORRECT, WRONG_RPM, make_unsupported_error
-from core.language.klartext.klartext_nodes import MFunction
+from core.language.klartext.klartext_words import MFunction
 
 REVOLUTION, TOOTH = "U", "Z"
 MAX_FEED = 99_999.999

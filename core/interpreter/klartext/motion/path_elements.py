@@ -30,7 +30,8 @@ from core.language.klartext.klartext_faults import (
     PATH_FUNCTION_NOT_POSSIBLE,
     POLE_MISSING,
 )
-from core.language.klartext.klartext_nodes import AxisWord, PathFunction, Pole
+from core.language.klartext.klartext_nodes import PathFunction, Pole
+from core.language.klartext.klartext_words import AxisWord
 from core.message import Message
 
 CIRCLE_TOLERANCE_MM = (

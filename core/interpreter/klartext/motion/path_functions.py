@@ -40,7 +40,8 @@ from core.language.klartext.klartext_faults import (
     ROUNDING_NOT_POSSIBLE,
     make_unsupported_error,
 )
-from core.language.klartext.klartext_nodes import AxisWord, CornerBlock, PathFunction, Pole
+from core.language.klartext.klartext_nodes import CornerBlock, PathFunction, Pole
+from core.language.klartext.klartext_words import AxisWord
 from core.message import Message
 
 BlockGenerator = Callable[[], Iterator[Block]]

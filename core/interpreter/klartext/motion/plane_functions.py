@@ -49,7 +49,8 @@ from core.language.klartext.klartext_faults import (
     TOOL_AXIS_MISSING,
     WRONG_AXIS,
 )
-from core.language.klartext.klartext_nodes import AxisWord, PlaneBlock, RetractWord
+from core.language.klartext.klartext_nodes import PlaneBlock
+from core.language.klartext.klartext_words import AxisWord, RetractWord
 from core.message import Message
 
 # --- frame and angles of a PLANE block, without motion

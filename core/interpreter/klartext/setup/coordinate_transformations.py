@@ -11,7 +11,8 @@ from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import LINEAR_AXES, ORIGIN_POINT, ROTARY_AXES, State
 from core.language.klartext.klartext_faults import DATUM_TABLE_MISSING, INPUT_VALUE_INCORRECT, WRONG_AXIS
-from core.language.klartext.klartext_nodes import AxisWord, CoordinateTransform, DatumShift, Value
+from core.language.klartext.klartext_nodes import CoordinateTransform, DatumShift
+from core.language.klartext.klartext_words import AxisWord, Value
 
 MAX_SCALE_FACTOR = 99.999999
 MAX_TABLE_ROW = 999_999.0

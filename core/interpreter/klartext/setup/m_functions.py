@@ -29,7 +29,7 @@ from core.language.klartext.klartext_faults import (
     make_syntax_error,
     make_unsupported_error,
 )
-from core.language.klartext.klartext_nodes import MFunction
+from core.language.klartext.klartext_words import MFunction
 from core.message import Message
 
 M19, M89, M91, M92, M99 = 19, 89, 91, 92, 99

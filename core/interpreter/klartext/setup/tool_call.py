@@ -17,7 +17,8 @@ from core.language.klartext.klartext_faults import (
     WRONG_RPM,
     make_unsupported_error,
 )
-from core.language.klartext.klartext_nodes import ToolCall, ToolDefinition, Value
+from core.language.klartext.klartext_nodes import ToolCall, ToolDefinition
+from core.language.klartext.klartext_words import Value
 from core.language.klartext.structure_blocks import MAX_TOOL_NUMBER
 from core.message import Message
 from core.tool_edges import FIRST_NAMED_TOOL, NamedTool

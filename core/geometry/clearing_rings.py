@@ -1,0 +1,158 @@
+"""Rings that clear one level of a pocket, as insets of its boundary, in machining order.
+
+The rings are offsets of the boundary that are at most one tool radius apart. This clears every point,
+because a point between two rings is closer to the outer ring than their distance. A larger distance would
+leave stock in corners.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from math import dist
+
+from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Line, Point
+from core.geometry.pocket_area import (
+    AreaCheck,
+    AreaError,
+    ElementLoop,
+    Winding,
+    inset_loops,
+    is_counterclockwise,
+    start_loop_near,
+)
+from core.message import Message
+
+_MAX_RINGS = 2000
+_LINK_RADII = 4.0  # tool radii; the tool moves to a ring farther away above the workpiece
+_RAMP_RADII = 4.0  # tool radii that a ramp should be long
+
+
+@dataclass(frozen=True, slots=True)
+class ClearingRing:
+    """One clearing ring, which starts at the point where the tool reaches it.
+
+    If ``moves_at_depth`` is True, the tool moves to the ring at the depth of the ring; otherwise it comes
+    from above. ``ramp_loop`` is the ring along which the tool ramps down. It is usually the same ring, or a
+    wider ring if this ring is too short.
+    """
+
+    loop: ElementLoop
+    moves_at_depth: bool
+    ramp_loop: ElementLoop
+
+
+@dataclass(slots=True)
+class _AreaPatch:
+    """A connected part of the area at one distance.
+
+    The patch has an outer ring, its islands, and the patches inside it.
+    """
+
+    outer: ElementLoop
+    holes: list[ElementLoop] = field(default_factory=list)
+    inner: list[_AreaPatch] = field(default_factory=list)
+
+    def holds(self, point: Point) -> bool:
+        return sum(Winding(loop).winding_number(point) for loop in (self.outer, *self.holes)) > 0
+
+
+def make_clearing_rings(
+    area: Sequence[ElementLoop],
+    first_inset: float,
+    ring_distance: float,
+    radius: float,
+    *,
+    conventional: bool,
+    position: Point,
+) -> list[ClearingRing]:
+    """Return the rings that clear an area.
+
+    The outermost ring is ``first_inset`` mm inside the area, and the rings are ``ring_distance`` mm apart.
+    If ``conventional`` is True, the rings are clockwise (conventional milling with M3). Raises AreaError if
+    the tool does not fit.
+    """
+    outmost = _find_patches(inset_loops(area, first_inset))
+    if not outmost:
+        raise AreaError("the tool does not fit anywhere inside the contour")
+    layer, apart = outmost, first_inset
+    for _ in range(_MAX_RINGS):
+        apart += ring_distance
+        within = _find_patches(inset_loops(area, apart))
+        for patch in within:
+            home = next((each for each in layer if each.holds(patch.outer[0].start)), None)
+            (home.inner if home is not None else outmost).append(patch)
+        layer = within
+        if not layer:
+            break
+    else:
+        raise AreaError(
+            Message("clearing needs more than {most_rings} concentric passes", most_rings=_MAX_RINGS)
+        )
+    return _order_rings(
+        outmost, AreaCheck(area), first_inset, radius, conventional=conventional, position=position
+    )
+
+
+def _find_patches(loops: Sequence[ElementLoop]) -> list[_AreaPatch]:
+    """Return the connected parts of an area, each with its islands."""
+    outers = sorted((loop for loop in loops if is_counterclockwise(loop)), key=_size)
+    found = [_AreaPatch(loop) for loop in outers]
+    for hole in loops:
+        if is_counterclockwise(hole):
+            continue
+        home = next((each for each in found if Winding(each.outer).winding_number(hole[0].start) > 0), None)
+        if home is None:
+            raise AreaError("an island touches the edge of its pocket")
+        home.holes.append(hole)
+    return found
+
+
+def _size(loop: ElementLoop) -> float:
+    return sum(element.length for element in loop)
+
+
+def _order_rings(
+    outmost: Sequence[_AreaPatch],
+    room: AreaCheck,
+    distance: float,
+    radius: float,
+    *,
+    conventional: bool,
+    position: Point,
+) -> list[ClearingRing]:
+    """Return the rings in machining order, each starting at the point where the tool reaches it."""
+    made: list[ClearingRing] = []
+    for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
+        loop = start_loop_near(_sense(ring, against=conventional), position)
+        way = (
+            Line(position, loop[0].start) if dist(position, loop[0].start) > SAME_POINT_TOLERANCE_MM else None
+        )
+        straight = index > 0 and (
+            way is None or (way.length <= _LINK_RADII * radius and room.contains_element(way, distance))
+        )
+        ramp = loop
+        if not straight and _size(loop) < _RAMP_RADII * radius:
+            wider = next((each for each in reversed(around) if _size(each) >= _RAMP_RADII * radius), None)
+            if wider is not None:
+                wider = start_loop_near(_sense(wider, against=conventional), loop[0].start)
+                gap = dist(wider[0].start, loop[0].start) > SAME_POINT_TOLERANCE_MM
+                if not gap or room.contains_element(Line(wider[0].start, loop[0].start), distance):
+                    ramp = wider
+        made.append(ClearingRing(loop, straight, ramp))
+        position = loop[0].start
+    return made
+
+
+def _iter_inner_first(
+    patches: Sequence[_AreaPatch], outer_rings: list[ElementLoop]
+) -> Iterator[tuple[ElementLoop, list[ElementLoop]]]:
+    """Yield each ring, with the outer rings around it, after the rings inside it."""
+    for patch in patches:
+        yield from _iter_inner_first(patch.inner, [*outer_rings, patch.outer])
+        for ring in (*patch.holes, patch.outer):
+            yield ring, outer_rings
+
+
+def _sense(loop: ElementLoop, *, against: bool) -> ElementLoop:
+    return [element.reversed() for element in reversed(loop)] if against else list(loop)

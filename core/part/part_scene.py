@@ -1,0 +1,54 @@
+"""The scene of a part's picture, with its colors and the table of their shades."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from core.part.solid_bodies import ToolBody
+from core.part.surface_points import Solid
+
+ImageArray = npt.NDArray[np.uint32]
+SHADES = 256
+
+
+class PartColors(NamedTuple):
+    """Colors of the part and of the objects around it, as 0xRRGGBB.
+
+    ``outside``, ``bore``, ``section`` and ``hit`` are the colors of the part. ``chuck``, ``holder`` and
+    ``insert`` are the colors of the objects around it. ``ground`` is the background color as 0xAARRGGBB.
+    """
+
+    outside: int = 0xB9C3CC
+    bore: int = 0xC9B48A
+    section: int = 0xD98E4A
+    hit: int = 0xE5322D
+    ground: int = 0x00000000
+    chuck: int = 0x6F6A61
+    holder: int = 0x6C7A89
+    insert: int = 0xE8B923
+
+
+class PartScene(NamedTuple):
+    """The objects around the part: a chuck or collet, and a tool."""
+
+    chuck: Solid | None = None
+    tool: ToolBody | None = None
+
+
+def make_color_table(colors: PartColors) -> ImageArray:
+    """Return the color table (colors, shades) of 0xAARRGGBB values.
+
+    A color is dark at a brightness of 0, unchanged at 0.7, and lighter above that.
+    """
+    share = np.linspace(0.0, 1.0, SHADES)
+    rows = []
+    for colour in colors[:4]:
+        rgb = np.array([(colour >> 16) & 255, (colour >> 8) & 255, colour & 255])[:, None]
+        dark = rgb * np.minimum(share / 0.7, 1.0)
+        light = dark + (255.0 - dark) * np.maximum((share - 0.7) / 0.3, 0.0) * 0.9
+        red, green, blue = np.clip(light, 0, 255).astype(np.uint32)
+        rows.append((np.uint32(0xFF) << 24) | (red << 16) | (green << 8) | blue)
+    return np.array(rows, np.uint32)
