@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QFontMetricsF, QResizeEvent
 from PySide6.QtWidgets import QWidget
 
@@ -103,6 +103,12 @@ class EditorPathView(PathView):
             6: FunctionKey("ZOOM IN", partial(self.zoom_view, 1)),
             7: FunctionKey("ZOOM OUT", partial(self.zoom_view, -1)),
         }
+
+    def make_pan_actions(self) -> dict[int, Callable[[], None]]:
+        """Return the actions that pan the path, by arrow key."""
+        ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
+        ways[Qt.Key.Key_Down] = (0, 1)
+        return {key: partial(self.pan_view, *way) for key, way in ways.items()}
 
     def _set_measured_point(self) -> None:
         """Set a point of the measurement at the crosshair."""

@@ -24,7 +24,9 @@ from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.editor_model import EditorModel, EditorStage, find_load_label, open_editor
 from app.editor.editor_modes import ASKING_MODES, MODE_PROMPTS, EditorMode
 from app.editor.editor_parts_view import EditorHeadLine, EditorParts, EditorPathView, FindingList
-from app.editor.question_view import QuestionLine, TextFinder
+from app.editor.live_proof import describe_finding
+from app.editor.panel_text_view import PanelSynchronizer
+from app.editor.question_view import QuestionLine, TextFinder, show_mode_question
 from app.editor.text_view import ProgramTextField, TextSynchronizer
 from app.editor.version_history import VersionHistory
 from app.editor.versions_view import VersionList
@@ -72,8 +74,7 @@ class EditorPage(EditorParts):
         self.text_finder = TextFinder(self.text_field, self.question_line)
         self.typed_text = TextSynchronizer(self.text_field, self.editor)
         self.editor_panel: EditorPanel = page_table.find_editor_panel(EditorPanel)(host, self)
-        # numbers of the panel's text that was proved and of the text put into the field
-        self._shown_panel = (0, 0)
+        self.panel_text = PanelSynchronizer(self.editor_panel, self.editor, self.text_field, self.typed_text)
 
     # --- calls of the main window --------------------------------------------------------------------
 
@@ -167,9 +168,7 @@ class EditorPage(EditorParts):
         line = self.text_field.cursor_line
         found = self.text_field.finding_at(line)
         if found is not None:
-            return Message(
-                "LINE {line}: {value} {hint}", line=line, value=found.text, hint=found.hint
-            ).strip()
+            return describe_finding(found, line)
         return messages.SAVE_HINT
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
@@ -183,7 +182,7 @@ class EditorPage(EditorParts):
         self.typed_text.synchronize()
         self._update_stage()
         if self.mode is EditorMode.PANEL:
-            self._update_panel()
+            self.panel_text.synchronize()
         self.show_text()
         if self.mode is EditorMode.PATH and self.path_view.measurement is None:
             self.return_to_text()  # Measuring has ended, so the text gets the keyboard again.
@@ -353,15 +352,13 @@ class EditorPage(EditorParts):
         """
         if self.mode is EditorMode.PANEL:
             self.return_to_text()
-        elif self.editor.stage is EditorStage.OPEN and self.mode is EditorMode.TEXT:
-            panel, now = self.editor_panel, self.typed_text.read_text()
-            self.editor.message = panel.open_for_text(
-                key_name, self.editor.name, now, self.text_field.cursor_line
-            )
-            if not self.editor.message:
-                self.desk.clear_prompt_line()
-                self._shown_panel = (panel.model.text_number, panel.model.write_count)
-                self.enter_mode(EditorMode.PANEL)
+        elif (
+            self.editor.stage is EditorStage.OPEN
+            and self.mode is EditorMode.TEXT
+            and self.panel_text.open_panel(key_name)
+        ):
+            self.desk.clear_prompt_line()
+            self.enter_mode(EditorMode.PANEL)
 
     def _make_from_file(self, file: Path) -> None:
         """Open the form for the drawing file from which this program is generated."""
@@ -369,18 +366,6 @@ class EditorPage(EditorParts):
         self.open_panel()
         if self.mode is EditorMode.PANEL:
             self.editor_panel.model.open_file(file)
-
-    def _update_panel(self) -> None:
-        """Prove the preview of the form, and copy the text that the form has written into the text field."""
-        model, (proved, written) = self.editor_panel.model, self._shown_panel
-        model.poll()
-        if model.write_count != written:
-            self.text_field.put_text(model.text, as_new=False)
-            self.text_field.move_cursor_to(model.cursor_line)
-        if model.text_number != proved and not self.typed_text.is_stale:
-            self.editor.preview_text(model.text)
-        self._shown_panel = (model.text_number, model.write_count)
-        self.editor_panel.refresh()
 
     def handle_key(self, key: str) -> bool:
         """Pass a key to the form or list of the panel, and return whether it was used."""
@@ -402,17 +387,9 @@ class EditorPage(EditorParts):
 
     def _update_question_line(self) -> None:
         """Show the question of the mode, or hide the question line."""
-        if self.mode is EditorMode.FIND:
-            self.question_line.show_question(
-                "FIND", "REPLACE WITH", initial_text=self.text_finder.find_initial_text()
-            )
-            self.text_finder.count_matches()
-        elif self.mode is EditorMode.LINE_NUMBER:
-            self.question_line.show_question("GO TO LINE", initial_text=str(self.text_field.cursor_line))
-        elif self.mode is EditorMode.NAME:
-            self.question_line.show_question("SAVE AS", initial_text=self.editor.name)
-        else:
-            self.question_line.hide()
+        show_mode_question(
+            self.question_line, self.text_finder, self.mode, self.text_field.cursor_line, self.editor.name
+        )
 
     def _accept_entry(self) -> None:
         """Accept the entry in the question line."""
@@ -491,9 +468,7 @@ class EditorPage(EditorParts):
                 Qt.Key.Key_M: self.focus_path,
             }
         if self.mode is EditorMode.PATH:
-            ways = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1)}
-            ways[Qt.Key.Key_Down] = (0, 1)
-            chords |= {key: partial(self.path_view.pan_view, *pan_step) for key, pan_step in ways.items()}
+            chords |= self.path_view.make_pan_actions()
         return chords
 
     def _handle_closed(self) -> None:

@@ -144,3 +144,8 @@ class LiveProof:
 
     def _failed(self, why: str) -> None:
         self._now = ProofFindings(self._number, error_text=Message("PROVING FAILED: {why}", why=why))
+
+
+def describe_finding(finding: Diagnostic, line: int) -> str:
+    """Return the prompt for a finding of a line."""
+    return Message("LINE {line}: {value} {hint}", line=line, value=finding.text, hint=finding.hint).strip()

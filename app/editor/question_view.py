@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.pages.table_content import FunctionKey
 from app.desk.translation import tr
+from app.editor.editor_modes import EditorMode
 from app.editor.text_view import ProgramTextField
 from app.screen.entry_panel import style_line_edit
 from app.screen.panel import Panel, RedrawingAttribute
@@ -246,3 +247,18 @@ class TextFinder:
         self._ask.message_text = search.words(self._field.toPlainText()) if search.search_text else ""
         if place is not None:
             self._field.select_range(place, len(search.search_text))
+
+
+def show_mode_question(
+    question_line: QuestionLine, text_finder: TextFinder, mode: EditorMode, cursor_line: int, file_name: str
+) -> None:
+    """Show the question of a mode of the editor, or hide the question line if the mode has none."""
+    if mode is EditorMode.FIND:
+        question_line.show_question("FIND", "REPLACE WITH", initial_text=text_finder.find_initial_text())
+        text_finder.count_matches()
+    elif mode is EditorMode.LINE_NUMBER:
+        question_line.show_question("GO TO LINE", initial_text=str(cursor_line))
+    elif mode is EditorMode.NAME:
+        question_line.show_question("SAVE AS", initial_text=file_name)
+    else:
+        question_line.hide()

@@ -198,6 +198,15 @@ class PartPlayer:
         if self._picture is not None:
             self._ask()
 
+    def make_key_actions(self) -> dict[str, Callable[[], None]]:
+        """Return the actions of the timeline keys."""
+        return {
+            "Play": self.toggle_playback,
+            "Play fast": self.toggle_fast,
+            "Step back": partial(self.step_blocks, -1),
+            "Step forward": partial(self.step_blocks, 1),
+        }
+
     def toggle_playback(self) -> None:
         """Start or pause playback.
 

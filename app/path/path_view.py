@@ -20,7 +20,7 @@ from app.desk.translation import tr
 from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect, TipPosition
 from app.path.path_pointer_view import PathPointer
 from app.screen.panel import OnPress, Panel
-from app.screen.screen_theme import ALIGN_LEFT, ScreenTheme, draw_text
+from app.screen.screen_theme import ScreenTheme
 
 if TYPE_CHECKING:
     from app.path import path_marks_view as marks
@@ -293,15 +293,7 @@ class PathView(Panel):
 
     def make_playback_key_actions(self) -> KeyActions:
         """Return the actions of the timeline keys, or no actions without a player."""
-        player = self.part_player
-        if player is None:
-            return {}
-        return {
-            "Play": player.toggle_playback,
-            "Play fast": player.toggle_fast,
-            "Step back": partial(player.step_blocks, -1),
-            "Step forward": partial(player.step_blocks, 1),
-        }
+        return self.part_player.make_key_actions() if self.part_player is not None else {}
 
     def find_pane(self, position: QPointF | None) -> PathPane | None:
         """Return the pane at a position.
@@ -416,6 +408,7 @@ class PathView(Panel):
     def draw(self, painter: QPainter) -> None:
         """Draw the panes, title, buttons and legend, or a message if there is no picture."""
         from app.path import path_marks_view as marks
+        from app.path.pane_drawing_view import draw_pane, draw_view_title
 
         look, panes = self.theme, self.panes
         if not panes:
@@ -423,15 +416,18 @@ class PathView(Panel):
             marks.draw_no_path(painter, look, self.inside(), why)
             return
         for pane in panes:
-            self._draw_pane(painter, pane)
+            draw_pane(painter, look, pane, self.drawn_legs, self.measurement, is_metric=self.is_metric)
+            if pane.aspect is not PathAspect.PATH and pane is not panes[0]:
+                marks.draw_border(painter, look, pane.area)
         if (
             self.measurement is not None and self.measurement.pane.aspect not in SPATIAL_ASPECTS
         ):  # The table is drawn in another pane if there is one.
-            values_pane = next(
+            beside = next(
                 (pane for pane in panes if pane is not self.measurement.pane), self.measurement.pane
             )
-            self.measurement.draw_values(painter, values_pane.area, self.is_metric)
-        self._draw_title(painter)
+            self.measurement.draw_values(painter, beside.area, self.is_metric)
+        # The panes have covered the lower half of the title.
+        draw_view_title(painter, look, self.width(), self.title)
         marks.draw_buttons(painter, look, self.find_panes_area(), self._buttons(), self.add_target)
         if self.is_part_shown:
             self._draw_bar(painter)
@@ -458,32 +454,6 @@ class PathView(Panel):
             painter, QRectF(room.x(), room.bottom(), room.width(), TIMELINE_HEIGHT * u), self.add_target
         )
 
-    def _draw_pane(self, painter: QPainter, pane: PathPane) -> None:
-        from app.path import path_marks_view as marks
-
-        look = self.theme
-        painter.save()
-        painter.setClipRect(pane.area)
-        painter.translate(pane.area.topLeft())
-        if pane.projection is not None:
-            pane.draw_path(painter)
-            marks.draw_center_lines(painter, look, pane.aspect, pane.projection, pane.polyline)
-            pane.draw_run(painter)
-        if self.drawn_legs and pane.aspect is PathAspect.PATH:
-            marks.draw_approach(painter, look, pane, self.drawn_legs)
-        if (
-            self.measurement is not None
-            and self.measurement.pane is pane
-            and pane.aspect not in SPATIAL_ASPECTS
-        ):
-            self.measurement.draw(painter)
-        painter.restore()
-        if pane.aspect is not PathAspect.PATH:
-            ink = "alarm" if pane.aspect in PART_ASPECTS and marks.find_pane_errors(pane) else "soft"
-            marks.draw_title(painter, look, pane.area, marks.make_pane_title(pane, self.is_metric), ink)
-            if pane is not self.panes[0]:
-                marks.draw_border(painter, look, pane.area)
-
     def _buttons(self) -> list[marks.ViewButton]:
         from app.path.path_marks_view import ViewButton
 
@@ -497,11 +467,3 @@ class PathView(Panel):
             # A low pane does not have room for all buttons.
             found.insert(2, ViewButton(tr("VIEW"), self.select_next_view))
         return found
-
-    def _draw_title(self, painter: QPainter) -> None:
-        """Draw the title again, because the panes have covered its lower half."""
-        look, u = self.theme, self.theme.u
-        wide = self.width() - 4 * u
-        painter.setFont(look.fit_font(self.title, 1.7, wide, is_bold=True))
-        painter.setPen(look.color("soft"))
-        draw_text(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), ALIGN_LEFT, self.title)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 from core.alarms import AlarmCode, Reaction
 from core.alarms.bus_alarms import CONNECTION_LOSS_CODES
@@ -32,14 +32,14 @@ from core.executor.snapshot import (
     CYCLE_STATES,
     ESTOP_REASON,
     MANUAL_STATES,
-    MDI_ACTIONS,
     STOPPED_STATES,
     InterruptedJob,
     LogEvent,
     MachineState,
     require_transition,
 )
-from core.executor.start_conditions import SPINDLE_FUNCTION, AnnouncedStart, StartAnnouncement
+from core.executor.start_conditions import SPINDLE_FUNCTION, StartAnnouncement
+from core.executor.start_warnings import StartWarnings
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import ModalState
 from core.message import Message
@@ -58,7 +58,6 @@ _CONTINUED_STATES = frozenset(
 CONFIRMATION_DELAY_S = (
     0.8  # s between a confirmation and a start: 0.5 s between the two palm buttons, plus time to read
 )
-_REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
 _STOP_STATES = frozenset({MachineState.ESTOP, MachineState.FAULT, MachineState.DISABLED})
 
 
@@ -88,12 +87,13 @@ class MachineControl:
         self.homing = Homing(context)
         self.announcement = StartAnnouncement()
         self.outputs_watch = OutputsWatch(context, self.program_run)
+        warnings = StartWarnings(context, self.status, self.counters)
         self.announcement.sources += [
-            self._iter_spindle_starts,
+            warnings.iter_spindle_starts,
             self.outputs_watch.list_restart_outputs,
-            self._iter_proof_warnings,
+            warnings.iter_proof_warnings,
+            warnings.iter_first_move_warnings,
         ]
-        self.announcement.sources.append(self._iter_first_move_warnings)
         self.confirmed_at = -CONFIRMATION_DELAY_S  # time at which the operator last confirmed a start
         self.jog_end_reason = ""  # why the control ended a jog; it stays ended until the key is released
         self._turned = False  # in the previous tick the spindle turned as commanded
@@ -201,57 +201,6 @@ class MachineControl:
         waits = self._context.spindle.waiting_reason
         unclamped = start_conditions.find_program_collet_refusal(self._context) if waits else ""
         return unclamped or self.announcement.find_refusal(self._context.now)
-
-    def _iter_spindle_starts(self) -> Iterator[AnnouncedStart]:
-        """Yield the announcement of a waiting spindle that the next start will turn on.
-
-        In a cycle only Cycle Start turns the spindle on. Between programs the spindle switch also turns it
-        on.
-        """
-        spindle = self._context.spindle
-        rpm, by_hand = spindle.waiting_start_rpm, self.state in MANUAL_STATES
-        if rpm and (by_hand or (self.state in STOPPED_STATES and not spindle.start_inhibit_reason)):
-            direction = "FORWARD" if rpm > 0.0 else "REVERSE"
-            text = Message(
-                "SPINDLE STARTS AT {rpm} RPM {direction}", rpm=f"{abs(rpm):.0f}", direction=direction
-            )
-            yield AnnouncedStart(
-                SPINDLE_FUNCTION,
-                text if spindle.is_auto else Message("SET SPINDLE SWITCH TO AUTO: {start}", start=text),
-                spindle.permit_start,
-                rpm,
-            )
-
-    def _iter_proof_warnings(self) -> Iterator[AnnouncedStart]:
-        """Yield the warnings of the proof, which the operator must read before the program starts."""
-        status = self.status
-        job, proof = status.job, status.proof
-        if (
-            self.state not in _REST_STATES
-            or status.start_action in MDI_ACTIONS
-            or job is None
-            or proof is None
-        ):
-            return
-        # otherwise the start is refused anyway
-        if proof.digest == job.digest and proof.warnings and not proof.errors:
-            first, more = proof.warnings[0], len(proof.warnings) - 1
-            said = Message("{first_error} ({more} MORE)", first_error=first, more=more) if more else first
-            yield AnnouncedStart(
-                "warned" + job.digest, Message("WARNING: {warned}", warned=said), lambda: None
-            )
-
-    def _iter_first_move_warnings(self) -> Iterator[AnnouncedStart]:
-        """Yield the warning that the first move may hit a part whose shape is unknown or only assumed."""
-        if self.state not in _REST_STATES or not self.status.requires_clearance:
-            return
-        found = start_conditions.find_first_move_clearance(
-            self._context, self.status, self.counters.started_run_count
-        )
-        if found is not None and found.warned:
-            yield AnnouncedStart(
-                "first-move" + found.job, Message("WARNING: {warned}", warned=found.warned), lambda: None
-            )
 
     def start_feed_hold(self, reason: str, source: str = "", code: AlarmCode | None = None) -> None:
         """Hold the cycle, end a jog, stop homing and disable the handwheel.

@@ -7445,11 +7445,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>LINE {line}: {value} {hint}</source>
-      <translation>LÍNEA {line}: {value} {hint}</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>NEXT ERROR</source>
       <translation>SIG ERROR</translation>
     </message>
@@ -7465,11 +7460,6 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>REPLACE WITH</source>
-      <translation>REEMPLAZAR POR</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>RESTORE</source>
       <translation>RESTAURAR</translation>
     </message>
@@ -7480,13 +7470,13 @@
     </message>
     <message>
       <location filename="app/editor/editor_view.py" />
-      <source>SAVE AS</source>
-      <translation>GUARDAR COMO</translation>
-    </message>
-    <message>
-      <location filename="app/editor/editor_view.py" />
       <source>UNDO</source>
       <translation>DESHACER</translation>
+    </message>
+    <message>
+      <location filename="app/editor/live_proof.py" />
+      <source>LINE {line}: {value} {hint}</source>
+      <translation>LÍNEA {line}: {value} {hint}</translation>
     </message>
     <message>
       <location filename="app/editor/live_proof.py" />
@@ -7522,6 +7512,16 @@
       <location filename="app/editor/question_view.py" />
       <source>REPLACE</source>
       <translation>CAMBIAR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>REPLACE WITH</source>
+      <translation>REEMPLAZAR POR</translation>
+    </message>
+    <message>
+      <location filename="app/editor/question_view.py" />
+      <source>SAVE AS</source>
+      <translation>GUARDAR COMO</translation>
     </message>
     <message>
       <location filename="app/editor/question_view.py" />
@@ -10009,9 +10009,39 @@
       <translation>Estos valores no dan una forma válida: revise el último valor que introdujo.</translation>
     </message>
     <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
+      <location filename="app/extras/shapes/shape_notices.py" />
       <source>1 SHAPE EDITED BY HAND WAS NOT CHANGED</source>
       <translation>1 FORMA EDITADA A MANO NO SE CAMBIÓ</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT</source>
+      <translation>LÍNEA {line} EDITADA A MANO. EL FORMULARIO MUESTRA LOS VALORES DEL COMENTARIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT</source>
+      <translation>LÍNEA {line}: COMENTARIO DE {shape} EDITADO, ILEGIBLE. DESHAGA EL CAMBIO</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}</source>
+      <translation>LA FICHA USA ESTOS VALORES EDITADOS A MANO EN EL TEXTO: {fields}</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
+      <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE</source>
+      <translation>X Z C R A: IR A LA COLUMNA   ENTER: PUNTO SIGUIENTE   F2: ESCRIBIR</translation>
+    </message>
+    <message>
+      <location filename="app/extras/shapes/shape_notices.py" />
+      <source>{count} SHAPES EDITED BY HAND WERE NOT CHANGED</source>
+      <translation>{count} FORMAS EDITADAS A MANO NO SE CAMBIARON</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_model.py" />
@@ -10045,43 +10075,13 @@
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT</source>
-      <translation>LÍNEA {line} EDITADA A MANO. EL FORMULARIO MUESTRA LOS VALORES DEL COMENTARIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT</source>
-      <translation>LÍNEA {line}: COMENTARIO DE {shape} EDITADO, ILEGIBLE. DESHAGA EL CAMBIO</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
       <source>SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS</source>
       <translation>LAS FORMAS SOLO FUNCIONAN EN PROGRAMAS OMNITURN Y SINUMERIK</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_model.py" />
-      <source>THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}</source>
-      <translation>LA FICHA USA ESTOS VALORES EDITADOS A MANO EN EL TEXTO: {fields}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
       <source>TOOL DATA CANNOT BE READ: {why}</source>
       <translation>NO SE PUEDEN LEER LOS DATOS DE HERRAMIENTA: {why}</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE</source>
-      <translation>ESCRIBA UN NÚMERO O EXPRESIÓN   ENTER: CAMPO SIGUIENTE   F2: ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE</source>
-      <translation>X Z C R A: IR A LA COLUMNA   ENTER: PUNTO SIGUIENTE   F2: ESCRIBIR</translation>
-    </message>
-    <message>
-      <location filename="app/extras/shapes/shapes_model.py" />
-      <source>{count} SHAPES EDITED BY HAND WERE NOT CHANGED</source>
-      <translation>{count} FORMAS EDITADAS A MANO NO SE CAMBIARON</translation>
     </message>
     <message>
       <location filename="app/extras/shapes/shapes_view.py" />
@@ -12564,6 +12564,21 @@
       <translation>LÍNEA {line}</translation>
     </message>
     <message>
+      <location filename="app/path/part_player.py" />
+      <source>Play fast</source>
+      <translation>Reproducir rápido</translation>
+    </message>
+    <message>
+      <location filename="app/path/part_player.py" />
+      <source>Step back</source>
+      <translation>Paso atrás</translation>
+    </message>
+    <message>
+      <location filename="app/path/part_player.py" />
+      <source>Step forward</source>
+      <translation>Paso adelante</translation>
+    </message>
+    <message>
       <location filename="app/path/path_aspects.py" />
       <source>OPEN</source>
       <translation>ABRIR</translation>
@@ -12662,21 +12677,6 @@
       <location filename="app/path/path_view.py" />
       <source>MEAS</source>
       <translation>MEDIR</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_view.py" />
-      <source>Play fast</source>
-      <translation>Reproducir rápido</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_view.py" />
-      <source>Step back</source>
-      <translation>Paso atrás</translation>
-    </message>
-    <message>
-      <location filename="app/path/path_view.py" />
-      <source>Step forward</source>
-      <translation>Paso adelante</translation>
     </message>
     <message>
       <location filename="app/production/cycle_recorder.py" />
@@ -14055,18 +14055,8 @@
     </message>
     <message>
       <location filename="app/screen/window/main_window.py" />
-      <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
-      <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/main_window.py" />
       <source>{key} HAS NO FUNCTION ON THIS PAGE</source>
       <translation>{key} NO TIENE FUNCIÓN EN ESTA PÁGINA</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/main_window.py" />
-      <source>{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
-      <translation>{key} SIRVE EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/screen/window/readout_panels.py" />
@@ -14167,6 +14157,16 @@
       <location filename="app/screen/window/station_dock.py" />
       <source>TWIST</source>
       <translation>GIRE</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/typed_keys.py" />
+      <source>{key} CANNOT BE ENTERED IN THIS FIELD</source>
+      <translation>{key} NO SE PUEDE ESCRIBIR EN ESTE CAMPO</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/typed_keys.py" />
+      <source>{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2</source>
+      <translation>{key} SIRVE EN LA PÁGINA AUTOMÁTICO: PULSE F1 Y LUEGO F2</translation>
     </message>
     <message>
       <location filename="app/screen/window/window_bars.py" />
@@ -18305,21 +18305,6 @@
     </message>
     <message>
       <location filename="core/executor/machine_control.py" />
-      <source>SET SPINDLE SWITCH TO AUTO: {start}</source>
-      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN AUTO: {start}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>SPINDLE STARTS AT {rpm} RPM {direction}</source>
-      <translation>EL HUSILLO ARRANCA A {rpm} RPM {direction}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
-      <source>WARNING: {warned}</source>
-      <translation>AVISO: {warned}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/machine_control.py" />
       <source>a driver does not carry out the stop command for {undone}</source>
       <translation>un driver no ejecuta la orden de paro para {undone}</translation>
     </message>
@@ -18907,6 +18892,21 @@
       <location filename="core/executor/start_conditions.py" />
       <source>{old}, but the program does not specify this setting; load the program again</source>
       <translation>{old}, pero el programa no especifica este ajuste; cargue el programa otra vez</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_warnings.py" />
+      <source>SET SPINDLE SWITCH TO AUTO: {start}</source>
+      <translation>PONGA EL INTERRUPTOR DEL HUSILLO EN AUTO: {start}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_warnings.py" />
+      <source>SPINDLE STARTS AT {rpm} RPM {direction}</source>
+      <translation>EL HUSILLO ARRANCA A {rpm} RPM {direction}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/start_warnings.py" />
+      <source>WARNING: {warned}</source>
+      <translation>AVISO: {warned}</translation>
     </message>
     <message>
       <location filename="core/extras/access/pins.py" />
@@ -20899,6 +20899,16 @@
       <translation>los dos movimientos tienen la misma dirección</translation>
     </message>
     <message>
+      <location filename="core/geometry/clearing_rings.py" />
+      <source>an island touches the edge of its pocket</source>
+      <translation>una isla toca el borde de su cajera</translation>
+    </message>
+    <message>
+      <location filename="core/geometry/clearing_rings.py" />
+      <source>clearing needs more than {most_rings} concentric passes</source>
+      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
+    </message>
+    <message>
       <location filename="core/geometry/contour_offset.py" />
       <source>the compensated path of the move would gouge another part of the contour</source>
       <translation>la trayectoria compensada del movimiento cortaría otra parte del contorno</translation>
@@ -20922,16 +20932,6 @@
       <location filename="core/geometry/contour_offset.py" />
       <source>the offset path of another move would cut into this move</source>
       <translation>la trayectoria compensada de otro movimiento cortaría este movimiento</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/pocket_area.py" />
-      <source>an island touches the edge of its pocket</source>
-      <translation>una isla toca el borde de su cajera</translation>
-    </message>
-    <message>
-      <location filename="core/geometry/pocket_area.py" />
-      <source>clearing needs more than {most_rings} concentric passes</source>
-      <translation>el vaciado necesita más de {most_rings} pasadas concéntricas</translation>
     </message>
     <message>
       <location filename="core/geometry/pocket_area.py" />
@@ -24395,6 +24395,11 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
+      <source>CYCLE800: this lathe has no swivel head.</source>
+      <translation>CYCLE800: este torno no tiene cabezal orientable.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>Put {named}.spf in the main program's folder, or add %_N_{named2}_SPF to the main program's file.</source>
       <translation>Ponga {named}.spf en la carpeta del programa principal, o agregue %_N_{named2}_SPF al archivo del programa principal.</translation>
     </message>
@@ -24407,6 +24412,11 @@
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
       <source>{name} does not contain the name of a contour</source>
       <translation>{name} no contiene el nombre de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
+      <source>{name} has no effect because {why}.</source>
+      <translation>{name} no tiene efecto porque {why}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/cycles/cycle_calls.py" />
@@ -26300,11 +26310,6 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>Change the tool or the zero point before the corner or after G40.</source>
-      <translation>Cambie la herramienta o el cero antes de la esquina o después de G40.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>Program the groove walls as contours after G40.</source>
       <translation>Programe las paredes de la ranura como contornos después de G40.</translation>
     </message>
@@ -26312,26 +26317,6 @@
       <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>Use the arc center words for this plane.</source>
       <translation>Use las palabras de centro de arco de este plano.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>Write G{plane} before this block.</source>
-      <translation>Escriba G{plane} antes de este bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>a thread along Z needs the spindle running, but {word} uses the spindle as C.</source>
-      <translation>una rosca a lo largo de Z necesita el husillo en marcha, pero {word} usa el husillo como C.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>arcs, corners and radius compensation in {word} need G{plane}.</source>
-      <translation>los arcos, las esquinas y la compensación de radio en {word} necesitan G{plane}.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>the tool or the zero point changes between two moves of a corner or a contour.</source>
-      <translation>la herramienta o el cero cambia entre dos movimientos de una esquina o un contorno.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
@@ -26355,13 +26340,38 @@
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
-      <source>{word} moves the machine axes and cannot be used while {word2} is active.</source>
-      <translation>{word} mueve los ejes de la máquina y no se puede usar con {word2} activo.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/motion/transformed_plane.py" />
       <source>{word}: {word2} already controls C.</source>
       <translation>{word}: {word2} ya controla C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>Change the tool or the zero point before the corner or after G40.</source>
+      <translation>Cambie la herramienta o el cero antes de la esquina o después de G40.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>Write G{plane} before this block.</source>
+      <translation>Escriba G{plane} antes de este bloque.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>a thread along Z needs the spindle running, but {word} uses the spindle as C.</source>
+      <translation>una rosca a lo largo de Z necesita el husillo en marcha, pero {word} usa el husillo como C.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>arcs, corners and radius compensation in {word} need G{plane}.</source>
+      <translation>los arcos, las esquinas y la compensación de radio en {word} necesitan G{plane}.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>the tool or the zero point changes between two moves of a corner or a contour.</source>
+      <translation>la herramienta o el cero cambia entre dos movimientos de una esquina o un contorno.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/sinumerik/motion/transformed_words.py" />
+      <source>{word} moves the machine axes and cannot be used while {word2} is active.</source>
+      <translation>{word} mueve los ejes de la máquina y no se puede usar con {word2} activo.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/setup/m_functions.py" />
@@ -26457,11 +26467,6 @@
       <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
       <source>unknown axis: this machine has no third axis.</source>
       <translation>eje desconocido: esta máquina no tiene tercer eje.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
-      <source>{name} has no effect because {why}.</source>
-      <translation>{name} no tiene efecto porque {why}.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/setup/modes_and_offsets.py" />
@@ -26737,11 +26742,6 @@
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
       <source>Add the axes to the block.</source>
       <translation>Agregue los ejes al bloque.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />
-      <source>CYCLE800: this lathe has no swivel head.</source>
-      <translation>CYCLE800: este torno no tiene cabezal orientable.</translation>
     </message>
     <message>
       <location filename="core/interpreter/sinumerik/sinumerik_interpreter.py" />

@@ -1,4 +1,4 @@
-"""The places of shapes in a program: the shape at a line, and the line for a new shape."""
+"""The places of shapes: programs that can contain them, the shape at a line, and the line for a new shape."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.extras.shapes.shape_pieces import ShapePiece, ends_program, starts_subroutine
-from core.language.source import Dialect
+from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
+from core.language.source import Dialect, guess_dialect
+
+
+def supports_shapes(name: str) -> bool:
+    """Return whether shapes can be written into a program with this name.
+
+    Only OmniTurn and SINUMERIK programs can contain shapes.
+    """
+    return guess_dialect(name) in SHAPES_BY_DIALECT
 
 
 def find_piece(pieces: Sequence[ShapePiece], line: int) -> ShapePiece | None:

@@ -11,12 +11,17 @@ from app.desk.pages.editor_panel import PanelModel
 from app.desk.pages.table_content import ROW_STEPS, FunctionKey
 from app.desk.translation import tr
 from app.extras.shapes.shape_form import AddedForm, ShapeForm
-from app.extras.shapes.shape_places import find_insertion_line, find_piece, shift_piece
+from app.extras.shapes.shape_notices import (
+    describe_damaged_comment,
+    describe_form_keys,
+    describe_manual_edits,
+    describe_unchanged_shapes,
+)
+from app.extras.shapes.shape_places import find_insertion_line, find_piece, shift_piece, supports_shapes
 from core.extras.shapes.editor_shape import Shape
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.extras.shapes.shape_pieces import (
     ShapePiece,
-    find_damaged_comment,
     find_pieces,
     find_settings,
     has_units,
@@ -27,14 +32,6 @@ from core.extras.shapes.shape_table import CALCULATORS_BY_DIALECT, SHAPES_BY_DIA
 from core.extras.shapes.templates import HEAD_SHAPE
 from core.language.source import guess_dialect
 from core.message import Message
-
-
-def supports_shapes(name: str) -> bool:
-    """Return whether shapes can be written into a program with this name.
-
-    Only OmniTurn and SINUMERIK programs can contain shapes.
-    """
-    return guess_dialect(name) in SHAPES_BY_DIALECT
 
 
 @dataclass(slots=True)
@@ -109,20 +106,9 @@ class ShapesModel(PanelModel):
             self._open_piece(here)
         else:
             self.selected_row = 0 if not self.listed_pieces else max(1, self.selected_row)
-            self._report_unreadable(line - 1)
+            if self.lists_shapes:
+                self.notice = describe_damaged_comment(self.program_lines, line - 1, dialect)
         return ""
-
-    def _report_unreadable(self, line: int) -> None:
-        """Report that the lines of a form can no longer be read."""
-        found = (
-            find_damaged_comment(self.program_lines, line, self.initial_settings.dialect)
-            if self.lists_shapes
-            else None
-        )
-        if found is not None and line < len(self.program_lines):
-            at, shape = found
-            text = tr("LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT")
-            self.notice = tr(Message(text, line=at + 1, shape=tr(shape.name)))
 
     @property
     def lists_shapes(self) -> bool:
@@ -223,17 +209,7 @@ class ShapesModel(PanelModel):
 
     def _open_piece(self, piece: ShapePiece) -> None:
         """Open the form of a piece, and report changes that were made by hand."""
-        self.notice, self.pending_action = "", None
-        if piece.adopted_fields:
-            words = ", ".join(
-                each.label for each in piece.filled_shape.fields if each.word in piece.adopted_fields
-            )
-            self.notice = tr(
-                Message("THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}", fields=words)
-            )
-        elif piece.edited_line >= 0:
-            text = tr("LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT")
-            self.notice = tr(Message(text, line=piece.edited_line + 1))
+        self.notice, self.pending_action = describe_manual_edits(piece), None
         self.form = ShapeForm(piece.filled_shape.shape, piece.settings, piece)
         self._preview()
 
@@ -404,10 +380,7 @@ class ShapesModel(PanelModel):
                 shift_piece(each, grown) for each in self.pieces if each.filled_shape.shape is not form.shape
             ]
             text, stay = rewrite_pieces(text, self.shop_data, moved)
-            if stay == 1:
-                said = tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
-            elif stay:
-                said = tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=stay))
+            said = describe_unchanged_shapes(stay)
         self.form, self.notice, self.pending_action = None, said, None
         self._take("\n".join(text) + "\n")
         self.cursor_line = next_line
@@ -493,10 +466,4 @@ class ShapesModel(PanelModel):
             return tr("LETTER: OPEN SHAPE   RIGHT: SHAPES IN PROGRAM   F10: TEXT")
         if self._adder is not None:
             return self._adder.prompt_text(self.form)
-        return tr(self.form.current_error or _keys_of(self.form))
-
-
-def _keys_of(form: ShapeForm) -> str:
-    if form.selected_point >= 0:
-        return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE")
-    return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE")
+        return tr(self.form.current_error or describe_form_keys(self.form))

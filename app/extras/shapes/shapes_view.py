@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QWidget
 from app.desk.desk import Desk
 from app.desk.translation import get_language, tr
 from app.extras.shapes.shape_form import POINT_COLUMNS, FormCell, ShapeForm
-from app.extras.shapes.shapes_model import ShapesModel, supports_shapes
+from app.extras.shapes.shape_places import supports_shapes
+from app.extras.shapes.shapes_model import ShapesModel
 from app.screen.drawings import SketchPanel
 from app.screen.entry_panel import NumberPad, draw_entry_text
 from app.screen.page_base import EditorPanel, HeadKey, Page, PageHost

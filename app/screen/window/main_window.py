@@ -32,18 +32,9 @@ from app.screen.screen_theme import ScreenTheme, style_application, use_language
 from app.screen.text_sizes import panel_size
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
-from app.screen.window.key_table import (
-    AUTOMATIC_KEYS,
-    NO_KEY,
-    PALM_KEYS,
-    REPEATED_WHEN_TYPED,
-    REPEATING_KEYS,
-    STOP_LETTERS,
-    YES_KEY,
-    find_typed_text,
-    name_key,
-)
-from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
+from app.screen.window.key_table import PALM_KEYS, REPEATING_KEYS, name_key
+from app.screen.window.keyboard import KeyboardFilter, find_key_code
+from app.screen.window.typed_keys import TypedKeys
 from app.screen.window.window_frame import ScreenContext, WindowFrame
 from app.screen.window.window_placement import show_full_screen, show_in_suitable_size
 from app.screen.window_layout import MIN_WINDOW_PX
@@ -67,7 +58,6 @@ class MainWindow(QWidget):
         super().__init__()
         self._closed = on_closed
         self._meant = False  # The operator confirmed closing although data will be lost.
-        self._untaken = ""  # Message about the last character that an input field rejected.
         self.theme = theme
         self.frame: WindowFrame | None = None
         self.page_preloader: PagePreloader | None = None
@@ -76,6 +66,7 @@ class MainWindow(QWidget):
         self.input_times.on_wake = self._resume_polling
         self.machine_changed.connect(self._resume_polling, Qt.ConnectionType.QueuedConnection)
         self.keyboard_filter = KeyboardFilter(self, self.input_times)
+        self.typed_keys = TypedKeys(self.keyboard_filter, self.press_key, self.refresh)
         self._page = ""  # The page that has the keyboard.
         # Screen states that were shown, with their start times.
         self._faces: deque[tuple[float, ScreenContext]] = deque(maxlen=32)
@@ -361,7 +352,7 @@ class MainWindow(QWidget):
         A repeat is accepted only for keys that may repeat.
         """
         frame = self.frame
-        if frame is None or self._handle_answer(frame, event):
+        if frame is None or self.typed_keys.handle_answer(frame, event):
             return
         if frame.current_page.handle_key_press(event):
             self.refresh()
@@ -373,75 +364,15 @@ class MainWindow(QWidget):
         ):
             self._palm(PALM_KEYS[Qt.Key(event.key())], down=True)
             return
-        if self._handle_typed(frame, event) or self._is_withheld(frame, event):
+        if self.typed_keys.handle_typed(frame, event) or self.typed_keys.is_withheld(frame, event):
             return
         name = name_key(find_key_code(event), event.modifiers())
         if (
             name
             and (name in REPEATING_KEYS or not event.isAutoRepeat())
-            and not self._is_used_elsewhere(frame, name)
+            and not self.typed_keys.is_used_elsewhere(frame, name)
         ):
             self.press_key(name)
-
-    def _is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
-        """Return whether the key works only on the Automatic page while another page is open.
-
-        Show a message if so.
-        """
-        if (
-            name not in AUTOMATIC_KEYS
-            or frame.current_page is frame.automatic_page
-            or name in frame.current_page.key_actions()
-        ):
-            return False
-        frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
-        self.refresh()
-        return True
-
-    def _handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the key answered a question.
-
-        Yes is accepted only from a single key with all other keys released.
-        """
-        typed = {find_letter(event), find_typed_text(event)} - {""}
-        if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
-            return False
-        if "N" in typed and frame.desk.confirm_key != "N":
-            self.press_key(NO_KEY)
-        elif not event.isAutoRepeat() and self.keyboard_filter.is_only_key(event):
-            self.press_key(YES_KEY)
-        return True
-
-    def _is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether an input field rejects the character.
-
-        The key then has no other function. Ctrl+H, Ctrl+Space and Ctrl+E also do not stop the machine in an
-        input field.
-        """
-        text = event.text()
-        if not text.isprintable() or not text or not frame.has_text_field():
-            return (
-                frame.has_text_field() and name_key(find_key_code(event), event.modifiers()) in STOP_LETTERS
-            )
-        if not event.isAutoRepeat():
-            self._untaken = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))
-            frame.desk.say(self._untaken)
-            self.refresh()
-        return True
-
-    def _handle_typed(self, frame: WindowFrame, event: QKeyEvent) -> bool:
-        """Return whether the page has handled the key as text input."""
-        key = find_typed_text(event)
-        if (
-            not key
-            or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)
-            or not frame.current_page.handle_key(key)
-        ):
-            return False
-        if frame.desk.prompt_notice == self._untaken:
-            frame.desk.clear_prompt_line()  # The next key was accepted.
-        self.refresh()
-        return True
 
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
         """Release a palm button or a key of the page."""

@@ -5,7 +5,6 @@ The interpreter generates the elementary blocks of a program for a setup.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
@@ -18,7 +17,8 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.interpretation import MAX_BLOCKS, MAX_LINES, LinePass, generate_lathe_approach
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import ModalState
-from core.interpreter.sinumerik.cycles.cycle_calls import generate_cycle_blocks
+from core.interpreter.sinumerik.consequent_faults import MissingAxes, depends_on_state
+from core.interpreter.sinumerik.cycles.cycle_calls import generate_cycle_blocks, note_ineffective_cycle
 from core.interpreter.sinumerik.cycles.drilling_cycles import (
     HOLE_PATTERNS,
     generate_pattern_moves,
@@ -65,10 +65,9 @@ from core.interpreter.sinumerik.setup.spindle_and_dwell import (
 from core.interpreter.sinumerik.setup.tools_and_edges import execute_tool_words
 from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, TAP_MOTIONS, THREAD_MOTIONS, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement, make_statement
-from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.diagnostics import Diagnostic, ProgramError
 from core.language.sinumerik.control_differences import find_missing_function
-from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES, SWIVEL_CYCLE
-from core.language.sinumerik.sinumerik_alarms import NAME_NOT_DEFINED
+from core.language.sinumerik.cycle_names import CYCLE_PARAMETERS, IGNORED_CYCLES
 from core.language.sinumerik.sinumerik_words import ARC_WORDS, LexedBlock
 from core.language.sinumerik.subprogram_files import HEADER_PATTERN
 from core.language.sinumerik.word_table import (
@@ -82,20 +81,9 @@ from core.language.sinumerik.word_table import (
 from core.language.source import ProgramSource
 from core.message import Message
 
-# Codes of findings that depend on position and modal state, which are unknown after an invalid block.
 _PROGRAM_END_CODES = frozenset({2, 17, 30})
-_NO_AXIS = re.compile(r"this lathe has no (?:axis )?([A-Z][0-9]?)\b")
-_ARC_IN_Y = re.compile(r": J: an arc in G18 uses I and K")
 _LINES_AFTER_ERROR = 20_000
 """Lines that are gone through behind the first error, for others that it may hide."""
-
-_STATE_DEPENDENT_CODES = frozenset(
-    {
-        *("14040", "arc-radius", "arc-no-chord", "10720", "corner-too-large", "corner-next"),
-        *("10860", "g95-spindle-stopped", "dwell-spindle-stopped", "speed-missing", "surface-speed-missing"),
-        *("word-unused", str(NAME_NOT_DEFINED)),
-    }
-)
 
 
 class Interpreter(LinePass[LexedBlock]):
@@ -109,7 +97,7 @@ class Interpreter(LinePass[LexedBlock]):
         self._compensation = CompensationStage(self._state, self._log)
         self._flow = Flow(source, self._state)
         self._setup = setup
-        self._no_axis: set[str] = set()  # missing axes that were already reported
+        self._missing_axes = MissingAxes()
         if setup.begin is not None:
             self._restore_from(setup.begin)
 
@@ -257,7 +245,7 @@ class Interpreter(LinePass[LexedBlock]):
             self._state.modal_call_line = line if line.called_name else None
             return
         if line.called_name in IGNORED_CYCLES and not self._flow.has_routine(line.called_name):
-            self._note_ineffective_cycle(line)
+            note_ineffective_cycle(self._state, self._log, line)
             return
         if line.called_name not in CYCLE_PARAMETERS or self._flow.has_routine(line.called_name):
             self._flow.call_subprogram(line, is_modal=modal)
@@ -268,26 +256,6 @@ class Interpreter(LinePass[LexedBlock]):
         place = self._flow.get_displayed_line(line.number)
         for block in generate_cycle_blocks(self._state, line, self._flow):
             yield from self._apply_stages(block if place == line.number else replace(block, line=place), None)
-
-    def _note_ineffective_cycle(self, line: LexedBlock) -> None:
-        """Log a note, once, that a cycle has no effect on this machine.
-
-        Raises ProgramError if the parameters of the cycle are not supported.
-        """
-        if line.called_name == SWIVEL_CYCLE and any(each.is_specified for each in line.arguments or ()):
-            text = "CYCLE800: this lathe has no swivel head."
-            raise line.make_error(
-                line.call_column, "not-in-subset", text, "Remove this text from the program."
-            )
-        if line.called_name not in self._state.told:
-            self._state.told.add(line.called_name)
-            why = Message(
-                "{name} has no effect because {why}.",
-                name=line.called_name,
-                why=IGNORED_CYCLES[line.called_name],
-            )
-            found = line.make_error(line.call_column, "no-effect", why, "").diagnostic
-            self._log.add(replace(found, severity=Severity.NOTE))
 
     def _pattern(self, line: LexedBlock) -> Iterator[Block]:
         """Yield the blocks of HOLES1 or HOLES2, which execute the MCALL cycle at each position.
@@ -466,8 +434,8 @@ class Interpreter(LinePass[LexedBlock]):
 
     def _log_error(self, finding: Diagnostic) -> None:
         """Log the error, unless it is only a consequence of an earlier error."""
-        follows = finding.code in _STATE_DEPENDENT_CODES or finding.code.startswith("comp-")
-        if not (self._stopped and follows) and not self._is_axis_reported(finding):
+        follows = self._stopped and depends_on_state(finding)
+        if not follows and not self._missing_axes.is_axis_reported(finding):
             self._log.add(self._flow.relocate_finding(finding))
         self._stopped = True
         self._left = min(self._left, _LINES_AFTER_ERROR + 1)
@@ -475,19 +443,6 @@ class Interpreter(LinePass[LexedBlock]):
         self._compensation.discard()
         if self._active_transformation is not None:
             self._active_transformation.discard()
-
-    def _is_axis_reported(self, finding: Diagnostic) -> bool:
-        """Return whether a finding reports a missing axis that was already reported.
-
-        A program for a mill uses the missing axis in many lines. J belongs to arcs in Y.
-        """
-        match = _NO_AXIS.search(finding.message)
-        axis = "Y" if _ARC_IN_Y.search(finding.message) else match[1] if match else ""
-        if not axis:
-            return False
-        is_reported = axis in self._no_axis
-        self._no_axis.add(axis)
-        return is_reported
 
     def _report_limit(self, line: LexedBlock) -> None:
         if self._stopped and self._left < 0:

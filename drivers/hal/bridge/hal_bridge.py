@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
+from drivers.hal.bridge.following_monitor import FollowingMonitor
+from drivers.hal.bridge.output_pins import ChainPins, OutputPins
 from drivers.hal.bridge.packets import (
     BridgeConfig,
     PacketHead,
@@ -31,8 +33,6 @@ _MAX_CYCLE_SLICE_S = (
     0.05  # Maximum in s that one cycle counts, so that a delay of this process is not counted.
 )
 _CHAIN_CLOSE_S = 0.1  # Seconds in which the chain must close.
-_WATCHDOG_RESTART_S = 0.006  # Seconds for which the watchdog is off to restart it.
-_RESET_PULSE_S = 0.05  # Duration of the reset pulse in s.
 _MAX_SLEW_IN_MOTION = 1e-3  # Maximum rate difference between rows and this computer's clock in motion.
 _MAX_SLEW_AT_REST = 0.05
 _CORRECTION_TIME_S = 0.5  # Seconds in which a difference is corrected.
@@ -60,13 +60,15 @@ class HalBridge:
         self.setpoint_player = SetpointPlayer(len(config.axes))
         self.row_streams = RowStreams(streams, pins)
         self.spindle_pins = SpindlePins(config, pins)
+        self._output_pins = OutputPins(config, pins)
+        self._chain_pins = ChainPins(pins)
+        self._following_monitor = FollowingMonitor(config, pins)
         self._sampler = sampler
         self._now = now
         self._orders: deque[tuple[PacketHead, Sequence[float]]] = deque()
         self._parts: list[MotionPiece] = []
         self._samples: list[float] = []
         self._place: tuple[float, ...] = (0.0,) * len(config.axes)  # Measured positions.
-        self._over = [0.0] * len(config.axes)  # Seconds outside the window.
         self._off_by = 0.0  # Difference between rows and this computer's clock in s.
         self._sampled = False  # A sample has been read.
         self._quiet = 0.0  # Seconds without a sample.
@@ -79,7 +81,6 @@ class HalBridge:
         self._grant_at = INFINITY  # Time when power is switched on.
         self._granted = -INFINITY
         self._off_at = INFINITY
-        self._reset_until = self._watch_from = -INFINITY
         self._handled = 0.0
         self._braked: list[float] = []  # Pieces of a deceleration by the bridge.
         self._brakings = 0
@@ -88,7 +89,8 @@ class HalBridge:
         self._latest = 0.0  # s
         self._dry = 0
         self._homing: set[str] = set()
-        self._close_chain()  # The chain is closed in advance for later commands of the control.
+        # The chain is closed in advance for later commands of the control.
+        self._chain_pins.close(self._now())
         self._acts: Mapping[str, Callable[[PacketHead, Sequence[float]], None]] = {
             "beat": lambda _head, _numbers: None,
             "splice": self._splice,
@@ -99,8 +101,8 @@ class HalBridge:
             "ramp-off": lambda _head, _numbers: self._ramp_off(),
             "clear": lambda _head, _numbers: self._clear(),
             "spindle": lambda head, _numbers: self.spindle_pins.set_speed(head),
-            "out": self._output,
-            "safe": lambda _head, _numbers: self._safe(),
+            "out": lambda head, _numbers: self._output_pins.set_output(head),
+            "safe": lambda _head, _numbers: self._output_pins.set_safe(),
             "homing": self._handle_home,
             "index": self._handle_index,
             "c": self._handle_hold_c,
@@ -196,26 +198,15 @@ class HalBridge:
             self._place = tuple(actual)
             if self.config.turns:
                 self.setpoint_player.spindle_predictor.add_reading(t, sample[axes])
-            self._check_following(command, actual)
+            if self._powered:
+                for name in self._following_monitor.find_faulty_axes(command, actual):
+                    self._trip(f"{name}: following error", "following")
             self._samples += (t, *command, *actual, *sample[axes : self._width])
             self._sampled, self._quiet = True, 0.0
         if self.row_streams.played_row_number != before:
             self._off_by += 0.05 * (self.row_streams.played_row_due_s - now - self._off_by)
         if len(self._samples) > 40 * _MAX_REPORT_SAMPLES * self._width:  # The samples are not read.
             del self._samples[: -_MAX_REPORT_SAMPLES * self._width]
-
-    def _check_following(self, command: Sequence[float], actual: Sequence[float]) -> None:
-        """Check the following error of one sample."""
-        if not self._powered:
-            return
-        for index, axis in enumerate(self.config.axes):
-            free = axis.is_spindle and not self.pins["spindle.position_mode"]
-            if free or abs(command[index] - actual[index]) <= axis.window:
-                self._over[index] = 0.0
-                continue
-            self._over[index] += self.config.period
-            if self._over[index] > axis.time:
-                self._trip(f"{axis.name}: following error", "following")
 
     @property
     def _powered(self) -> bool:
@@ -285,9 +276,7 @@ class HalBridge:
     def _open_chain(self) -> None:
         """Switch off the spindle and the outputs, so that they remain off when the chain is closed again."""
         self.spindle_pins.switch_off()
-        for name, safe in self.config.outputs.items():
-            if safe is not None and name not in self.config.lamps:
-                self.pins[f"out.{name}"] = safe
+        self._output_pins.switch_off()
 
     def _trip(self, fault: str, code: str) -> None:
         """Set the fault, and brake all axes on their path before the power is switched off."""
@@ -390,24 +379,16 @@ class HalBridge:
         self.setpoint_player.reset_to(self._place)
         self._recall(self.row_streams.earliest_recall_time())
         self._on, self._off_at = True, INFINITY
-        self._over = [0.0] * len(self.config.axes)
+        self._following_monitor.reset()
         self._grant_at = self.row_streams.last_row_due_s
-        self._close_chain()
-
-    def _close_chain(self) -> None:
-        now = self._now()
-        if not self.pins["alive"]:
-            self._watch_from = now + _WATCHDOG_RESTART_S
-        if not self.pins["chain-ok"]:
-            self._reset_until = now + _RESET_PULSE_S
+        self._chain_pins.close(self._now())
 
     def _update_power(self, now: float) -> None:
         """End the reset pulse of the chain, and switch on the power.
 
         The power is switched on when HAL plays the present axis positions.
         """
-        self.pins["watch"] = now >= self._watch_from
-        self.pins["reset"] = now < self._reset_until and bool(self.pins["alive"])
+        self._chain_pins.update(now)
         if self._grant_at <= now:
             self._grant_at, self._granted = INFINITY, now
             self.pins["enable"] = 1
@@ -432,7 +413,7 @@ class HalBridge:
     def _clear(self) -> None:
         self._power_off()
         self.fault = self.fault_code = ""
-        self._close_chain()
+        self._chain_pins.close(self._now())
 
     def _handle_hold_c(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Set C's setpoint to the position of the spindle.
@@ -449,16 +430,6 @@ class HalBridge:
             self.setpoint_player.reset_to(place)
             self._recall(self.row_streams.earliest_recall_time())
             self.spindle_pins.request_position_mode(self.row_streams.last_row_due_s)
-
-    def _output(self, head: PacketHead, _numbers: Sequence[float]) -> None:
-        name, on = text(head, "name"), head.get("on") is True
-        if name in self.config.outputs:
-            self.pins[f"out.{name}"] = on
-
-    def _safe(self) -> None:
-        for name, safe in self.config.outputs.items():
-            if safe is not None:
-                self.pins[f"out.{name}"] = safe
 
     def _handle_home(self, head: PacketHead, _numbers: Sequence[float]) -> None:
         """Ignore the limit switch of an axis while the axis is homing."""
@@ -492,7 +463,7 @@ class HalBridge:
             self._parted, self._heard = True, min(self._heard, now - DRIVER_TIMEOUT_S)
             self._left_at = now
             self.spindle_pins.switch_off()
-            self._safe()
+            self._output_pins.set_safe()
         if self.has_driver_ended:
             self._power_off()
             blind = not self.config.turns or self._is_thread_stopped

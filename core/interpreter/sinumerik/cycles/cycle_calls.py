@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 from core.geometry.lines_and_arcs import Element
+from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.cycles.cycle_parameters import CycleCall
 from core.interpreter.sinumerik.cycles.drilling_cycles import (
@@ -31,7 +32,8 @@ from core.interpreter.sinumerik.cycles.undercut_cycles import (
 )
 from core.interpreter.sinumerik.flow.subprogram_flow import Flow
 from core.interpreter.sinumerik.sinumerik_state import State
-from core.language.diagnostics import Diagnostic, ProgramError
+from core.language.diagnostics import Diagnostic, ProgramError, Severity
+from core.language.sinumerik.cycle_names import IGNORED_CYCLES, SWIVEL_CYCLE
 from core.language.sinumerik.sinumerik_words import LexedBlock
 from core.message import Message
 
@@ -99,3 +101,22 @@ def _relocate_finding(line: LexedBlock, file_name: str, finding: Diagnostic) -> 
         "{source} line {line}: {value}", source=file_name, line=finding.line, value=finding.message
     )
     return replace(finding, line=line.number, column=line.call_column, message=message)
+
+
+def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -> None:
+    """Log a note, once, that a cycle has no effect on this machine.
+
+    Raises ProgramError if the parameters of the cycle are not supported.
+    """
+    if line.called_name == SWIVEL_CYCLE and any(each.is_specified for each in line.arguments or ()):
+        text = "CYCLE800: this lathe has no swivel head."
+        raise line.make_error(line.call_column, "not-in-subset", text, "Remove this text from the program.")
+    if line.called_name not in state.told:
+        state.told.add(line.called_name)
+        why = Message(
+            "{name} has no effect because {why}.",
+            name=line.called_name,
+            why=IGNORED_CYCLES[line.called_name],
+        )
+        found = line.make_error(line.call_column, "no-effect", why, "").diagnostic
+        log.add(replace(found, severity=Severity.NOTE))

@@ -8,10 +8,10 @@ lathe. The results are moves of the virtual mill (``core.geometry.virtual_mill``
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from math import copysign, degrees, hypot, radians
-from typing import NamedTuple, TypedDict
+from typing import TypedDict
 
 import numpy as np
 
@@ -27,18 +27,11 @@ from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_stra
 from core.interpreter.sinumerik.motion.radius_compensation import CompensationStage
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
 from core.interpreter.sinumerik.motion.sinumerik_feeds import check_block_feed
+from core.interpreter.sinumerik.motion.transformed_words import FACE_LETTERS, SIDE_LETTERS, check_statement
 from core.interpreter.sinumerik.setup.modes_and_offsets import execute_frame, execute_frame_block
-from core.interpreter.sinumerik.sinumerik_state import (
-    ARC_MOTIONS,
-    IDENTITY_FRAME,
-    TAP_MOTIONS,
-    THREAD_MOTIONS,
-    MotionKind,
-    State,
-)
+from core.interpreter.sinumerik.sinumerik_state import ARC_MOTIONS, IDENTITY_FRAME, MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.sinumerik.sinumerik_words import AXIS_NAMES, POSITION_WORDS, PositionForm, Word
-from core.language.sinumerik.word_table import MOTION_GROUP, NON_MODAL_GROUP, SUPPRESSION_GROUP
 from core.message import Message
 
 _SAME = 1e-9
@@ -55,22 +48,6 @@ class _Zero(TypedDict):
     modal: ModalState
 
 
-class _LetterMap(NamedTuple):
-    """Mapping of the program letters to the letters of the lathe code.
-
-    In the lathe code, Z is the abscissa and X is the ordinate.
-    """
-
-    transformation_word: str
-    plane: int
-    axis_letters: Mapping[str, str]  # X, Z, or C for the depth
-    center_letters: Mapping[str, str]
-
-
-_FACE = _LetterMap("TRANSMIT", 17, {"X": "Z", "Y": "X", "Z": "C"}, {"I": "K", "J": "I"})
-_SIDE = _LetterMap("TRACYL", 19, {"Y": "Z", "Z": "X", "X": "C"}, {"J": "K", "K": "I"})
-
-
 class ActiveTransformation:
     """An active transformation, with its plane and the position of the virtual mill.
 
@@ -80,7 +57,7 @@ class ActiveTransformation:
 
     def __init__(self, state: State, log: DiagnosticLog, frame: FacePlane | SidePlane) -> None:
         self._state, self._log, self._frame = state, log, frame
-        self._names = _FACE if isinstance(frame, FacePlane) else _SIDE
+        self._names = FACE_LETTERS if isinstance(frame, FacePlane) else SIDE_LETTERS
         self._plane = copy.copy(state)
         self._plane.transformation = None
         self._plane.programmed_frame, self._plane.pole, self._plane.last_polar_point = (
@@ -244,7 +221,11 @@ class ActiveTransformation:
 
         Raises ProgramError for an invalid move.
         """
-        self._check(statement)
+        modal = self._state.modal
+        has_moved = self._offset != (modal.drawing_zero_x, modal.drawing_zero_z)
+        check_statement(
+            self._state, self._names, statement, has_moved_in_contour=self.has_open_contour and has_moved
+        )
         if word := statement.words.get("OFFN"):
             self._set_allowance(statement, word)
         self._follow_state()
@@ -309,46 +290,6 @@ class ActiveTransformation:
             hint = "Program the groove walls as contours after G40."
             raise statement.make_error(word, "not-in-subset", text, hint)
         self.offn_mm = value
-
-    def _check(self, statement: Statement) -> None:
-        """Raise ProgramError for a statement that is not allowed in the plane."""
-        state, names = self._state, self._names
-        if self.has_open_contour and self._offset != (state.modal.drawing_zero_x, state.modal.drawing_zero_z):
-            text = "the tool or the zero point changes between two moves of a corner or a contour."
-            hint = "Change the tool or the zero point before the corner or after G40."
-            raise statement.make_error(None, "comp-with", text, hint)
-        if (code := statement.get_g_code(NON_MODAL_GROUP)) in {
-            25,
-            26,
-            74,
-            75,
-        } or SUPPRESSION_GROUP in statement.g_words:
-            word = statement.g_words.get(SUPPRESSION_GROUP) or statement.g_words[NON_MODAL_GROUP]
-            if code not in {25, 26} or {"X", "Y", "Z"} & statement.words.keys():
-                text = "{word} moves the machine axes and cannot be used while {word2} is active."
-                hint = "Write TRAFOOF before this block."
-                raise statement.make_error(
-                    word, "transformation", text, hint, word=word.text, word2=names.transformation_word
-                )
-        if not POSITION_WORDS & statement.words.keys():
-            return
-        word = statement.g_words.get(MOTION_GROUP) or next(iter(statement.words.values()))
-        if state.motion in THREAD_MOTIONS | TAP_MOTIONS:
-            text = "a thread along Z needs the spindle running, but {word} uses the spindle as C."
-            hint = "Write TRAFOOF before this block."
-            raise statement.make_error(word, "transformation", text, hint, word=names.transformation_word)
-        needs = (
-            state.motion in ARC_MOTIONS
-            or state.modal.compensation_code != 40
-            or statement.corner_word
-            or "ANG" in statement.words
-        )
-        if needs and state.plane != names.plane:
-            text = "arcs, corners and radius compensation in {word} need G{plane}."
-            hint = "Write G{plane} before this block."
-            raise statement.make_error(
-                word, "arc-plane", text, hint, word=names.transformation_word, plane=names.plane
-            )
 
     def _target_depth(self, statement: Statement) -> float:
         """Return the target depth of a statement in mm, relative to the zero of the frame."""

@@ -1,0 +1,48 @@
+"""Notices of the shapes panel about shapes that were edited by hand, and the prompt of a form."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from app.desk.translation import tr
+from app.extras.shapes.shape_form import ShapeForm
+from core.extras.shapes.shape_pieces import ShapePiece, find_damaged_comment
+from core.language.source import Dialect
+from core.message import Message
+
+
+def describe_damaged_comment(program_lines: Sequence[str], line: int, dialect: Dialect) -> str:
+    """Return the notice that the lines of a form at a line can no longer be read, or an empty string."""
+    found = find_damaged_comment(program_lines, line, dialect)
+    if found is None or line >= len(program_lines):
+        return ""
+    at, shape = found
+    text = tr("LINE {line}: EDITED {shape} COMMENT CANNOT BE READ. UNDO THE EDIT")
+    return tr(Message(text, line=at + 1, shape=tr(shape.name)))
+
+
+def describe_manual_edits(piece: ShapePiece) -> str:
+    """Return the notice about changes that were made by hand, or an empty string."""
+    if piece.adopted_fields:
+        words = ", ".join(
+            each.label for each in piece.filled_shape.fields if each.word in piece.adopted_fields
+        )
+        return tr(Message("THE FORM USES THESE VALUES EDITED BY HAND IN THE TEXT: {fields}", fields=words))
+    if piece.edited_line >= 0:
+        text = tr("LINE {line} EDITED BY HAND. FORM SHOWS VALUES STORED IN COMMENT")
+        return tr(Message(text, line=piece.edited_line + 1))
+    return ""
+
+
+def describe_unchanged_shapes(count: int) -> str:
+    """Return the notice about shapes that were not changed, or an empty string if there are none."""
+    if count == 1:
+        return tr("1 SHAPE EDITED BY HAND WAS NOT CHANGED")
+    return tr(Message("{count} SHAPES EDITED BY HAND WERE NOT CHANGED", count=count)) if count else ""
+
+
+def describe_form_keys(form: ShapeForm) -> str:
+    """Return the prompt that explains the keys of a form."""
+    if form.selected_point >= 0:
+        return tr("X Z C R A: GO TO COLUMN   ENTER: NEXT POINT   F2: WRITE")
+    return tr("TYPE A NUMBER OR EXPRESSION   ENTER: NEXT FIELD   F2: WRITE")

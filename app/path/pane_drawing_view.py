@@ -1,0 +1,50 @@
+"""Drawing of one pane of the path view, and of the view's title over the panes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter
+
+from app.path import path_marks_view as marks
+from app.path.measuring_view import Measurement
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect
+from app.path.path_pane_view import PathPane
+from app.screen.screen_theme import ALIGN_LEFT, ScreenTheme, draw_text
+
+
+def draw_pane(
+    painter: QPainter,
+    theme: ScreenTheme,
+    pane: PathPane,
+    drawn_legs: Sequence[DrawnLeg],
+    measurement: Measurement | None,
+    *,
+    is_metric: bool,
+) -> None:
+    """Draw the path of a pane with its marks, the approach, the measurement and the title."""
+    painter.save()
+    painter.setClipRect(pane.area)
+    painter.translate(pane.area.topLeft())
+    if pane.projection is not None:
+        pane.draw_path(painter)
+        marks.draw_center_lines(painter, theme, pane.aspect, pane.projection, pane.polyline)
+        pane.draw_run(painter)
+    if drawn_legs and pane.aspect is PathAspect.PATH:
+        marks.draw_approach(painter, theme, pane, drawn_legs)
+    if measurement is not None and measurement.pane is pane and pane.aspect not in SPATIAL_ASPECTS:
+        measurement.draw(painter)
+    painter.restore()
+    if pane.aspect is not PathAspect.PATH:
+        ink = "alarm" if pane.aspect in PART_ASPECTS and marks.find_pane_errors(pane) else "soft"
+        marks.draw_title(painter, theme, pane.area, marks.make_pane_title(pane, is_metric), ink)
+
+
+def draw_view_title(painter: QPainter, theme: ScreenTheme, width_px: int, title: str) -> None:
+    """Draw the title of the view above its panes."""
+    u = theme.u
+    wide = width_px - 4 * u
+    painter.setFont(theme.fit_font(title, 1.7, wide, is_bold=True))
+    painter.setPen(theme.color("soft"))
+    draw_text(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), ALIGN_LEFT, title)

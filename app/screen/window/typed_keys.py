@@ -1,0 +1,95 @@
+"""Typed keys of the main window, which answer a question, go to the page, or are rejected."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtGui import QKeyEvent
+
+from app.desk.translation import tr
+from app.screen.window.key_table import (
+    AUTOMATIC_KEYS,
+    NO_KEY,
+    REPEATED_WHEN_TYPED,
+    STOP_LETTERS,
+    YES_KEY,
+    find_typed_text,
+    name_key,
+)
+from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
+from app.screen.window.window_frame import WindowFrame
+from core.message import Message
+
+
+class TypedKeys:
+    """Keys that a question or the current page uses, before their own function is executed."""
+
+    def __init__(
+        self,
+        keyboard_filter: KeyboardFilter,
+        press_key: Callable[[str], None],
+        refresh: Callable[[], None],
+    ) -> None:
+        self._keyboard_filter = keyboard_filter
+        self._press_key, self._refresh = press_key, refresh
+        self._rejected_text = ""  # Message about the last character that an input field rejected.
+
+    def is_used_elsewhere(self, frame: WindowFrame, name: str) -> bool:
+        """Return whether the key works only on the Automatic page while another page is open.
+
+        Show a message if so.
+        """
+        if (
+            name not in AUTOMATIC_KEYS
+            or frame.current_page is frame.automatic_page
+            or name in frame.current_page.key_actions()
+        ):
+            return False
+        frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
+        self._refresh()
+        return True
+
+    def handle_answer(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the key answered a question.
+
+        Yes is accepted only from a single key with all other keys released.
+        """
+        typed = {find_letter(event), find_typed_text(event)} - {""}
+        if not frame.desk.confirm_key or not typed & {frame.desk.confirm_key, "N"}:
+            return False
+        if "N" in typed and frame.desk.confirm_key != "N":
+            self._press_key(NO_KEY)
+        elif not event.isAutoRepeat() and self._keyboard_filter.is_only_key(event):
+            self._press_key(YES_KEY)
+        return True
+
+    def is_withheld(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether an input field rejects the character.
+
+        The key then has no other function. Ctrl+H, Ctrl+Space and Ctrl+E also do not stop the machine in an
+        input field.
+        """
+        text = event.text()
+        if not text.isprintable() or not text or not frame.has_text_field():
+            return (
+                frame.has_text_field() and name_key(find_key_code(event), event.modifiers()) in STOP_LETTERS
+            )
+        if not event.isAutoRepeat():
+            self._rejected_text = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))
+            frame.desk.say(self._rejected_text)
+            self._refresh()
+        return True
+
+    def handle_typed(self, frame: WindowFrame, event: QKeyEvent) -> bool:
+        """Return whether the page has handled the key as text input."""
+        key = find_typed_text(event)
+        if (
+            not key
+            or (event.isAutoRepeat() and key not in REPEATED_WHEN_TYPED)
+            or not frame.current_page.handle_key(key)
+        ):
+            return False
+        if frame.desk.prompt_notice == self._rejected_text:
+            frame.desk.clear_prompt_line()  # The next key was accepted.
+        self._refresh()
+        return True

@@ -1,0 +1,55 @@
+"""The pins of the outputs and of the safety chain in HAL."""
+
+from __future__ import annotations
+
+from drivers.hal.bridge.packets import BridgeConfig, PacketHead, text
+from drivers.hal.bridge.row_streams import HalPins
+from drivers.setpoint_pieces import INFINITY
+
+_WATCHDOG_RESTART_S = 0.006  # Seconds for which the watchdog is off to restart it.
+_RESET_PULSE_S = 0.05  # Duration of the reset pulse in s.
+
+
+class OutputPins:
+    """The pins of the outputs."""
+
+    def __init__(self, config: BridgeConfig, pins: HalPins) -> None:
+        self._config, self._pins = config, pins
+
+    def set_output(self, head: PacketHead) -> None:
+        """Set one output to the state in a packet."""
+        name, on = text(head, "name"), head.get("on") is True
+        if name in self._config.outputs:
+            self._pins[f"out.{name}"] = on
+
+    def set_safe(self) -> None:
+        """Set all outputs that have a safe state to this state."""
+        for name, safe in self._config.outputs.items():
+            if safe is not None:
+                self._pins[f"out.{name}"] = safe
+
+    def switch_off(self) -> None:
+        """Set the outputs to their safe states, except the lamps."""
+        for name, safe in self._config.outputs.items():
+            if safe is not None and name not in self._config.lamps:
+                self._pins[f"out.{name}"] = safe
+
+
+class ChainPins:
+    """The pins that restart the watchdog and reset the safety chain."""
+
+    def __init__(self, pins: HalPins) -> None:
+        self._pins = pins
+        self._reset_until = self._watch_from = -INFINITY
+
+    def close(self, now: float) -> None:
+        """Restart the watchdog and start the reset pulse if they are needed to close the chain."""
+        if not self._pins["alive"]:
+            self._watch_from = now + _WATCHDOG_RESTART_S
+        if not self._pins["chain-ok"]:
+            self._reset_until = now + _RESET_PULSE_S
+
+    def update(self, now: float) -> None:
+        """End the restart of the watchdog and the reset pulse when their times have come."""
+        self._pins["watch"] = now >= self._watch_from
+        self._pins["reset"] = now < self._reset_until and bool(self._pins["alive"])
