@@ -25,8 +25,6 @@ from core.message import CodedError, Message, find_nearest
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-# --- Findings in a machine file, all reported together, each with path, value and expected value.
-
 
 class FileFinding(NamedTuple):
     """An error in a machine file, with the path of the key, the value in the file, and the expected value.
@@ -92,6 +90,7 @@ class FileValues:
         self.omitted_fields: dict[str, KeyField] = {}  # derived values that are not in the file
 
     def has_values(self, *paths: str) -> bool:
+        """Return whether a valid value exists at every path."""
         return all(path in self.values_by_path for path in paths)
 
     def is_stated(self, path: str) -> bool:
@@ -99,15 +98,27 @@ class FileValues:
         return path in self.values_by_path or path in self.invalid_paths
 
     def read_number(self, path: str) -> float:
+        """Return the number at the path.
+
+        Raises KeyError without a valid value, or TypeError if the value is a text or a list.
+        """
         value = self.values_by_path[path]
         if isinstance(value, str | tuple):
             raise TypeError(f"{path} holds no number")
         return float(value)
 
     def read_flag(self, path: str) -> bool:
+        """Return whether the value at the path is true.
+
+        Raises KeyError without a valid value.
+        """
         return self.values_by_path[path] is True
 
     def text(self, path: str) -> str:
+        """Return the value at the path as text.
+
+        Raises KeyError without a valid value.
+        """
         return str(self.values_by_path[path])
 
     def has_text(self, path: str, text: str) -> bool:
@@ -115,15 +126,27 @@ class FileValues:
         return self.has_values(path) and self.text(path) == text
 
     def read_integer(self, path: str) -> int:
+        """Return the number at the path as an integer, without its decimal places.
+
+        Raises KeyError without a valid value, or TypeError if the value is a text or a list.
+        """
         return int(self.read_number(path))
 
     def read_pair(self, path: str) -> Pair:
+        """Return the two numbers at the path.
+
+        Raises KeyError without a valid value, or TypeError if the value is not a list of two numbers.
+        """
         value = self.values_by_path[path]
         if not isinstance(value, tuple) or len(value) != 2:
             raise TypeError(f"{path} holds no pair")
         return value
 
     def read_numbers(self, path: str) -> tuple[float, ...]:
+        """Return the list of numbers at the path.
+
+        Raises KeyError without a valid value, or TypeError if the value is not a list.
+        """
         value = self.values_by_path[path]
         if not isinstance(value, tuple):
             raise TypeError(f"{path} holds no list")
@@ -179,6 +202,7 @@ def format_without_secrets(path: str, value: object) -> str:
 
 
 def join_path(path: str, key: str) -> str:
+    """Return the path of a key in the table at ``path``; an empty path is the top level of the file."""
     return f"{path}.{key}" if path else key
 
 

@@ -102,8 +102,9 @@ class ThumbnailCache:
 
 @lru_cache(maxsize=1)
 def _core_version() -> str:
-    """Return a hash of the code that simulates parts, because a different version may produce different
-    parts.
+    """Return a hash of the code that simulates parts.
+
+    The hash is necessary because a different version may produce different parts.
     """
     total = sha256()
     for path in sorted(_CORE_FOLDER.rglob("*.py")):

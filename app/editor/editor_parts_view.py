@@ -178,6 +178,7 @@ class FindingList(RowPanel):
         return next((d for d in found if d.line > line), found[0] if found else None)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the findings, and scroll the list so that the finding of the cursor line is visible."""
         u, high, found = (
             self.theme.u,
             self.theme.find_row_height(FINDING_ROW_HEIGHT, 9.0, is_touchable=True),
@@ -246,6 +247,7 @@ class EditorHeadLine(Panel):
         self._keys, self._panel = keys, open_panel
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the program name with its mark, the cursor position and the touch keys."""
         look, u, high, now = self.theme, self.theme.u, self.height(), self.heading
         painter.draw_text_line(QRectF(1.4 * u, 0, 41 * u, high), now.name, 2.3, "text", raw=True, margin=1.0)
         left = 3.0 * u + min(40 * u, QFontMetricsF(painter.font()).horizontalAdvance(now.name))

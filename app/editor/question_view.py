@@ -156,6 +156,7 @@ class QuestionLine(Panel):
         return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the labels of the fields, and the message about the entry on the right."""
         u = self.theme.u
         for label, box in zip(self._labels, self._boxes(), strict=True):
             painter.draw_text_line(

@@ -422,10 +422,10 @@ class PathView(Panel):
         if (
             self.measurement is not None and self.measurement.pane.aspect not in SPATIAL_ASPECTS
         ):  # The table is drawn in another pane if there is one.
-            beside = next(
+            values_pane = next(
                 (pane for pane in panes if pane is not self.measurement.pane), self.measurement.pane
             )
-            self.measurement.draw_values(painter, beside.area, self.is_metric)
+            self.measurement.draw_values(painter, values_pane.area, self.is_metric)
         # The panes have covered the lower half of the title.
         draw_view_title(painter, look, self.width(), self.title)
         marks.draw_buttons(painter, look, self.find_panes_area(), self._buttons(), self.add_target)

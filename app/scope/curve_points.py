@@ -54,17 +54,17 @@ class CurveColumns:
         if not len(values):
             return
         last, self.last_sample = self.last_sample, float(values[-1])
-        told = np.flatnonzero(np.isfinite(values))
-        if not len(told):
+        finite_index = np.flatnonzero(np.isfinite(values))
+        if not len(finite_index):
             return
-        times, values = times[told], values[told]
+        times, values = times[finite_index], values[finite_index]
         of = np.floor(times / self.width_s).astype(np.int64)
         first = np.flatnonzero(np.diff(of, prepend=of[0] - 1))
         numbers = of[first]
         low, high = np.minimum.reduceat(values, first), np.maximum.reduceat(values, first)
-        behind = first[1:] - 1
-        joined = np.where(told[first[1:]] == told[behind] + 1, values[behind], np.nan)
-        before = np.concatenate([[last if told[0] == 0 else np.nan], joined])
+        ends = first[1:] - 1
+        joined = np.where(finite_index[first[1:]] == finite_index[ends] + 1, values[ends], np.nan)
+        before = np.concatenate([[last if finite_index[0] == 0 else np.nan], joined])
         np.fmin(low, before, out=low)
         np.fmax(high, before, out=high)
         if len(self.column_numbers) and self.column_numbers[-1] == numbers[0]:
@@ -105,10 +105,10 @@ def make_points(times: FloatArray, values: FloatArray, pixel_width_s: float) -> 
     One pixel is ``pixel_width_s`` seconds wide.
     """
     if len(times) < 2 or len(times) < MIN_SAMPLES_PER_COLUMN * (times[-1] - times[0]) / pixel_width_s:
-        told = np.flatnonzero(np.isfinite(values))
-        if len(told) == len(values):
+        index = np.flatnonzero(np.isfinite(values))
+        if len(index) == len(values):
             return CurvePoints(times, values)
-        return CurvePoints(times[told], values[told], is_joined=np.diff(told, append=told[-1:] + 2) == 1)
+        return CurvePoints(times[index], values[index], is_joined=np.diff(index, append=index[-1:] + 2) == 1)
     columns = CurveColumns.make_empty(pixel_width_s)
     columns.append_samples(times, values)
     return columns.make_points()

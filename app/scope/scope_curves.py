@@ -328,8 +328,8 @@ class LiveCurves:
             sure = float(times[-1]) - 0.5 * signal.span_s if signal.span_s else float(times[-1])
             first, last = np.searchsorted(times, (self._done.get(signal.key, start), sure), side="right")
             if signal.span_s:
-                told = np.flatnonzero(np.isfinite(values[first:last]))
-                last = first + (told[-1] + 1 if len(told) else 0)
+                finite_index = np.flatnonzero(np.isfinite(values[first:last]))
+                last = first + (finite_index[-1] + 1 if len(finite_index) else 0)
             if last > first:
                 self._columns[signal.key].append_samples(times[first:last], values[first:last])
                 self._done[signal.key] = float(times[last - 1])
@@ -355,12 +355,12 @@ class LiveCurves:
         if column is None or len(record.times_s) < 2:
             return None
         values = signal.calculate_values(record.times_s, column) if signal is not None else column
-        told = np.flatnonzero(np.isfinite(values))
-        if not len(told):
+        finite_index = np.flatnonzero(np.isfinite(values))
+        if not len(finite_index):
             return None
         first = max(0, int(np.searchsorted(record.times_s, self._watched)) - 1)
-        cut = slice(first, int(told[-1]) + 1)
-        self._watched = max(self._watched, float(record.times_s[told[-1]]))
+        cut = slice(first, int(finite_index[-1]) + 1)
+        self._watched = max(self._watched, float(record.times_s[finite_index[-1]]))
         return trigger.find_trigger_time(record.times_s[cut], values[cut], find_alarm_values(record))
 
 

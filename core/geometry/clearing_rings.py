@@ -125,11 +125,11 @@ def _order_rings(
     made: list[ClearingRing] = []
     for index, (ring, around) in enumerate(_iter_inner_first(outmost, [])):
         loop = start_loop_near(_sense(ring, against=conventional), position)
-        way = (
+        link = (
             Line(position, loop[0].start) if dist(position, loop[0].start) > SAME_POINT_TOLERANCE_MM else None
         )
         straight = index > 0 and (
-            way is None or (way.length <= _LINK_RADII * radius and room.contains_element(way, distance))
+            link is None or (link.length <= _LINK_RADII * radius and room.contains_element(link, distance))
         )
         ramp = loop
         if not straight and _size(loop) < _RAMP_RADII * radius:

@@ -366,14 +366,14 @@ def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], Element
 
     If ``length`` is greater than the length of the loop, the loop is repeated.
     """
-    way: list[Element] = []
+    first_elements: list[Element] = []
     left, at = length, 0
     while left > SAME_POINT_TOLERANCE_MM:
         element = loop[at % len(loop)]
         if element.length > left + SAME_POINT_TOLERANCE_MM:
-            way.append(element.section_between(element.start, element.point_at(left)))
-            return way, start_loop_at(loop, at % len(loop), left)
-        way.append(element)
+            first_elements.append(element.section_between(element.start, element.point_at(left)))
+            return first_elements, start_loop_at(loop, at % len(loop), left)
+        first_elements.append(element)
         left -= element.length
         at += 1
-    return way, start_loop_at(loop, at % len(loop), 0.0)
+    return first_elements, start_loop_at(loop, at % len(loop), 0.0)

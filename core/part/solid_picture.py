@@ -342,10 +342,10 @@ class _PictureDrawing:
         ray += group.rays.start
         if group.columns is not None:
             row = group.columns[row]
-        across, way, along = _wall_normals(wall, row, ray, self.surface)
+        across, tangential, along = _wall_normals(wall, row, ray, self.surface)
         if wall.faces_axis:
-            across, way, along = -across, -way, -along
-        shade = self._shade(2 * ray, across, way, along)
+            across, tangential, along = -across, -tangential, -along
+        shade = self._shade(2 * ray, across, tangential, along)
         rough = np.abs(across) < _STEEP
         colour: CodeArray | int = _OUTSIDE
         if wall.bore_radius_px is not None:  # a slot through the axis is not a bore
@@ -371,14 +371,14 @@ class _PictureDrawing:
         return np.repeat(np.maximum(shade, np.float32(0.5)), count)
 
     def _shade(
-        self, halves: IntArray, across: Float32Array, way: Float32Array, along: Float32Array
+        self, halves: IntArray, across: Float32Array, tangential: Float32Array, along: Float32Array
     ) -> Float32Array:
         """Return the brightness of surface normals given along r, the part's angle and Z.
 
         The direction of phi is opposite to the part's angle.
         """
         near, up = self.near[halves], self.up[halves]
-        return self._light(across * near + way * up, across * up - way * near, along)
+        return self._light(across * near + tangential * up, across * up - tangential * near, along)
 
     def _light(self, towards: Float32Array, above: Float32Array, along: Float32Array) -> Float32Array:
         """Return the brightness of surface normals from 0 to 1, or -1 for normals that point away.
@@ -418,11 +418,11 @@ def _wall_normals(
     if surface.is_turned:
         size = 1.0 / np.sqrt(1.0 + along * along)
         return size, np.zeros_like(size), along * size
-    before, behind = r[row, ray - 1], r[row, (ray + 1) % surface.ray_count]
+    before, next_radius = r[row, ray - 1], r[row, (ray + 1) % surface.ray_count]
     ring = np.maximum(own, np.float32(1e-3)) * np.float32(2.0 * math.pi / surface.ray_count)
-    way = -np.clip(_smoother(own - before, behind - own), -50.0, 50.0) / ring
-    size = 1.0 / np.sqrt(1.0 + along * along + way * way)
-    return size, way * size, along * size
+    tangential = -np.clip(_smoother(own - before, next_radius - own), -50.0, 50.0) / ring
+    size = 1.0 / np.sqrt(1.0 + along * along + tangential * tangential)
+    return size, tangential * size, along * size
 
 
 def _sum_neighbors(values: Float32Array, step: int) -> Float32Array:
@@ -434,8 +434,8 @@ def _sum_neighbors(values: Float32Array, step: int) -> Float32Array:
     return total
 
 
-def _smoother(before: Float32Array, behind: Float32Array) -> Float32Array:
-    return np.where(np.abs(before) < np.abs(behind), before, behind)
+def _smoother(before: Float32Array, next_change: Float32Array) -> Float32Array:
+    return np.where(np.abs(before) < np.abs(next_change), before, next_change)
 
 
 def _remove_specks(codes: CodeArray) -> CodeArray:
@@ -447,8 +447,8 @@ def _remove_specks(codes: CodeArray) -> CodeArray:
         away = turned[:, :-1] == _FACING_AWAY
         np.copyto(turned[:, :-1], turned[:, 1:], where=away)
     for turned in (codes.T, codes):
-        before, own, behind = turned[:-2], turned[1:-1], turned[2:]
-        low, high = np.minimum(before, behind), np.maximum(before, behind)
+        before, own, next_codes = turned[:-2], turned[1:-1], turned[2:]
+        low, high = np.minimum(before, next_codes), np.maximum(before, next_codes)
         turned[1:-1] = np.maximum(low, np.minimum(high, own))
     return codes
 
@@ -461,7 +461,7 @@ def _draw_edges(codes: CodeArray, depth: npt.NDArray[np.int32]) -> None:
     for picture, deep in ((codes, depth), (codes.T, depth.T)):
         sunk = deep[:-2] + deep[2:]
         sunk -= 2 * deep[1:-1]
-        behind = sunk > _EDGE * _DEPTH
-        behind &= picture[1:-1] >= 0
+        is_deeper = sunk > _EDGE * _DEPTH
+        is_deeper &= picture[1:-1] >= 0
         own = picture[1:-1]
-        own[behind] -= (own[behind] & (SHADES - 1)) // 3
+        own[is_deeper] -= (own[is_deeper] & (SHADES - 1)) // 3

@@ -69,10 +69,10 @@ def _find_block_before_last_piece(at: Callable[[int], PartInstant], last: int, p
 
     A binary search is possible, because the number of pieces never decreases.
     """
-    before, behind = 0, last
-    while behind - before > 1:
-        middle = (before + behind) // 2
-        before, behind = (middle, behind) if at(middle).parted_piece_count < pieces else (before, middle)
+    before, upper = 0, last
+    while upper - before > 1:
+        middle = (before + upper) // 2
+        before, upper = (middle, upper) if at(middle).parted_piece_count < pieces else (before, middle)
     return before
 
 

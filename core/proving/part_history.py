@@ -82,13 +82,13 @@ class StepCollector:
         """Return the reason why the part cannot be made, as a sentence, or an empty text."""
         if self._blocks <= MAX_MOVES:
             return ""
-        way = "use 'turndesk prove --stock' for longer programs"
+        hint = "use 'turndesk prove --stock' for longer programs"
         return Message(
             "The program has {blocks} blocks, but TurnDesk can simulate the part for at most "
             "{most_moves} blocks; {details}",
             blocks=self._blocks,
             most_moves=MAX_MOVES,
-            details=way,
+            details=hint,
         )
 
     def collected_steps(self) -> ProgramSteps | None:

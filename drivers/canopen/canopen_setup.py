@@ -56,8 +56,9 @@ class NodeSetup:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Return one sentence that lists all objects the node lacks, or an empty tuple if it has all
-        objects.
+        """Return one sentence that lists all objects that the node lacks.
+
+        The tuple is empty if the node has all objects.
         """
         if not self.missing_objects:
             return ()
@@ -226,8 +227,9 @@ class NodeSetup:
             )
 
     def require_counts_per_rev(self, counts: int) -> None:
-        """Raise DriverError if the gear and feed objects of the drive result in other counts per motor
-        revolution.
+        """Check the counts per motor revolution that result from the drive's objects.
+
+        Raises DriverError if the gear and feed objects of the drive result in other counts than ``counts``.
         """
         places = [(od.GEAR, 1), (od.GEAR, 2), (od.FEED, 1), (od.FEED, 2)]
         if not all(self.has_object(*place) for place in places):
@@ -333,8 +335,9 @@ class NodeSetup:
         pdo.callbacks[:] = [on_reply]
 
     def _setup_error(self, text: str, *, reason: str = "", **values: object) -> DriverError:
-        """Return the error for a node that does not match; ``text`` may contain the fields {name} and
-        {node}.
+        """Return the error for a node that does not match.
+
+        ``text`` may contain the fields {name} and {node}.
         """
         return DriverError(text, "drive-setup", reason=reason, name=self._name, node=self.node.id, **values)
 

@@ -90,8 +90,9 @@ class GrblController(ReportedState):
         )
 
     def send_line(self, line: str, ticket: int = 0) -> SentLine:
-        """Queue a line for the controller and return its entry, which a later call of ``update``
-        completes.
+        """Queue a line for the controller, and return its entry.
+
+        A later call of ``update`` completes the entry.
         """
         return self.line_sender.send_line(line, self.listened_s, ticket)
 
@@ -345,8 +346,9 @@ class GrblController(ReportedState):
         self.on_status_report(report)
 
     def _check_report(self, report: StatusReport) -> None:
-        """Handle an event that the state in a report shows, even if the message about this event was
-        missed.
+        """Handle an event that the state in a report shows.
+
+        The event is handled even if the message about it was missed.
         """
         if report.state != "Alarm":
             self.alarm_number = 0

@@ -296,8 +296,9 @@ class GrblFirmware:
     # --- the wire -----------------------------------------------------------------------------------------
 
     def receive_bytes(self, data: bytes) -> None:
-        """Receive bytes from the host; real-time bytes take effect immediately, and other bytes are
-        buffered.
+        """Receive bytes from the host.
+
+        Real-time bytes take effect immediately. Other bytes are buffered.
         """
         self.advance()
         self._wire += data

@@ -73,6 +73,7 @@ class ShapeRowsPanel(RowPanel):
         self._choose = on_select
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the rows of the list, and scroll the list so that the selected row is visible."""
         self.frame(painter, self.heading)
         high, room, count = (
             self.theme.find_row_height(ROW_HEIGHT, 9.0, is_touchable=True),
@@ -169,6 +170,10 @@ class ShapeLinesPanel(Panel):
         event.accept()
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the remarks and the program lines, or the error of the form.
+
+        If the panel is too small for all lines, its last row shows the number of lines that do not fit.
+        """
         room, u = self.inside(), self.theme.u
         high = 2.5 * u
         if self.error_text:

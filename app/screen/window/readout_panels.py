@@ -48,6 +48,7 @@ class PositionPanel(Panel):
         return self.position_readout.main_kind.value if self.position_readout else ""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw one row per axis, with the kind of readout, the unit and the X label in the title."""
         view = self.position_readout
         if view is None:
             self.frame(painter, "POSITION")
@@ -177,6 +178,7 @@ class FeedPanel(ReadoutPanel):
     """Display of the programmed feed in large digits, with the measured feed and the override below it."""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the programmed feed with its unit, and the measured feed and the override below it."""
         view = self.value
         if not isinstance(view, FeedReadout):
             return
@@ -204,6 +206,10 @@ class SpindlePanel(ReadoutPanel):
     """Display of commanded and measured speed in rpm, surface speed, override and the spindle switch."""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the spindle speeds in rpm, the direction, the surface speed, the override and the switch.
+
+        If the spindle state is unknown, the panel shows this instead.
+        """
         view = self.value
         if not isinstance(view, SpindleReadout):
             return
@@ -258,6 +264,7 @@ class ToolPanel(ReadoutPanel):
     """Display of the active tool and secondary offset."""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the active tool in the left half and the secondary offset in the right half."""
         if not isinstance(self.value, tuple):
             return
         tool, secondary = self.value
@@ -272,6 +279,7 @@ class TimesPanel(ReadoutPanel):
     """Display of part count, current cycle time, remaining time and last cycle time."""
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the part count and the cycle times in columns, each with its label above the value."""
         if not isinstance(self.value, tuple):
             return
         room = self.inside()
@@ -309,6 +317,7 @@ class ReadoutLine(Panel):
         self._shown = (status.position, status.feed, status.spindle, status.tool_text, status.secondary_text)
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the axis positions and the other readouts in one row, or in two rows in a high panel."""
         view = self.status
         if view is None:
             return
@@ -429,6 +438,10 @@ class RunLine(Panel):
         self.stop_text, self._tone = describe_stop(status), status.tone.value
 
     def draw(self, painter: ThemedPainter) -> None:
+        """Draw the comment, the block, the parts and the times, or the alarm or stop.
+
+        A message of M00 or M01 replaces the comment and the block.
+        """
         u, wide, high = self.theme.u, float(self.width()), float(self.height())
         if self.stop_text:
             self._draw_alarm(painter)

@@ -53,12 +53,12 @@ def plan_step_ramps(distance: float, speed: float, acceleration: float) -> list[
 
     A short distance has no cruise; its top speed is √(a·|distance|).
     """
-    sign, way = math.copysign(1.0, distance), abs(distance)
-    top = min(speed, math.sqrt(acceleration * way))
+    sign, absolute_distance = math.copysign(1.0, distance), abs(distance)
+    top = min(speed, math.sqrt(acceleration * absolute_distance))
     change = top / acceleration
     return _ramps(
         (change, 0.0, sign * acceleration),
-        ((way - top * change) / top, sign * top, 0.0),
+        ((absolute_distance - top * change) / top, sign * top, 0.0),
         (change, sign * top, -sign * acceleration),
     )
 

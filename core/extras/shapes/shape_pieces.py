@@ -152,8 +152,9 @@ def _with_head(values: FieldValues, now: ProgramSettings) -> ProgramSettings:
 
 
 def _parse_comment(line: str, dialect: Dialect) -> tuple[Shape, dict[str, FieldValue]] | None:
-    """Return the shape and the fields from the comment of a line, or None if the line has no
-    shape comment.
+    """Return the shape and the fields from the comment of a line.
+
+    The result is None if the line has no shape comment.
     """
     found = _COMMENT[dialect].search(line)
     if found is None or line.lstrip().startswith(("(", ";")):

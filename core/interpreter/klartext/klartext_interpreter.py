@@ -279,8 +279,9 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     # --- moves, M functions, cycles -----------------------------------------------------------------------
 
     def _move(self, node: nodes.PathFunction, comment: str) -> Iterator[Block]:
-        """Yield the blocks of a path function with its M functions, and then of the cycle that M99 or M89
-        calls.
+        """Yield the blocks of a path function with its M functions.
+
+        If M99 or M89 calls a cycle, the blocks of the cycle follow.
         """
         state, path = self._state, self._path
         m_functions.check(state, node.m_functions)

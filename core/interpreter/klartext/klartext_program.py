@@ -323,8 +323,9 @@ class Flow(ControlFlow[_Level]):
         return self.active_frame.routine.lines[self.next_index - 1]
 
     def make_subprogram_flow(self, label: int | str) -> Flow | None:
-        """Return a flow through one subprogram of the active program, or None if the subprogram does not
-        exist.
+        """Return a flow through one subprogram of the active program.
+
+        Returns None if the subprogram does not exist.
         """
         program = self.program
         at = program.labels.get(label)

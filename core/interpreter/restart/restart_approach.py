@@ -332,8 +332,9 @@ def _entry_moves(
 
 
 def _entry_points(restart_point: RestartPoint) -> list[tuple[float, float]]:
-    """Return the machine points of the entry, from the point outside the part to the start point of the
-    line.
+    """Return the machine points of the entry.
+
+    The points are in order from the point outside the part to the start point of the line.
     """
     goal = restart_point.checkpoint.machine
     modal = restart_point.checkpoint.modal
@@ -431,8 +432,9 @@ def make_mill_start(
 
 
 def explain_missing_path(kinematics: Kinematics) -> str:
-    """Return the reason why no path can be planned on this machine, or an empty string if planning is
-    possible.
+    """Return the reason why no path can be planned on this machine.
+
+    The text is empty if planning is possible.
     """
     return (
         ""

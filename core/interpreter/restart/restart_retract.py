@@ -135,8 +135,9 @@ class _Search:
         return _Segment(*self.cut_record.get_end_points(row), int(self.cut_record.move_kind[row]), row)
 
     def _next_rapids(self) -> Retract | None:
-        """Return the next rapids of the program as a retract if they lead out of the part, or None
-        otherwise.
+        """Return the next rapids of the program as a retract.
+
+        Returns None if these rapids do not lead out of the part.
         """
         legs: list[RetractLeg] = []
         for segment in self._following_segments():
@@ -148,8 +149,7 @@ class _Search:
         return None
 
     def _crosswise_retract(self) -> Retract | None:
-        """Return a retract that moves along X to the program's next rapid toward Z+ and then follows this
-        rapid.
+        """Return a retract along X and then along the program's next rapid toward Z+.
 
         Returns None if earlier cuts may not yet have cleared the path of this rapid.
         """
@@ -349,10 +349,9 @@ class _Search:
     def _step_back(
         self, segment: _Segment, at: RetractLeg
     ) -> tuple[RetractLeg, tuple[RetractLeg, ...]] | None:
-        """Return a short move back along a cut toward Z-, and the program's retract from the end of this
-        move.
+        """Return a short move back along a cut toward Z-, and the retract that follows.
 
-        Returns None if these moves are not safe.
+        The program's retract starts at the end of this move. Returns None if these moves are not safe.
         """
         length = hypot(segment.x0 - at.x, segment.z0 - at.z)
         if (
@@ -392,8 +391,9 @@ class _Search:
     # --- threads, taps, mills -----------------------------------------------------------------------------
 
     def _is_tapping(self) -> bool:
-        """Return whether the tool is in a hole that the program leaves at a feed with the
-        spindle reversed.
+        """Return whether the tool is tapping a hole.
+
+        The tool is in a hole that the program leaves at a feed with the spindle reversed.
         """
         if (
             abs(self.x) > _CENTERLINE_TOLERANCE_MM

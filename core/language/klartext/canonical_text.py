@@ -13,8 +13,9 @@ _FEEDS = {"max": "FMAX", "auto": "F AUTO"}
 
 
 def format_block(line: nodes.KlartextLine) -> str:
-    """Return the block of a line without its number and comment, or an empty string if the line has no
-    block.
+    """Return the block of a line without its number and comment.
+
+    Returns an empty string if the line does not contain a block.
     """
     return "" if line.node is None else _block(line.node) or line.code
 
@@ -40,7 +41,8 @@ def _short(node: nodes.Node) -> str:
     match node:
         case nodes.BeginBlock() | nodes.EndBlock():
             unit = "INCH" if node.is_inch else "MM"
-            made = _joined(Message("{name} PGM", name=type(node).__name__.upper()), node.name, unit)
+            name = "BEGIN" if isinstance(node, nodes.BeginBlock) else "END"
+            made = _joined(Message("{name} PGM", name=name), node.name, unit)
         case nodes.BlankCorner():
             made = _joined(
                 Message("BLK FORM 0.{part}", part=node.part_number), node.tool_axis, _axes(node.corner)
@@ -102,10 +104,10 @@ def _feed(feed: klartext_words.FeedWord | None) -> str:
     return _FEEDS[feed.kind] if feed.value is None else f"F{feed.base}{_value(feed.value, plus=False)}"
 
 
-def _retract(way: klartext_words.RetractWord | None) -> str:
-    if way is None:
+def _retract(retract: klartext_words.RetractWord | None) -> str:
+    if retract is None:
         return ""
-    return "MB MAX" if way.distance is None else f"MB{_value(way.distance, plus=False)}"
+    return "MB MAX" if retract.distance is None else f"MB{_value(retract.distance, plus=False)}"
 
 
 def _value(value: klartext_words.Value, *, plus: bool = True) -> str:

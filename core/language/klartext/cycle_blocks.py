@@ -81,8 +81,9 @@ _SELECTED = re.compile(r"#")
 
 
 def read_global_definition(cursor: LineCursor, column: int) -> GlobalDefinition:
-    """Read the block after ``GLOBAL DEF``, which consists of a group number without effect and the
-    parameters.
+    """Read the block after ``GLOBAL DEF``.
+
+    The block consists of a group number, which has no effect, and the parameters.
     """
     match = cursor.match(_NUMBER)
     if match is None:
@@ -200,8 +201,9 @@ _TEXT = re.compile(r"[^\s+\-0-9]+|[+-](?!\s*[0-9.Q])")
 
 
 def _line(cursor: LineCursor, number: int, part: int, column: int) -> CycleLine:
-    """Read one line of a cycle numbered below 200, in which the order of the numbers determines their
-    meaning.
+    """Read one line of a cycle numbered below 200.
+
+    In these cycles, the order of the numbers determines their meaning.
     """
     words: list[AxisWord] = []
     text: list[str] = []

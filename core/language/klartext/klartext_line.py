@@ -65,8 +65,9 @@ _FN = re.compile(r"FN\s*([0-9]+)\s*")
 
 
 def _any_of(names: Iterable[str], end: str) -> re.Pattern[str]:
-    """Return a pattern for the first of these names that precedes ``end``, with any blanks between its
-    words.
+    """Return a pattern for the first of these names that precedes ``end``.
+
+    Any number of blanks may separate the words of a name.
     """
     return re.compile("|".join(r"\s+".join(name.split()) + end for name in names))
 

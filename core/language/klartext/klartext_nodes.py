@@ -377,8 +377,9 @@ class HeadingLine:
 
 @dataclass(frozen=True, slots=True)
 class RotaryPositioning:
-    """The positioning mode of the rotary axes in a PLANE block, and the selection of one of the two
-    solutions.
+    """Positioning mode of the rotary axes in a PLANE block.
+
+    The mode includes the selection of one of the two solutions.
     """
 
     mode: str = ""  # MOVE, TURN or STAY

@@ -200,8 +200,9 @@ class LineCursor(LineReader):
             raise self.make_expected_error(message, hint)
 
     def choose_hint(self, hint: str) -> str:
-        """Return a specific hint if plain text or a typographic character is at the cursor, or ``hint``
-        otherwise.
+        """Return a specific hint for the text at the cursor, or ``hint`` without one.
+
+        Specific hints exist for plain text and for typographic characters.
         """
         word = "" if self.is_at_end else self.next_word
         instead = next(filter(None, map(describe_typographic_character, word)), None)

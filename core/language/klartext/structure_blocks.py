@@ -348,11 +348,10 @@ def read_material(cursor: LineCursor, column: int) -> IgnoredBlock:
 
 
 def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | IgnoredBlock | CycleLine:
-    """Read the block after ``FUNCTION``, which is TCPM, DWELL, or a function without effect on this
-    control.
+    """Read the block after ``FUNCTION``.
 
-    Raises ProgramError for AXIS SPAT and PATHCTRL VECTOR, which change the motion that the same words
-    program.
+    The block is TCPM, DWELL, or a function without effect on this control. Raises ProgramError for AXIS
+    SPAT and PATHCTRL VECTOR, which change the motion that the same words program.
     """
     if cursor.read_keyword("TCPM"):
         while not cursor.is_at_end:

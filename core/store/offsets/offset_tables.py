@@ -66,6 +66,7 @@ class HistoryTable:
 
     @property
     def old_and_new_columns(self) -> list[str]:
+        """Return the names of the value columns before a change, and then after a change."""
         return [f"{side}_{column}" for side in ("old", "new") for column in self.value_columns]
 
 
@@ -433,6 +434,11 @@ def _newest_step(connection: sqlite3.Connection, log: HistoryTable) -> int:
 def select_changes(
     connection: sqlite3.Connection, log: HistoryTable, sql_suffix: str, parameters: tuple[int | str, ...]
 ) -> tuple[OffsetChange, ...]:
+    """Return the changes in a history table that match an SQL clause.
+
+    ``sql_suffix`` is the clause after the table name, and ``parameters`` are its values. Raises StoreError
+    if a matching entry is damaged.
+    """
     rows = connection.execute(
         f"SELECT id, step, undoes, at, {log.kind_expression}, {log.key_column}, why, who, "
         f"{', '.join(log.old_and_new_columns)}"
@@ -448,6 +454,7 @@ def select_changes(
 
 
 def make_damaged_entry_error(entry: object) -> StoreError:
+    """Return the error for a damaged entry of the offset history."""
     return StoreError(
         Message(
             "entry {entry} of the offset history is damaged; the offsets themselves are verified "

@@ -317,10 +317,10 @@ class ActiveCycle:
         return seconds
 
     def _make_tilt_plane(self, node: CycleLine) -> PlaneBlock:
-        """Return cycle 19 converted to a PLANE block with spatial angles, or to a reset if it has no
-        angles.
+        """Return cycle 19 converted to a PLANE block.
 
-        No axis moves unless the block has a feed. Raises ProgramError for an invalid word.
+        The PLANE block has spatial angles. If cycle 19 has no angles, the PLANE block is a reset. No axis
+        moves unless the block has a feed. Raises ProgramError for an invalid word.
         """
         if node.text and node.text.upper() not in _SET_UP_WORDS:
             text = Message("{node} is not an axis.", node=node.text)
@@ -383,8 +383,9 @@ class ActiveCycle:
             state.q_values[_SURFACE] = surface
 
     def call_at(self, node: CycleCall) -> Iterator[Block]:
-        """Yield the blocks of CYCL CALL POS: a move to the position above the workpiece, and then the
-        cycle.
+        """Yield the blocks of CYCL CALL POS.
+
+        The blocks are a move to the position above the workpiece, and then the cycle.
         """
         if not self._number:
             yield from self.call_cycle(node.column)
@@ -411,8 +412,10 @@ class ActiveCycle:
     # --- patterns -----------------------------------------------------------------------------------------
 
     def _pattern(self, node: CycleDefinition) -> Iterator[Block]:
-        """Yield the blocks of the active cycle at each point of a circle (cycle 220) or of a grid (cycle
-        221).
+        """Yield the blocks of the active cycle at each point of a pattern.
+
+        The pattern is a circle (cycle 220) or a grid (cycle 221). Raises ProgramError if no machining cycle
+        is active.
         """
         tool = self._tool(node.cycle_number, node.column)
         if self._number not in _MACHINING:

@@ -229,8 +229,9 @@ def _clear_level(
 def _finish_walls(
     milling: _MillingParameters, placement: Placement, ring: RoundedRectangle
 ) -> Iterator[Block]:
-    """Yield the finishing moves of the floor and the walls, with quarter circles as approach and
-    departure.
+    """Yield the finishing moves of the floor and the walls.
+
+    The approach to each wall and the departure from it are quarter circles.
     """
     tool, feed = milling.tool, milling.finishing_feed
     half = placement.to_program_point(ring.half_side_v_mm - ring.half_side_u_mm, 0.0)

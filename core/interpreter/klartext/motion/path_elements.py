@@ -67,8 +67,9 @@ class PathElement:
 
     @property
     def planar_element(self) -> Element | None:
-        """Return the element in X and Y, or None for a vertical arc and for an element without motion in X
-        and Y.
+        """Return the element in X and Y, or None without one.
+
+        Vertical arcs and elements without motion in X and Y do not have a planar element.
         """
         if self.is_vertical_arc:
             return None
@@ -92,10 +93,10 @@ def make_elements(
     feed: float | None,
     rotary: Mapping[str, float],
 ) -> Iterator[PathElement]:
-    """Yield the element of a path function from ``start``, or several elements for more than one
-    revolution.
+    """Yield the elements of a path function that begins at ``start``.
 
-    ``previous_direction`` is the direction at the end of the previous element. Raises ProgramError if the
+    A path function has one element, or several elements for more than one revolution.
+    ``previous_direction`` is the direction at the end of the previous element. Raises ProgramError if an
     element is invalid.
     """
     node = _with_direction(state, node)
@@ -137,8 +138,9 @@ def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
 
 
 def compute_end_point(state: State, node: PathFunction, start: Vector) -> Vector:
-    """Return the end point of a path function, from its axis words or from polar coordinates about the
-    pole.
+    """Return the end point of a path function.
+
+    The end point is specified by axis words or by polar coordinates about the pole.
     """
     x, y, z = (_along(state, node.find_word(axis), at) for axis, at in zip("XYZ", start, strict=True))
     if node.find_word("PR") is None and node.find_word("PA") is None:
@@ -246,8 +248,9 @@ def _arc_by_radius(state: State, node: PathFunction, start: Point, end: Point, _
 def _tangential(
     state: State, node: PathFunction, start: Point, end: Point, previous_direction: Point | None
 ) -> Arc | None:
-    """Return the arc of CT or CTP, tangent to the previous element, or None if the path is a
-    straight line.
+    """Return the arc of CT or CTP, which is tangent to the previous element.
+
+    Returns None if the path is a straight line. Raises ProgramError if no move precedes the arc.
     """
     if previous_direction is None:
         text = "No move precedes {form}, so its starting direction is not defined."

@@ -126,8 +126,9 @@ class PathRunner:
         self._corner, self._corner_line = node, self._state.line_number
 
     def execute_between_elements(self, event: BlockGenerator) -> Iterator[Block]:
-        """Yield the blocks of an event between two elements, or buffer the event if an element
-        is buffered.
+        """Yield the blocks of an event between two elements.
+
+        If an element is buffered, the event is also buffered and no blocks are yielded.
         """
         if not self._waiting:
             yield from event()
@@ -145,8 +146,9 @@ class PathRunner:
         yield from self._release()
 
     def finish_program(self) -> Iterator[Block]:
-        """Yield the buffered blocks at the end of the program, and log a warning if compensation
-        is active.
+        """Yield the buffered blocks at the end of the program.
+
+        If radius compensation is still active, a warning is logged.
         """
         if self._side:
             text = "The program ends while radius compensation is active."
@@ -465,8 +467,9 @@ def _reduced_feed(state: State, each: PathElement) -> float | None:
 
 
 def _replace_points(element: PathElement, flat: Element, z0: float, z1: float) -> PathElement:
-    """Return the element moved to the points of ``flat`` in the working plane, from height ``z0`` to
-    ``z1``.
+    """Return the element with the points of ``flat`` in the working plane.
+
+    The element runs from height ``z0`` to height ``z1``, in mm.
     """
     arc = flat if isinstance(flat, Arc) else None
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)

@@ -19,8 +19,9 @@ MAX_TABLE_ROW = 999_999.0
 
 
 def execute_datum_shift(state: State, node: DatumShift) -> None:
-    """Execute TRANS DATUM or cycle 7, which shifts the datum in the workpiece system or in the active
-    plane.
+    """Execute TRANS DATUM or cycle 7, which shifts the datum.
+
+    The shift is in the workpiece system, or in the active plane if a plane is active.
     """
     if node.table_row is not None:
         node = DatumShift(_read_table_row(state, node.table_row, node.column))

@@ -132,8 +132,9 @@ def _check_datum(state: State, code: MFunction, codes: Sequence[MFunction]) -> N
 
 
 def read_machine_datum(state: State, codes: Sequence[MFunction]) -> Mapping[str, float] | None:
-    """Return the machine positions to which M91 or M92 refers, or None if words refer to the workpiece
-    zero.
+    """Return the machine positions to which M91 or M92 refers, by axis.
+
+    Returns None if the words of the block refer to the workpiece zero.
     """
     numbers = {code.number for code in codes}
     if M92 in numbers:

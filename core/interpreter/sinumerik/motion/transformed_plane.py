@@ -101,8 +101,9 @@ class ActiveTransformation:
         return self._depth - self._plane.programmed_frame.shift_c
 
     def update_position(self) -> None:
-        """Set the position of the mill from the axis positions, at the start and after a change of tool or
-        zero.
+        """Set the position of the mill from the axis positions.
+
+        This is required at the start and after a change of tool or zero.
         """
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
