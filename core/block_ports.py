@@ -22,32 +22,32 @@ class LineOperation(NamedTuple):
 
 
 class ArcOperation(NamedTuple):
-    """An arc from ``x0 z0`` to ``x z`` around the center ``cx cz``.
+    """An arc from ``start_x start_z`` to ``x z`` around the center ``center_x center_z``.
 
-    ``clockwise`` has the same meaning as in elementary blocks: the direction from Z+ to X+.
+    ``is_clockwise`` has the same meaning as in elementary blocks: the direction from Z+ to X+.
     """
 
-    x0: float
-    z0: float
+    start_x: float
+    start_z: float
     x: float
     z: float
-    cx: float
-    cz: float
-    clockwise: bool
+    center_x: float
+    center_z: float
+    is_clockwise: bool
     feed: float
 
 
 class ThreadOperation(NamedTuple):
-    """One thread pass from ``x0 z0`` to ``x z``, synchronized with the spindle's index pulse.
+    """One thread pass from ``start_x start_z`` to ``x z``, synchronized with the spindle's index pulse.
 
-    ``lead`` is the travel along Z per revolution, in millimeters.
+    ``lead_mm`` is the travel along Z per revolution, in millimeters.
     """
 
-    x0: float
-    z0: float
+    start_x: float
+    start_z: float
     x: float
     z: float
-    lead: float
+    lead_mm: float
 
 
 BlockOperation = RapidOperation | LineOperation | ArcOperation | ThreadOperation
@@ -90,7 +90,7 @@ class BlockController(Protocol):
         """
         ...
 
-    def max_line_speed(self, dx: float, dz: float) -> float:
+    def get_max_line_speed(self, x_component: float, z_component: float) -> float:
         """Return the highest speed along a straight line in this direction, in mm/s.
 
         At this speed no axis exceeds the limits of the controller and of the machine file.
@@ -102,7 +102,7 @@ class BlockController(Protocol):
         """Return the supported functions, as names from ``machine_requirements``."""
         ...
 
-    def submit_block(self, operation: BlockOperation) -> int | None:
+    def submit_block(self, block: BlockOperation) -> int | None:
         """Submit a block; return its ticket, or None if the controller cannot accept a block now.
 
         Raises DriverError.
@@ -141,7 +141,7 @@ class BlockController(Protocol):
         """
         ...
 
-    def step_to(self, axis: str, target: float, speed: float) -> None:
+    def move_by_step(self, axis: str, target: float, speed: float) -> None:
         """Move an axis to ``target`` in one step that starts and ends at rest. Raises DriverError."""
         ...
 

@@ -27,7 +27,7 @@ class ClosingStep(NamedTuple):
     """A function that runs when TurnDesk closes, with its name for the log and its time limit in seconds."""
 
     name: str
-    run: Callable[[], object]
+    run_step: Callable[[], object]
     timeout_s: float = DEFAULT_LIMIT_S
 
 
@@ -75,7 +75,7 @@ class _RunningStep:
 
     def _run(self) -> None:
         try:
-            self.step.run()
+            self.step.run_step()
         except BaseException as error:  # noqa: BLE001 - whatever it is, the other steps are carried out
             self._failed = True
             _log.error("closing: %s has failed", self.step.name, exc_info=error)

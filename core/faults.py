@@ -130,7 +130,7 @@ class DriverHostTrip(NamedTuple):
     host had lost contact with the machine instead, and these functions remained on.
     """
 
-    number: int
+    trip_number: int
     silence_s: float
     spindle: bool
     active_outputs: tuple[str, ...]

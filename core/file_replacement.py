@@ -9,7 +9,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-NEW_FILE_MODE = 0o600  # mode of new files
+PRIVATE_FILE_MODE = 0o600  # mode of new files
 _OWNER = 0o700
 
 

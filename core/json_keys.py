@@ -41,17 +41,17 @@ def declare_keys(text: str) -> tuple[JsonKey, ...]:
 
 
 def declare_row_keys(
-    path: str, row: type[tuple[object, ...]] | type[object], text: str
+    path: str, row_type: type[tuple[object, ...]] | type[object], text: str
 ) -> tuple[JsonKey, ...]:
     """Return the keys of a row type below ``path``, described by a text table.
 
     The lines of ``text`` are ``name | unit | meaning``. Raises ValueError if ``text`` does not have exactly
     the fields of the type in the same order.
     """
-    hints = get_type_hints(row)
+    hints = get_type_hints(row_type)
     cells = {name: (unit, meaning) for name, unit, meaning in (_cells(line, 3) for line in _lines(text))}
     if list(cells) != list(hints):
-        raise ValueError(f"{row.__name__} has the fields {', '.join(hints)}, not {', '.join(cells)}")
+        raise ValueError(f"{row_type.__name__} has the fields {', '.join(hints)}, not {', '.join(cells)}")
     return tuple(JsonKey(f"{path}{name}", find_json_type(hint), *cells[name]) for name, hint in hints.items())
 
 
@@ -60,15 +60,15 @@ def prefix_keys(path: str, keys: Collection[JsonKey]) -> tuple[JsonKey, ...]:
     return tuple(key._replace(name=f"{path}{key.name}") for key in keys)
 
 
-def find_json_type(hint: object) -> str:
+def find_json_type(annotation: object) -> str:
     """Return the JSON type for a type annotation."""
-    if get_origin(hint) is UnionType:
-        return " or ".join(find_json_type(each) for each in get_args(hint))
-    if hint in _TYPES and isinstance(hint, type):
-        return _TYPES[hint]
-    if isinstance(hint, type) and issubclass(hint, Enum):
+    if get_origin(annotation) is UnionType:
+        return " or ".join(find_json_type(each) for each in get_args(annotation))
+    if annotation in _TYPES and isinstance(annotation, type):
+        return _TYPES[annotation]
+    if isinstance(annotation, type) and issubclass(annotation, Enum):
         return "string"
-    if get_origin(hint) in (tuple, list):
+    if get_origin(annotation) in (tuple, list):
         return "list"
     return "object"
 

@@ -75,8 +75,8 @@ def format_value(value: float, unit: FileUnit, is_inch: bool) -> str:
 
 
 Pair = tuple[float, float]
-Triple = tuple[float, float, float]
-KeyValue = float | bool | str | Pair | Triple | tuple[float, ...]
+NumberTriple = tuple[float, float, float]
+KeyValue = float | bool | str | Pair | NumberTriple | tuple[float, ...]
 Words = str  # a list of words, stored as one text separated by spaces
 
 
@@ -148,15 +148,15 @@ def declare_key(
     name: str = "",
     default: KeyValue | None = None,
     choices: tuple[str | bool, ...] = (),
-    derived: bool = False,
-    secret: bool = False,
+    is_derived: bool = False,
+    is_secret: bool = False,
 ) -> Any:
     """Declare a key on an attribute of a class, with the attribute's annotation as the kind of value.
 
     ``name`` is the key in the file if it differs from the attribute's name. A ``secret`` value is not
     printed. The other arguments are described in ``KeyField``.
     """
-    return _Key(range, meaning, name, default, choices, derived, secret)
+    return _Key(range, meaning, name, default, choices, is_derived, is_secret)
 
 
 _KINDS = {
@@ -165,7 +165,7 @@ _KINDS = {
     "bool": ValueKind.BOOLEAN,
     "str": ValueKind.TEXT,
     "Pair": ValueKind.PAIR,
-    "Triple": ValueKind.TRIPLE,
+    "NumberTriple": ValueKind.TRIPLE,
     "tuple[float, ...]": ValueKind.NUMBERS,
     "Words": ValueKind.WORDS,
 }

@@ -182,7 +182,7 @@ def get_error_code(error: BaseException) -> str:
     return error.code if isinstance(error, CodedError) else ""
 
 
-def find_nearest(word: str, known_words: Iterable[str]) -> str:
+def find_similar_word(word: str, known_words: Iterable[str]) -> str:
     """Return the known word most similar to ``word``, or an empty text if no word is similar."""
     from difflib import get_close_matches  # noqa: PLC0415  only who has mistyped waits for it
 

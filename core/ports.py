@@ -33,22 +33,22 @@ class StopMode(StrEnum):
     RAMP_HOLD = "ramp-hold"
 
 
-class Segments(NamedTuple):
+class MotionSegments(NamedTuple):
     """Motion of all axes as a sequence of segments with constant acceleration.
 
-    ``t`` (n,) contains the start times and ``dt`` (n,) the durations. ``p``, ``v`` and ``a`` (n, axes)
-    contain the position, velocity and acceleration at the start of each segment. The axes are at rest after
-    the last segment.
+    ``t`` (n,) contains the start times and ``durations_s`` (n,) the durations. ``positions``, ``velocities``
+    and ``accelerations`` (n, axes) contain the position, velocity and acceleration at the start of each
+    segment. The axes are at rest after the last segment.
     """
 
-    t: FloatArray
-    dt: FloatArray
-    p: FloatArray
-    v: FloatArray
-    a: FloatArray
+    start_times_s: FloatArray
+    durations_s: FloatArray
+    positions: FloatArray
+    velocities: FloatArray
+    accelerations: FloatArray
 
     @classmethod
-    def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> Segments:
+    def make_rest(cls, start_time_s: float, position: Sequence[float] | FloatArray) -> MotionSegments:
         """Return segments that hold this position from ``start_time_s`` on.
 
         A splice with these segments discards all motion that was queued after this time.
@@ -116,7 +116,7 @@ class AxisSink(Protocol):
         """Return the end time of the queue; the time is not before now() if motion is queued."""
         ...
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Replace all queued motion from ``segments.t[0]`` on.
 
         Raises DriverError unless the segments start at or after now() + commit, continue the position and
@@ -135,7 +135,7 @@ class AxisSink(Protocol):
         """Return the present state of the axes from memory, without waiting."""
         ...
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the drives of all axes on or off.
 
         Raises DriverError. A drive that fails later reports a fault.
@@ -158,11 +158,11 @@ class AxisSink(Protocol):
 class Spindle(Protocol):
     """The main spindle. Its speed in rpm is signed; M03 is positive."""
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops the spindle."""
         ...
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
         ...
 
@@ -182,12 +182,12 @@ class Spindle(Protocol):
 class SpindleCAxis(Protocol):
     """A spindle drive that also serves as the C axis; the mode is changed at standstill."""
 
-    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
+    def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Request C-axis mode or spindle mode; C retains its count.
 
-        If ``orient`` is True, the spindle turns by the shortest path until its count equals its position
-        from the index, apart from whole revolutions. Raises DriverError while the spindle turns or has no
-        power.
+        If ``should_orient`` is True, the spindle turns by the shortest path until its count equals its
+        position from the index, apart from whole revolutions. Raises DriverError while the spindle turns or
+        has no power.
         """
         ...
 
@@ -223,16 +223,17 @@ class OrientingSpindle(Protocol):
 class Cam(NamedTuple):
     """Motion as a function of spindle revolutions instead of time.
 
-    ``way.t`` and ``way.dt`` are revolutions from the encoder count ``start_revolutions`` on, in the
-    direction ``sign`` in which the spindle turns. ``way.v`` and ``way.a`` are per revolution. The axes are
-    at rest before the start and after the end of the cam. ``following_segments`` continue from that end as
-    a function of time; their ``t`` are seconds from there.
+    ``segments.t`` and ``segments.durations_s`` are revolutions from the encoder count ``start_revolutions``
+    on, in the direction ``sign`` in which the spindle turns. ``segments.velocities`` and
+    ``segments.accelerations`` are per revolution. The axes are at rest before the start and after the end of
+    the cam. ``following_segments`` continue from that end as a function of time; their ``t`` are seconds
+    from there.
     """
 
     start_revolutions: float
     sign: float
-    way: Segments
-    following_segments: Segments | None = None
+    segments: MotionSegments
+    following_segments: MotionSegments | None = None
 
 
 class GearState(NamedTuple):
@@ -279,14 +280,14 @@ class DigitalIO(Protocol):
         """Return the last reported state of all inputs from memory, without waiting."""
         ...
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return the present state of all outputs, whether the control or another device switched them.
 
         An output whose state is not reported to the driver has the last written state.
         """
         ...
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch an output on or off. Raises DriverError."""
         ...
 
@@ -354,7 +355,7 @@ class TouchInput(Protocol):
         ...
 
 
-class Wakeup(Protocol):
+class WakeupSignal(Protocol):
     """A signal by which a driver reports that something has changed.
 
     With this signal, the executor polls a machine at rest only ten times per second, and immediately after
@@ -365,11 +366,11 @@ class Wakeup(Protocol):
         """Return whether no polled value can change any more without a wakeup. It is called at rest."""
         ...
 
-    def wake(self) -> None:
+    def request_poll(self) -> None:
         """Request an immediate poll; any thread may call this function."""
         ...
 
-    def wait(self, seconds: float) -> bool:
+    def wait_for_wakeup(self, seconds: float) -> bool:
         """Wait for a wakeup for at most ``seconds``; return whether a wakeup occurred.
 
         A wakeup that occurred before the call counts.
@@ -384,7 +385,7 @@ class Clock(Protocol):
         """Return the time in seconds from an arbitrary origin."""
         ...
 
-    def sleep_until(self, t: float) -> None:
+    def sleep_until(self, time_s: float) -> None:
         """Wait until ``t`` or slightly later; return immediately if ``t`` is in the past."""
         ...
 
@@ -407,7 +408,7 @@ class MachinePorts:
         None  # None: nothing switches off by itself when the control is silent
     )
     untraced: str = ""  # why the drives do not follow every setpoint, but only the end of each move
-    wakeup: Wakeup | None = None  # None: it is looked at in every tick, at rest too
+    wakeup: WakeupSignal | None = None  # None: it is looked at in every tick, at rest too
     samples: SampleSource | None = None  # None: the scope has what the axes say at each tick
     # What is not known now. The ports go on to tell the last that was known of it, and nobody may take that
     # for the present: a spindle of which nothing is heard may turn. Known again once its wire tells it anew.

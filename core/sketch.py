@@ -19,7 +19,7 @@ class Outline:
 
 @dataclass(frozen=True, slots=True)
 class Dimension:
-    """A dimension from ``start`` to ``end``, drawn at ``distance`` from these points.
+    """A dimension from ``start`` to ``end``, drawn at ``line_distance`` from these points.
 
     If ``end`` is None, the dimension is a number at ``start``. ``field_word`` is the label of the field
     that has the value. ``prefix`` is a sign in front of the number.
@@ -28,7 +28,7 @@ class Dimension:
     field_word: str
     start: Point
     end: Point | None = None
-    distance: float = 0.0
+    line_distance: float = 0.0
     prefix: str = ""
 
 
@@ -64,13 +64,19 @@ def make_tool_outline(*points: Point) -> Outline:
     return Outline(points, "tool", is_closed=True)
 
 
-def make_turned_outlines(profile: Sequence[Point], bar: float) -> tuple[Outline, ...]:
+def make_turned_outlines(profile: Sequence[Point], bar_diameter: float) -> tuple[Outline, ...]:
     """Return the outlines of a turned profile: the part with the remaining bar, and the cut.
 
-    ``bar`` is the diameter of the bar.
+    ``bar_diameter`` is the diameter of the bar.
     """
     back = min(z for z, _ in profile)
-    deep = 0.3 * max(abs(back), bar / 2.0, 0.1)
+    deep = 0.3 * max(abs(back), bar_diameter / 2.0, 0.1)
     face = profile[0][0]
-    solid = [(face, 0.0), *profile, (back, bar / 2.0), (back - deep, bar / 2.0), (back - deep, 0.0)]
+    solid = [
+        (face, 0.0),
+        *profile,
+        (back, bar_diameter / 2.0),
+        (back - deep, bar_diameter / 2.0),
+        (back - deep, 0.0),
+    ]
     return Outline(tuple(solid), "part", is_closed=True), Outline(tuple(profile), "cut")

@@ -20,7 +20,7 @@ from core.key_declaration import (
     format_value,
     get_declared_keys,
 )
-from core.message import CodedError, Message, find_nearest
+from core.message import CodedError, Message, find_similar_word
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -34,12 +34,12 @@ class FileFinding(NamedTuple):
 
     path: str
     value: str
-    expected: str
+    expected_value: str
     code: str = ""
 
     def __str__(self) -> str:
         where = f"{self.path} = {self.value}" if self.value else self.path
-        return " ".join(f"{where}: {self.expected}".splitlines())  # a TOML key may contain a line break
+        return " ".join(f"{where}: {self.expected_value}".splitlines())  # a TOML key may contain a line break
 
 
 class MachineFileError(CodedError):
@@ -93,7 +93,7 @@ class FileValues:
         """Return whether a valid value exists at every path."""
         return all(path in self.values_by_path for path in paths)
 
-    def is_stated(self, path: str) -> bool:
+    def is_specified(self, path: str) -> bool:
         """Return whether the file contains a value at this path, valid or invalid."""
         return path in self.values_by_path or path in self.invalid_paths
 
@@ -214,7 +214,7 @@ def find_unknown_keys(table: Mapping[str, object], known: list[str], path: str) 
         if place in _REMOVED:
             found.append(FileFinding(place, "", _REMOVED[place], "removed-key"))
         elif key not in known:
-            near = find_nearest(key, known)
+            near = find_similar_word(key, known)
             hint = (
                 Message("did you mean {nearest}?", nearest=near)
                 if near
@@ -379,7 +379,7 @@ class MachineFileReading:
     separate_device_inputs: Mapping[
         str, str
     ]  # inputs on a device outside the backend, such as a pendant, by path
-    prefixes: tuple[str, ...]  # prefixes of the addresses on such devices
+    address_prefixes: tuple[str, ...]  # prefixes of the addresses on such devices
 
     def raw(self, path: str) -> object:
         """Return the unprocessed value at a path of the file, or None."""
@@ -389,7 +389,11 @@ class MachineFileReading:
         """Return the terminals of the wired potentiometers and handwheels by path."""
         paths = (f"io.analog.{name}.at" for name in self.list_table_keys("io.analog"))
         said = {path: self.values.text(path) for path in paths if self.values.has_values(path)}
-        return {path.removesuffix(".at"): at for path, at in said.items() if not at.startswith(self.prefixes)}
+        return {
+            path.removesuffix(".at"): at
+            for path, at in said.items()
+            if not at.startswith(self.address_prefixes)
+        }
 
     def list_table_keys(self, path: str) -> list[str]:
         """Return the keys of a table in which the machine owner chooses the keys."""
@@ -438,19 +442,19 @@ class DriverTable:
 class DriverDeclaration:
     """A driver as described in the machine file.
 
-    ``backend`` and ``spindle`` are the driver's names in machine.backend and spindle.driver. ``backend`` is
-    empty for a driver that is used in addition to a backend. ``can_orient_spindle`` is True if the spindle
-    can stop at an angle. ``count_rate`` is the highest rate in counts per second that the driver accepts
-    for an axis. ``normalize_terminal`` returns equal values for equivalent addresses, and None for an
-    address of another driver. ``inputs`` yields the possible input addresses in order. ``address_prefix``
-    begins the addresses on the driver's own device outside the backend.
+    ``backend_name`` and ``spindle`` are the driver's names in machine.backend and spindle.driver.
+    ``backend_name`` is empty for a driver that is used in addition to a backend. ``can_orient_spindle`` is
+    True if the spindle can stop at an angle. ``max_count_rate`` is the highest rate in counts per second
+    that the driver accepts for an axis. ``normalize_terminal`` returns equal values for equivalent
+    addresses, and None for an address of another driver. ``inputs`` yields the possible input addresses in
+    order. ``address_prefix`` begins the addresses on the driver's own device outside the backend.
     """
 
     tables: tuple[DriverTable, ...]
-    backend: str = ""
+    backend_name: str = ""
     spindle: str = ""
     can_orient_spindle: bool = False
-    count_rate: float = inf
+    max_count_rate: float = inf
     normalize_terminal: Callable[[MachineFileReading, str], object] | None = None
     inputs: Callable[[], Iterator[str]] | None = None
     address_prefix: str = ""

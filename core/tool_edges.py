@@ -47,7 +47,7 @@ def _like(key: int, number: int) -> int:
     return NamedTool(number, key.name) if isinstance(key, NamedTool) else number
 
 
-def make_edge_key(tool: int, edge: int) -> int:
+def make_row_number(tool: int, edge: int) -> int:
     """Return the row number of a cutting edge; the row number of D1 is the tool number."""
     return tool if edge <= 1 else _like(tool, edge * _STEP + tool)
 

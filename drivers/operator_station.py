@@ -32,26 +32,26 @@ class TwoHandRelay:
         self._on_from = -1.0
         self._on_until = -1.0
 
-    def press_palm(self, palm: str, now: float) -> None:
+    def press_palm(self, palm: str, now_s: float) -> None:
         """Press the palm button ``palm``, "left" or "right", at time ``now`` in seconds."""
         if self._down[palm] is not None:
             return
-        self._down[palm] = now
+        self._down[palm] = now_s
         left, right = self._down["left"], self._down["right"]
         if left is None or right is None:
             return
         if self._armed and abs(left - right) <= self._window:
-            self._on_from, self._on_until = now, float("inf")
+            self._on_from, self._on_until = now_s, float("inf")
         self._armed = False
 
-    def release_palm(self, palm: str, now: float) -> None:
+    def release_palm(self, palm: str, now_s: float) -> None:
         """Release a palm button and turn the output off.
 
         The output remains on until the minimum pulse ``pulse_s`` has passed.
         """
         self._down[palm] = None
-        if self._on_until > now:
-            self._on_until = max(now, self._on_from + self._pulse)
+        if self._on_until > now_s:
+            self._on_until = max(now_s, self._on_from + self._pulse)
         if all(since is None for since in self._down.values()):
             self._armed = True
 
@@ -186,10 +186,10 @@ class StationControls:
         with self._lock:
             self._panel.feed_pot = min(max(fraction, 0.0), 1.5)
 
-    def turn_handwheel(self, counts: int) -> None:
-        """Turn the on-screen handwheel by ``counts``, which may be negative."""
+    def turn_handwheel(self, count_change: int) -> None:
+        """Turn the on-screen handwheel by ``count_change``, which may be negative."""
         with self._lock:
-            self._panel.handwheel += counts
+            self._panel.handwheel += count_change
 
     def _palm(self, which: str, *, down: bool) -> None:
         with self._lock:

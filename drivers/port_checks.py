@@ -27,11 +27,11 @@ def require_no_fault(fault: str) -> None:
         )
 
 
-def require_power(fault: str, powered: bool) -> None:
+def require_power(fault: str, is_powered: bool) -> None:
     """Raise DriverError if a fault is active or the drives are off, because no axis may then move."""
     if fault:
         raise DriverError("{fault}; clear the fault first", get_fault_code(fault, "axis"), fault=fault)
-    if not powered:
+    if not is_powered:
         raise DriverError("the drives are off; switch them on first", "power-lost")
 
 
@@ -50,9 +50,9 @@ def require_axis(axis: str, axes: Container[str]) -> None:
         raise DriverError("axis {axis} does not exist", reason="no-axis", axis=f"{axis!r}")
 
 
-def require_standstill(axis: str, moving: bool) -> None:
+def require_standstill(axis: str, is_moving: bool) -> None:
     """Raise DriverError if any axis is moving, because ``axis`` can home only when all axes are at rest."""
-    if moving:
+    if is_moving:
         raise DriverError(
             "{axis} cannot home while an axis is moving; wait until all axes are at rest",
             "homing",
@@ -67,23 +67,23 @@ def require_spindle_ready(problem: str) -> None:
         raise DriverError("the spindle stays off: {problem}", "spindle-off", problem=problem)
 
 
-def require_estop_released(pressed: bool) -> None:
+def require_estop_released(is_pressed: bool) -> None:
     """Raise DriverError if the E-stop is pressed, because the spindle cannot turn then."""
-    if pressed:
+    if is_pressed:
         raise DriverError(
             "the spindle stays off while the E-stop is pressed; release the E-stop first", "spindle-off"
         )
 
 
-def require_free_drive(enabled: bool, turning: bool) -> None:
+def require_free_drive(is_enabled: bool, is_turning: bool) -> None:
     """Raise DriverError if the spindle drive is off or turning and therefore cannot become the C axis."""
-    if not enabled:
+    if not is_enabled:
         raise DriverError(
             "C uses the spindle drive, and the drives are off; switch them on first",
             "c-coupling",
             reason="drives-off",
         )
-    if turning:
+    if is_turning:
         raise DriverError(
             "C uses the spindle drive, and the spindle is turning; stop the spindle first",
             "c-coupling",
@@ -103,9 +103,9 @@ def find_output(name: str, outputs: Mapping[str, T]) -> T:
     return outputs[name]
 
 
-def require_output_allowed(name: str, state: bool, problem: str) -> None:
+def require_output_allowed(name: str, is_on: bool, problem: str) -> None:
     """Raise DriverError if the output is to be switched on and a ``problem`` prevents this."""
-    if state and problem:
+    if is_on and problem:
         raise DriverError("output {name} stays off: {problem}", "output", name=name, problem=problem)
 
 
@@ -142,8 +142,8 @@ LOG_ROWS = 8192  # Rows, which cover eight seconds at 1 ms for a delayed control
 class SampleLog:
     """Ring buffer of sample rows in the format of ``core.ports.SampleSource``."""
 
-    def __init__(self, axes: int, capacity: int = LOG_ROWS) -> None:
-        self.row_width = 5 + 3 * axes
+    def __init__(self, axis_count: int, capacity: int = LOG_ROWS) -> None:
+        self.row_width = 5 + 3 * axis_count
         self._row = struct.Struct(f"={self.row_width}d")
         self._kept = capacity
         self._bytes = bytearray(capacity * self._row.size)
@@ -152,14 +152,14 @@ class SampleLog:
         self._none = np.empty((0, self.row_width))
         self.newest_time_s = -np.inf  # Time of the newest row.
 
-    def append_row(self, t: float, *values: float) -> None:
-        """Append one row at time ``t``.
+    def append_row(self, time_s: float, *values: float) -> None:
+        """Append one row at time ``time_s``.
 
         If the buffer is full, the oldest row is discarded.
         """
-        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, t, *values)
+        self._row.pack_into(self._bytes, self._added % self._kept * self._row.size, time_s, *values)
         self._added += 1
-        self.newest_time_s = t
+        self.newest_time_s = time_s
 
     def append_rows(self, rows: FloatArray) -> None:
         """Append rows.

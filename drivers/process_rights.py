@@ -22,7 +22,7 @@ def request_scheduling(policy: str, priority: int) -> str:
     return ""
 
 
-def lower_thread(priority: int) -> None:
+def lower_thread_priority(priority: int) -> None:
     """Set the calling thread to a lower real-time priority, if its process has a real-time policy.
 
     A refusal is ignored; the thread then runs at the priority of its process.

@@ -16,24 +16,24 @@ class SerialLineError(DriverError):
 
 @dataclass(frozen=True, slots=True)
 class LineSettings:
-    """Settings of a serial line; ``flow`` is "xonxoff", "rtscts" or "none"."""
+    """Settings of a serial line; ``flow_control`` is "xonxoff", "rtscts" or "none"."""
 
     port: str
     baud: int = 9600
-    bits: int = 8
+    data_bits: int = 8
     parity: str = "N"
-    stop: int = 1
-    flow: str = "none"
+    stop_bits: int = 1
+    flow_control: str = "none"
 
     @property
-    def character_s(self) -> float:
+    def character_time_s(self) -> float:
         """Return the duration of one character in seconds, including its start, parity and stop bits."""
-        return (1 + self.bits + (self.parity != "N") + self.stop) / self.baud
+        return (1 + self.data_bits + (self.parity != "N") + self.stop_bits) / self.baud
 
     @property
     def description(self) -> str:
         """Return the settings as text, such as ``9600 7E1``."""
-        return f"{self.baud} {self.bits}{self.parity}{self.stop}"
+        return f"{self.baud} {self.data_bits}{self.parity}{self.stop_bits}"
 
 
 class SerialTransport(Protocol):

@@ -111,13 +111,13 @@ class SerialPort:
         if sys.platform == "win32":
             return
         handle = self._port.fileno()
-        kept = frame(handle, settings.bits, settings.parity)
-        if settings.bits == 7 and settings.parity in PARITY_VALUES and not kept:
+        kept = set_character_format(handle, settings.data_bits, settings.parity)
+        if settings.data_bits == 7 and settings.parity in PARITY_VALUES and not kept:
             self._parities = create_parity_table(settings.parity)
-        if settings.flow == "xonxoff":
+        if settings.flow_control == "xonxoff":
             self.enable_xon_xoff()
         if self._marks is not None:
-            mark_damage(handle, parity=settings.parity != "N")
+            enable_parity_marks(handle, check_parity=settings.parity != "N")
 
     @property
     def damaged_count(self) -> int:
@@ -159,7 +159,7 @@ class SerialPort:
             if sys.platform == "win32":
                 self._port.xonxoff = True
             elif self._parities is None:
-                obey_codes(self._port.fileno())
+                enable_kernel_flow_control(self._port.fileno())
         except _FAILURES as error:
             raise self._cut(error) from error
 
@@ -223,7 +223,7 @@ class SerialPort:
         for _ in range(_ENDING):
             if not (left := self._port.out_waiting):
                 return True
-            time.sleep(min(left * self.settings.character_s, _GLANCE))
+            time.sleep(min(left * self.settings.character_time_s, _GLANCE))
         return not self._port.out_waiting
 
     def _coded(self, data: bytes) -> bytes:
@@ -243,11 +243,11 @@ def _open_port(settings: LineSettings) -> serial.Serial:
     return serial.Serial(
         settings.port,
         settings.baud,
-        bytesize=8 if _IS_POSIX else settings.bits,
+        bytesize=8 if _IS_POSIX else settings.data_bits,
         parity="N" if _IS_POSIX else settings.parity,
-        stopbits=settings.stop,
-        xonxoff=not _IS_POSIX and settings.flow == "xonxoff",
-        rtscts=settings.flow == "rtscts",
+        stopbits=settings.stop_bits,
+        xonxoff=not _IS_POSIX and settings.flow_control == "xonxoff",
+        rtscts=settings.flow_control == "rtscts",
         timeout=0,
         write_timeout=1.0,
         exclusive=True,
@@ -264,7 +264,7 @@ if sys.platform != "win32":
     _PARITIES = {"N": 0, "E": termios.PARENB, "O": termios.PARENB | termios.PARODD}
     _FRAME = termios.CSIZE | termios.PARENB | termios.PARODD
 
-    def frame(handle: int, bits: int, parity: str) -> bool:
+    def set_character_format(handle: int, bits: int, parity: str) -> bool:
         """Set data bits and parity, and return whether the port accepts them.
 
         Raises termios.error if the port has failed.
@@ -280,7 +280,7 @@ if sys.platform != "win32":
                 raise
         return bool(termios.tcgetattr(handle)[2] & _FRAME == wanted)
 
-    def obey_codes(handle: int) -> None:
+    def enable_kernel_flow_control(handle: int) -> None:
         """Let XOFF and XON from the other side stop and resume the output in the kernel.
 
         Raises termios.error.
@@ -289,12 +289,12 @@ if sys.platform != "win32":
         attributes[0] |= termios.IXON | termios.IXOFF
         termios.tcsetattr(handle, termios.TCSANOW, attributes)
 
-    def mark_damage(handle: int, *, parity: bool) -> None:
+    def enable_parity_marks(handle: int, *, check_parity: bool) -> None:
         """Make the kernel mark a damaged character c as FF 00 c, and a valid FF as FF FF.
 
         With ``parity``, parity errors are also marked. Raises termios.error.
         """
         attributes = termios.tcgetattr(handle)
-        attributes[0] |= termios.PARMRK | (termios.INPCK if parity else 0)
+        attributes[0] |= termios.PARMRK | (termios.INPCK if check_parity else 0)
         attributes[0] &= ~(termios.IGNPAR | termios.ISTRIP)
         termios.tcsetattr(handle, termios.TCSANOW, attributes)

@@ -25,13 +25,13 @@ class MotionPiece(NamedTuple):
     accelerations: tuple[float, ...]
 
 
-def get_motion_on_piece(piece: MotionPiece, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Return the positions and velocities of a piece at time ``t``.
+def calculate_piece_motion(piece: MotionPiece, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Return the positions and velocities of a piece at time ``time_s``.
 
     Before its start and after its end, return the values at the start or end.
     """
     begins, lasts, at_p, at_v, at_a = piece
-    dt = t - begins
+    dt = time_s - begins
     if not 0.0 <= dt <= lasts:  # Faster than min and max; drives call this a thousand times per second.
         dt = 0.0 if dt < 0.0 else lasts
     half = 0.5 * dt
@@ -60,57 +60,59 @@ class PieceQueue:
         self._pieces, self._starts, self._end = [], [], -INFINITY
         self._rest = tuple(position)
 
-    def queue_end(self, now: float) -> float:
+    def get_end_time(self, now: float) -> float:
         """Return the end time of the last motion, or ``now`` if the queue is empty."""
         return max(self._end, now)
 
-    def commanded_state_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Return the positions and velocities at time ``t``.
+    def get_commanded_state(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Return the positions and velocities at time ``time_s``.
 
         Where two pieces meet, return the values of the later piece.
         """
-        if t >= self._end:
+        if time_s >= self._end:
             return self._rest, self._zero
-        index = bisect_right(self._starts, t) - 1
+        index = bisect_right(self._starts, time_s) - 1
         if index < 0:
             return self._pieces[0].positions, self._zero
-        return get_motion_on_piece(self._pieces[index], t)
+        return calculate_piece_motion(self._pieces[index], time_s)
 
-    def find_piece_at(self, t: float) -> tuple[MotionPiece, float]:
-        """Return the piece that is valid at time ``t`` and the end time of that piece.
+    def find_piece_at(self, time_s: float) -> tuple[MotionPiece, float]:
+        """Return the piece that is valid at time ``time_s`` and the end time of that piece.
 
-        If no motion is queued for ``t``, return a piece at rest.
+        If no motion is queued for ``time_s``, return a piece at rest.
         """
-        if t >= self._end:
-            return MotionPiece(t, INFINITY, self._rest, self._zero, self._zero), INFINITY
-        index = bisect_right(self._starts, t) - 1
+        if time_s >= self._end:
+            return MotionPiece(time_s, INFINITY, self._rest, self._zero, self._zero), INFINITY
+        index = bisect_right(self._starts, time_s) - 1
         if index < 0:
-            return MotionPiece(t, INFINITY, self._pieces[0].positions, self._zero, self._zero), self._starts[
-                0
-            ]
+            return MotionPiece(
+                time_s, INFINITY, self._pieces[0].positions, self._zero, self._zero
+            ), self._starts[0]
         piece = self._pieces[index]
         ends = piece.start_time_s + piece.duration_s
         following = self._starts[index + 1] if index + 1 < len(self._starts) else self._end
         return piece, min(ends, following)
 
-    def motion_at(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
-        """Return the positions, velocities and accelerations at time ``t``."""
-        p, v = self.commanded_state_at(t)
-        index = bisect_right(self._starts, t) - 1
-        return p, v, self._pieces[index].accelerations if index >= 0 and t < self._end else self._zero
+    def get_commanded_motion(
+        self, time_s: float
+    ) -> tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]]:
+        """Return the positions, velocities and accelerations at time ``time_s``."""
+        p, v = self.get_commanded_state(time_s)
+        index = bisect_right(self._starts, time_s) - 1
+        return p, v, self._pieces[index].accelerations if index >= 0 and time_s < self._end else self._zero
 
     @property
     def pieces(self) -> Sequence[MotionPiece]:
         """Return the queued pieces, including past pieces that have not been discarded yet."""
         return self._pieces
 
-    def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
+    def brake_to_rest(self, now: float, decelerations: Sequence[float]) -> float:
         """Replace the queue with a straight deceleration, and return its end time.
 
         All axes decelerate at the same time. This method is for stops without the host, such as an E-stop
         or a fault. The axes leave their path only by the curvature of the path within the braking distance.
         """
-        return self._brake(now, self.commanded_state_at(now), deceleration)
+        return self._brake(now, self.get_commanded_state(now), decelerations)
 
     def _brake(
         self, now: float, state: tuple[tuple[float, ...], tuple[float, ...]], decel: Sequence[float]
@@ -121,26 +123,26 @@ class PieceQueue:
             self.reset_to(p)
             return now
         piece = MotionPiece(now, dt, p, v, tuple(-speed / dt for speed in v))
-        self.replace_from(now, [piece])
+        self.replace_pieces_from(now, [piece])
         return now + dt
 
-    def discard_before(self, time: float) -> None:
-        """Discard the pieces that ended before ``time``, as soon as at least 64 pieces can be discarded."""
-        gone = bisect_right(self._starts, time) - 1
+    def discard_pieces_before(self, time_s: float) -> None:
+        """Discard the pieces that ended before ``time_s``, as soon as at least 64 pieces can be discarded."""
+        gone = bisect_right(self._starts, time_s) - 1
         if gone >= _TRIM_COUNT:
             del self._pieces[:gone], self._starts[:gone]
 
-    def replace_from(self, start: float, pieces: list[MotionPiece]) -> None:
-        """Cut the queue at time ``start`` and append ``pieces`` without checks.
+    def replace_pieces_from(self, start_time_s: float, pieces: list[MotionPiece]) -> None:
+        """Cut the queue at time ``start_time_s`` and append ``pieces`` without checks.
 
-        If the queue ends before ``start``, the axes are at rest in between.
+        If the queue ends before ``start_time_s``, the axes are at rest in between.
         """
-        rest = get_motion_on_piece(pieces[-1], INFINITY)[0]
-        keep = bisect_right(self._starts, start - 1e-12)
+        rest = calculate_piece_motion(pieces[-1], INFINITY)[0]
+        keep = bisect_right(self._starts, start_time_s - 1e-12)
         del self._pieces[keep:], self._starts[keep:]
-        if self._end < start:
+        if self._end < start_time_s:
             pieces = [
-                MotionPiece(max(self._end, start - 1.0), 0.0, self._rest, self._zero, self._zero),
+                MotionPiece(max(self._end, start_time_s - 1.0), 0.0, self._rest, self._zero, self._zero),
                 *pieces,
             ]
         self._pieces += pieces

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.ports import DriverError, Segments
+from core.ports import DriverError, MotionSegments
 from drivers.setpoint_pieces import MotionPiece, PieceQueue
 
 _BATCH_SIZE = 100  # Pieces per step; their conversion takes 0.1 ms.
@@ -24,28 +24,28 @@ def _do_nothing() -> None:
 
 
 def convert_segments(
-    segments: Segments, axes: int, yield_cpu: Callable[[], None] = _do_nothing
+    segments: MotionSegments, axis_count: int, yield_cpu: Callable[[], None] = _do_nothing
 ) -> list[MotionPiece]:
     """Convert segments into motion pieces.
 
     ``yield_cpu`` is called repeatedly, because the conversion of thousands of pieces may take too long for
     some drives. Raises DriverError if an array has the wrong shape or a value is not finite.
     """
-    count = len(segments.t)
-    shapes = {segments.p.shape, segments.v.shape, segments.a.shape}
-    if count == 0 or shapes != {(count, axes)} or segments.dt.shape != (count,):
+    count = len(segments.start_times_s)
+    shapes = {segments.positions.shape, segments.velocities.shape, segments.accelerations.shape}
+    if count == 0 or shapes != {(count, axis_count)} or segments.durations_s.shape != (count,):
         raise DriverError(
             "each setpoint must contain t, dt, p, v and a for {axes} axes",
             "broken-path",
             reason="shape",
-            axes=axes,
+            axes=axis_count,
         )
     for part in segments:
         if not np.isfinite(part).all():
             raise DriverError(
                 "setpoints contain a value that is not a number", "broken-path", reason="no-number"
             )
-    if (segments.dt < 0).any():
+    if (segments.durations_s < 0).any():
         raise DriverError("the setpoint times run backward", "broken-path", reason="backwards")
     pieces: list[MotionPiece] = []
     for begin in range(0, count, _BATCH_SIZE):
@@ -72,7 +72,7 @@ class AxisProperties:
 
 
 def check_limits(
-    segments: Segments,
+    segments: MotionSegments,
     axes: Sequence[AxisProperties],
     homed_axes: Sequence[bool],
     actual_positions: Sequence[float] | None = None,
@@ -82,7 +82,7 @@ def check_limits(
     With ``actual_positions``, an axis that is outside its travel may move back from its present position.
     """
     for n, axis in enumerate(axes):
-        if abs(segments.v[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
+        if abs(segments.velocities[:, n]).max(initial=0.0) > axis.vmax * 1.001 + 0.01:
             raise DriverError(
                 "{axis}: the setpoint speed exceeds {vmax}/s; nothing was queued",
                 "drive-limits",
@@ -95,7 +95,7 @@ def check_limits(
         low, high = axis.travel
         if actual_positions is not None:
             low, high = min(low, actual_positions[n]), max(high, actual_positions[n])
-        place = segments.p[:, n]
+        place = segments.positions[:, n]
         if place.min(initial=low) < low - 0.01 or place.max(initial=high) > high + 0.01:
             raise DriverError(
                 "{axis}: setpoints are outside the travel range {low}…{high}; nothing was queued",
@@ -148,7 +148,7 @@ class SetpointQueue(PieceQueue):
         # Time up to which the drives already have setpoints.
         self.get_transferred_until: Callable[[], float] = lambda: -math.inf
 
-    def splice(self, segments: Segments, now: float) -> None:
+    def splice_segments(self, segments: MotionSegments, now: float) -> None:
         """Replace all setpoints from ``segments.t[0]`` on.
 
         The segments must start no earlier than the commit time after ``now``. They must continue the
@@ -166,20 +166,20 @@ class SetpointQueue(PieceQueue):
                 reason="too-early",
                 late=f"{late:.1f}",
             )
-        self._check_joint(self.commanded_state_at(start), (pieces[0].positions, pieces[0].velocities))
+        self._check_joint(self.get_commanded_state(start), (pieces[0].positions, pieces[0].velocities))
         self._check_run(segments)
-        self.replace_from(start, pieces)
+        self.replace_pieces_from(start, pieces)
 
-    def _check_run(self, segments: Segments) -> None:
+    def _check_run(self, segments: MotionSegments) -> None:
         """Check that each piece begins where the previous piece ends, and that the last piece ends at rest.
 
         Raises DriverError.
         """
-        dt = segments.dt[:, None]
-        t_end = segments.t + segments.dt
-        p_end = segments.p + (segments.v + 0.5 * segments.a * dt) * dt
-        v_end = segments.v + segments.a * dt
-        gaps = np.flatnonzero(np.abs(segments.t[1:] - t_end[:-1]) > _TIME_TOLERANCE_S)
+        dt = segments.durations_s[:, None]
+        t_end = segments.start_times_s + segments.durations_s
+        p_end = segments.positions + (segments.velocities + 0.5 * segments.accelerations * dt) * dt
+        v_end = segments.velocities + segments.accelerations * dt
+        gaps = np.flatnonzero(np.abs(segments.start_times_s[1:] - t_end[:-1]) > _TIME_TOLERANCE_S)
         if gaps.size:
             raise DriverError(
                 "setpoints have a gap at t = {t_end} s; nothing was queued",
@@ -187,8 +187,8 @@ class SetpointQueue(PieceQueue):
                 reason="gap",
                 t_end=f"{t_end[gaps[0]]:.4f}",
             )
-        jumps = (np.abs(segments.p[1:] - p_end[:-1]) > self._tolerance.position) | (
-            np.abs(segments.v[1:] - v_end[:-1]) > self._tolerance.velocity
+        jumps = (np.abs(segments.positions[1:] - p_end[:-1]) > self._tolerance.position) | (
+            np.abs(segments.velocities[1:] - v_end[:-1]) > self._tolerance.velocity
         )
         if jumps.any():
             row, axis = np.argwhere(jumps)[0]
@@ -201,8 +201,8 @@ class SetpointQueue(PieceQueue):
                 t_end=f"{t_end[row]:.4f}",
                 position=f"{p_end[row, axis]:.4f}",
                 speed=f"{v_end[row, axis]:.3f}",
-                position2=f"{segments.p[row + 1, axis]:.4f}",
-                speed2=f"{segments.v[row + 1, axis]:.3f}",
+                position2=f"{segments.positions[row + 1, axis]:.4f}",
+                speed2=f"{segments.velocities[row + 1, axis]:.3f}",
             )
         moving = [name for name, speed in zip(self.axes, v_end[-1], strict=True) if abs(speed) > _REST_SPEED]
         if moving:
@@ -240,7 +240,7 @@ class SetpointQueue(PieceQueue):
 # --- Move of one axis from rest to rest, as for homing.
 
 
-def plan_straight_move(
+def plan_axis_move(
     start_time: float,
     rest_positions: Sequence[float],
     axis_index: int,
@@ -248,7 +248,7 @@ def plan_straight_move(
     target: float,
     speed: float,
     accel: float,
-) -> Segments:
+) -> MotionSegments:
     """Plan a move of one axis from rest to rest: ramp up, run at ``speed``, ramp down.
 
     The axis with index ``axis_index`` moves to ``target``; the other axes remain at rest.
@@ -265,4 +265,4 @@ def plan_straight_move(
     a[:, axis_index] = [sign * accel, 0.0, -sign * accel]
     p[1, axis_index] += sign * 0.5 * top * ramp
     p[2, axis_index] = target - sign * 0.5 * top * ramp
-    return Segments(start_time + np.array([0.0, dt[0], dt[0] + dt[1]]), dt, p, v, a)
+    return MotionSegments(start_time + np.array([0.0, dt[0], dt[0] + dt[1]]), dt, p, v, a)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from itertools import accumulate
 from typing import NamedTuple
 
-from core.ports import Cam, DriverError, GearState, Segments, is_queue_finished
+from core.ports import Cam, DriverError, GearState, MotionSegments, is_queue_finished
 from drivers.setpoint_pieces import MotionPiece
 from drivers.setpoint_queue import AxisProperties, JunctionTolerance, SetpointQueue
 
@@ -26,37 +26,37 @@ class SpindlePhaseFilter:
     millisecond, the angle error is below 0.02° at 3000 rpm while the speed oscillates by 2 % at 4 Hz.
     """
 
-    def __init__(self, t: float, turns: float, speed: float) -> None:
+    def __init__(self, time_s: float, revolutions: float, speed_rev_per_s: float) -> None:
         """Start the filter with a reading at time ``t`` in seconds and the known speed in rev/s, signed."""
-        self.time_s = t
-        self.revolutions = turns
-        self.speed_rev_per_s = speed
-        self.acceleration = 0.0  # Acceleration in rev/s².
+        self.time_s = time_s
+        self.revolutions = revolutions
+        self.speed_rev_per_s = speed_rev_per_s
+        self.acceleration_rev_per_s2 = 0.0  # Acceleration in rev/s².
 
-    def add_reading(self, t: float, turns: float) -> None:
+    def add_reading(self, time_s: float, revolutions: float) -> None:
         """Add an encoder reading in revolutions.
 
         A reading that is not newer than the last reading is ignored.
         """
-        dt = t - self.time_s
+        dt = time_s - self.time_s
         if dt <= 0.0:
             return
         self.revolutions, self.speed_rev_per_s, self.time_s = (
-            self.predict(t),
-            self.speed_rev_per_s + self.acceleration * dt,
-            t,
+            self.predict_revolutions(time_s),
+            self.speed_rev_per_s + self.acceleration_rev_per_s2 * dt,
+            time_s,
         )
         keep = math.exp(-_DECAY_RATE * dt)
         lose = 1.0 - keep
-        off = turns - self.revolutions
+        off = revolutions - self.revolutions
         self.revolutions += (1.0 - keep**3) * off
         self.speed_rev_per_s += 1.5 * lose * lose * (1.0 + keep) / dt * off
-        self.acceleration += lose**3 / (dt * dt) * off
+        self.acceleration_rev_per_s2 += lose**3 / (dt * dt) * off
 
-    def predict(self, t: float) -> float:
+    def predict_revolutions(self, time_s: float) -> float:
         """Return the predicted revolutions at time ``t``, which must be shortly after the last reading."""
-        dt = t - self.time_s
-        return self.revolutions + (self.speed_rev_per_s + 0.5 * self.acceleration * dt) * dt
+        dt = time_s - self.time_s
+        return self.revolutions + (self.speed_rev_per_s + 0.5 * self.acceleration_rev_per_s2 * dt) * dt
 
 
 MotionState = tuple[tuple[float, ...], tuple[float, ...]]
@@ -72,8 +72,8 @@ class GearAxes(NamedTuple):
     """Axes of one machine with their limits, in mm/s and mm/s² (degrees/s and degrees/s² for C)."""
 
     names: tuple[str, ...]
-    vmax: tuple[float, ...]
-    amax: tuple[float, ...]
+    max_velocities: tuple[float, ...]
+    max_accelerations: tuple[float, ...]
     commit_time_s: float  # s
     tolerance: JunctionTolerance  # Tolerance of setpoints in time.
 
@@ -170,8 +170,8 @@ class CamGearing:
             )
         queue = self._queue if self.has_moved else self._empty()  # A cam that has not started is discarded.
         queue.commit = self._slides.commit_time_s * self._speed
-        queue.discard_before(self.cam_position_rev)
-        queue.splice(cam.way, self.cam_position_rev)
+        queue.discard_pieces_before(self.cam_position_rev)
+        queue.splice_segments(cam.segments, self.cam_position_rev)
         self._cam, self._queue = cam, queue
         self._walls = SpeedLimits(*self._list_speed_limits(queue.pieces))
 
@@ -205,52 +205,52 @@ class CamGearing:
     @property
     def has_moved(self) -> bool:
         """Return whether an axis has moved since the gear was engaged."""
-        return self._queue.commanded_state_at(self.cam_position_rev)[0] != self._standing
+        return self._queue.get_commanded_state(self.cam_position_rev)[0] != self._standing
 
     @property
     def is_finished(self) -> bool:
         """Return whether the axes have reached the end of the cam."""
-        return self.cam_position_rev >= self._queue.queue_end(-math.inf)
+        return self.cam_position_rev >= self._queue.get_end_time(-math.inf)
 
     @property
     def end_position(self) -> tuple[float, ...]:
         """Return the axis positions at the end of the cam."""
-        return self._queue.commanded_state_at(math.inf)[0]
+        return self._queue.get_commanded_state(math.inf)[0]
 
-    def is_still_at(self, t: float) -> bool:
+    def will_be_at_rest(self, time_s: float) -> bool:
         """Return whether all axes will still be at their rest position at time ``t``.
 
         The prediction assumes the present spindle speed.
         """
-        return self.predict_motion(t)[0] == self._standing
+        return self.predict_motion(time_s)[0] == self._standing
 
     def predict_end_time(self) -> float:
         """Return the time when the axes reach the end of the cam at the present spindle speed.
 
         Return inf if the spindle is at rest.
         """
-        left = self._queue.queue_end(-math.inf) - self.cam_position_rev
+        left = self._queue.get_end_time(-math.inf) - self.cam_position_rev
         return self._t + left / self._speed if self._speed > _STANDSTILL_REV_PER_S else math.inf
 
-    def predict_motion(self, t: float) -> MotionState:
+    def predict_motion(self, time_s: float) -> MotionState:
         """Return the positions and velocities that the last reading predicts for time ``t``."""
-        p, v = self._queue.commanded_state_at(self.cam_position_rev + self._speed * (t - self._t))
+        p, v = self._queue.get_commanded_state(self.cam_position_rev + self._speed * (time_s - self._t))
         return p, tuple([each * self._speed for each in v])
 
-    def play_setpoint(self, t: float, reading_time: float, reading_rev: float) -> AxisMotion:
+    def calculate_setpoint(self, time_s: float, reading_time: float, reading_rev: float) -> AxisMotion:
         """Add an encoder reading and return the positions, velocities and accelerations for time ``t``.
 
         The accelerations are only those that a change of the spindle speed causes.
         """
         self._phase.add_reading(reading_time, reading_rev)
-        if t > self._t:
-            self._follow_spindle(t)
-        p, per_turn = self._queue.commanded_state_at(self.cam_position_rev)
-        gain = self._cam.sign * self._phase.acceleration
+        if time_s > self._t:
+            self._follow_spindle(time_s)
+        p, per_turn = self._queue.get_commanded_state(self.cam_position_rev)
+        gain = self._cam.sign * self._phase.acceleration_rev_per_s2
         return p, tuple([v * self._speed for v in per_turn]), tuple([v * gain for v in per_turn])
 
     def _goal(self, t: float) -> float:
-        return self._cam.sign * (self._phase.predict(t) - self._cam.start_revolutions)
+        return self._cam.sign * (self._phase.predict_revolutions(t) - self._cam.start_revolutions)
 
     def _follow_spindle(self, t: float) -> None:
         """Advance to the spindle position at time ``t``, as far as the limits of the axes permit."""
@@ -275,9 +275,9 @@ class CamGearing:
         The limits are inf if the axes are at rest there. The speed also permits braking for the limits
         ahead, ``reach`` revolutions early, because a setpoint is valid for its whole interval.
         """
-        _, per_turn, accel = self._queue.motion_at(self.cam_position_rev)
+        _, per_turn, accel = self._queue.get_commanded_motion(self.cam_position_rev)
         bend = math.inf
-        for v, a, amax in zip(per_turn, accel, self._slides.amax, strict=True):
+        for v, a, amax in zip(per_turn, accel, self._slides.max_accelerations, strict=True):
             if v:
                 spare = _ACCEL_FACTOR * amax - abs(a) * self._speed**2
                 bend = min(bend, max(spare, _MIN_SPEED_FRACTION * amax) / abs(v))
@@ -289,7 +289,11 @@ class CamGearing:
         for piece in pieces:
             most = math.inf
             ends = zip(
-                piece.velocities, piece.accelerations, self._slides.vmax, self._slides.amax, strict=True
+                piece.velocities,
+                piece.accelerations,
+                self._slides.max_velocities,
+                self._slides.max_accelerations,
+                strict=True,
             )
             for v, a, vmax, amax in ends:
                 fastest = max(abs(v), abs(v + a * piece.duration_s))
@@ -312,16 +316,16 @@ class GearedQueue(SetpointQueue):
     The queue is not thread-safe, so the driver must lock it.
     """
 
-    def __init__(self, slides: GearAxes, rest_positions: Sequence[float]) -> None:
-        super().__init__(slides.names, rest_positions, slides.commit_time_s, slides.tolerance)
-        self._slides = slides
+    def __init__(self, gear_axes: GearAxes, rest_positions: Sequence[float]) -> None:
+        super().__init__(gear_axes.names, rest_positions, gear_axes.commit_time_s, gear_axes.tolerance)
+        self._slides = gear_axes
         self._gearing: CamGearing | None = None
 
     @property
     def is_engaged(self) -> bool:
         """Return whether the axes follow the spindle.
 
-        The driver must then call ``play_setpoint`` for every setpoint.
+        The driver must then call ``calculate_setpoint`` for every setpoint.
         """
         return self._gearing is not None
 
@@ -344,7 +348,7 @@ class GearedQueue(SetpointQueue):
         if gearing is not None and (gearing.has_moved or gearing.is_same_cam(cam)):
             gearing.load_cam(cam)
             return
-        if gearing is None and not is_queue_finished(self.queue_end(now), now):
+        if gearing is None and not is_queue_finished(self.get_end_time(now), now):
             raise DriverError(
                 "the axes must be at rest before they can be synchronized with the spindle",
                 "broken-path",
@@ -352,12 +356,12 @@ class GearedQueue(SetpointQueue):
             )
         self._gearing = CamGearing(cam, phase, self._slides, self._rest)
 
-    def play_setpoint(self, t: float, reading_time: float, reading_rev: float) -> AxisMotion:
+    def calculate_setpoint(self, time_s: float, reading_time: float, reading_rev: float) -> AxisMotion:
         """Return the setpoint for time ``t`` from an encoder reading, while the axes follow the spindle."""
         assert self._gearing is not None
-        motion = self._gearing.play_setpoint(t, reading_time, reading_rev)
+        motion = self._gearing.calculate_setpoint(time_s, reading_time, reading_rev)
         if self._gearing.is_finished:
-            self._leave_gearing(t, self._gearing)
+            self._leave_gearing(time_s, self._gearing)
         return motion
 
     def reset_to(self, position: Sequence[float]) -> None:
@@ -365,49 +369,59 @@ class GearedQueue(SetpointQueue):
         self._gearing = None
         super().reset_to(position)
 
-    def queue_end(self, now: float) -> float:
+    def get_end_time(self, now: float) -> float:
         """Return the end time of the queue in seconds.
 
         If the axes follow the spindle, the end is predicted at the present spindle speed.
         """
         if self._gearing is None:
-            return super().queue_end(now)
+            return super().get_end_time(now)
         then = self._gearing.loaded_cam.following_segments
-        ends = self._gearing.predict_end_time() + (0.0 if then is None else float(then.t[-1] + then.dt[-1]))
+        ends = self._gearing.predict_end_time() + (
+            0.0 if then is None else float(then.start_times_s[-1] + then.durations_s[-1])
+        )
         return max(ends, now + self.commit)  # The predicted end may pass before the end is reached.
 
-    def commanded_state_at(self, t: float) -> MotionState:
+    def get_commanded_state(self, time_s: float) -> MotionState:
         """Return the positions and velocities at time ``t``.
 
         If the axes follow the spindle, the values are predicted at the present spindle speed.
         """
-        return super().commanded_state_at(t) if self._gearing is None else self._gearing.predict_motion(t)
+        return (
+            super().get_commanded_state(time_s)
+            if self._gearing is None
+            else self._gearing.predict_motion(time_s)
+        )
 
-    def splice(self, segments: Segments, now: float) -> None:
+    def splice_segments(self, segments: MotionSegments, now: float) -> None:
         """Splice setpoints that advance with the time.
 
         Raises DriverError if the axes still follow the spindle at the start time of the setpoints.
         """
         gearing = self._gearing
-        if gearing is not None and len(segments.t) and not gearing.is_still_at(float(segments.t[0])):
+        if (
+            gearing is not None
+            and len(segments.start_times_s)
+            and not gearing.will_be_at_rest(float(segments.start_times_s[0]))
+        ):
             raise DriverError(
                 "the axes are synchronized with the spindle; stop the axes before you start a "
                 "time-based move",
                 "broken-path",
                 reason="follows-spindle",
             )
-        super().splice(segments, now)
+        super().splice_segments(segments, now)
         self._gearing = None
 
-    def brake_to_rest(self, now: float, deceleration: Sequence[float]) -> float:
+    def brake_to_rest(self, now: float, decelerations: Sequence[float]) -> float:
         """Stop following the spindle, and brake all axes on a straight line.
 
-        Returns the end time in seconds. ``deceleration`` is in mm/s² (degrees/s² for C).
+        Returns the end time in seconds. ``decelerations`` is in mm/s² (degrees/s² for C).
         """
-        state = self.commanded_state_at(now)
+        state = self.get_commanded_state(now)
         if self._gearing is not None:
             self.reset_to(state[0])
-        return self._brake(now, state, deceleration)
+        return self._brake(now, state, decelerations)
 
     def _leave_gearing(self, t: float, gearing: CamGearing) -> None:
         """Stop following the spindle at the end of the cam.
@@ -417,4 +431,4 @@ class GearedQueue(SetpointQueue):
         self.reset_to(gearing.end_position)
         then = gearing.loaded_cam.following_segments
         if then is not None:
-            super().splice(then._replace(t=then.t + t), t - self.commit)
+            super().splice_segments(then._replace(start_times_s=then.start_times_s + t), t - self.commit)

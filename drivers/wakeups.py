@@ -26,7 +26,7 @@ _CHUNK = 1 << 16
 
 
 class LocalWakeup:
-    """``core.ports.Wakeup`` within one process.
+    """``core.ports.WakeupSignal`` within one process.
 
     The driver supplies ``is_settled``, which returns whether the machine state stays the same until a
     wake-up.
@@ -36,40 +36,40 @@ class LocalWakeup:
         self.is_settled = is_settled
         self._rung = threading.Event()
 
-    def wake(self) -> None:
+    def request_poll(self) -> None:
         """Wake up the control after a command or change; any thread may call this method."""
         self._rung.set()
 
-    def wait(self, seconds: float) -> bool:
+    def wait_for_wakeup(self, seconds: float) -> bool:
         """Wait at most ``seconds`` for a wake-up, and return whether a wake-up occurred."""
         rung = self._rung.wait(seconds)
         self._rung.clear()
         return rung
 
 
-class ProcessBell:
+class ProcessWakeup:
     """Wake-up between two processes through a socket pair.
 
     Both processes and all their threads may send a wake-up.
     """
 
     def __init__(self) -> None:
-        self._near, self.far_socket = socket.socketpair()
+        self._near, self.remote_socket = socket.socketpair()
         self._near.setblocking(False)
-        self.far_socket.setblocking(False)
+        self.remote_socket.setblocking(False)
 
-    def ring(self) -> None:
+    def wake(self) -> None:
         """Wake up the waiting process; the call has no effect if the socket is full or closed."""
         with suppress(OSError):
-            self.far_socket.send(b"!")
+            self.remote_socket.send(b"!")
 
-    def wait(self, seconds: float, files: Sequence[int] = ()) -> bool:
+    def wait(self, seconds: float, file_handles: Sequence[int] = ()) -> bool:
         """Wait at most ``seconds`` for a wake-up or a readable file, and return whether either occurred.
 
         Wake-ups that were sent before the call also count.
         """
         try:
-            if not select.select([self._near.fileno(), *files], [], [], seconds)[0]:
+            if not select.select([self._near.fileno(), *file_handles], [], [], seconds)[0]:
                 return False
         except (OSError, ValueError):  # Closed by another thread.
             return True
@@ -81,7 +81,7 @@ class ProcessBell:
     def close(self) -> None:
         """Close both sockets."""
         self._near.close()
-        self.far_socket.close()
+        self.remote_socket.close()
 
 
 class ActionLock:
@@ -118,9 +118,9 @@ class RealClock:
         """Return the seconds since the start of this clock."""
         return time.monotonic() - self.origin_s
 
-    def sleep_until(self, t: float) -> None:
-        """Wait until time ``t``; return at once if this time has passed."""
-        left = t - self.now()
+    def sleep_until(self, time_s: float) -> None:
+        """Wait until time ``time_s``; return at once if this time has passed."""
+        left = time_s - self.now()
         if left > 0:
             time.sleep(left)
 
@@ -136,15 +136,15 @@ class ManualClock:
         """Return the present time in seconds."""
         return self._t
 
-    def sleep_until(self, t: float) -> None:
-        """Advance the clock to ``t`` at once, but never backward."""
+    def sleep_until(self, time_s: float) -> None:
+        """Advance the clock to ``time_s`` at once, but never backward."""
         with self._lock:
-            self._t = max(self._t, t)
+            self._t = max(self._t, time_s)
 
-    def advance(self, dt: float) -> None:
-        """Advance the clock by ``dt`` seconds."""
+    def advance(self, seconds: float) -> None:
+        """Advance the clock by ``seconds`` seconds."""
         with self._lock:
-            self._t += dt
+            self._t += seconds
 
 
 # --- Openings of lost connections.

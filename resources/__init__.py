@@ -7,24 +7,24 @@ from pathlib import Path
 _HERE = Path(__file__).parent
 
 
-def machine_names() -> frozenset[str]:
+def list_machine_names() -> frozenset[str]:
     """Return the names of the shipped machine files, without their ending."""
     return frozenset(each.stem for each in (_HERE / "machines").glob("*.toml"))
 
 
-def machine_file(name: str) -> str:
+def read_machine_file(name: str) -> str:
     """Return the text of a shipped machine file, such as ``gt75.toml``.
 
     Raises FileNotFoundError if the file does not exist.
     """
-    return machine_path(name).read_text(encoding="utf-8")
+    return get_machine_path(name).read_text(encoding="utf-8")
 
 
-def machine_path(name: str) -> Path:
+def get_machine_path(name: str) -> Path:
     """Return the path of a shipped machine file."""
     return _HERE / "machines" / name
 
 
-def hal_file(name: str) -> Path:
+def get_hal_path(name: str) -> Path:
     """Return the path of a shipped HAL file, such as ``gt75-hal.hal``, which LinuxCNC reads."""
     return _HERE / "machines" / name

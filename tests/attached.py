@@ -12,6 +12,6 @@ A = TypeVar("A", bound=AttachedModel)
 
 def attached(desk: Desk, kind: type[A]) -> A:
     """Fails where the desk was put together without."""
-    found = desk.page_registry.find(kind)
+    found = desk.page_registry.find_model(kind)
     assert found is not None, kind
     return found

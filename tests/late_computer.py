@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 
 NO_VERDICT = "no verdict, this computer was late"
 LOOK, STALL = 0.02, 0.15  # s
@@ -28,7 +28,7 @@ LATE = frozenset(
 # thread that stood still.
 OF_SILENCE = frozenset({"spindle-has-stopped"})
 OF_A_STILL_THREAD = frozenset({"no-power"})
-_CODES = {str(entry.number): code for code, entry in CATALOGUE.items()}
+_CODES = {str(entry.number): code for code, entry in CATALOG.items()}
 _told: list[str] = []  # by the machines of the test that runs
 
 

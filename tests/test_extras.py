@@ -11,7 +11,7 @@ import pytest
 import resources
 from app.cli import main
 from app.compose import optional_features
-from app.compose.machine.driver_modules import all_drivers
+from app.compose.machine.driver_modules import load_all_drivers
 from app.compose.optional_features import (
     FEATURE_NAMES,
     extras,
@@ -127,8 +127,8 @@ def test_a_folder_of_a_feature_with_only_caches_counts_as_absent(monkeypatch: py
     ],
 )
 def test_a_signal_at_a_device_of_an_absent_feature_is_rejected(signal: str, old: str, new: str) -> None:
-    own = [each for each in all_drivers() if each.address_prefix != "pendant."]
-    text = resources.machine_file("gt75.toml")
+    own = [each for each in load_all_drivers() if each.address_prefix != "pendant."]
+    text = resources.read_machine_file("gt75.toml")
     assert old in text
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace(old, new), "own.toml", own)

@@ -99,7 +99,7 @@ class AutomaticPage(Page):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Lay out all parts in the new display unit after the page size changes."""
-        listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.u)
+        listing, comment, path = divide_work_area(Rect(0, 0, self.width(), self.height()), self.theme.unit_px)
         for part, rect in (
             (self.program_listing, listing),
             (self.comment_line, comment),
@@ -156,7 +156,7 @@ class AutomaticPage(Page):
         """Return whether the animation of the part is playing."""
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys for choosing a program, the editor and SEARCHTO that are disabled now."""
         snapshot, loaded = self.desk.read_snapshot(), self.desk.program_loader.loaded
         asking = self.file_prompt.isVisible()
@@ -168,14 +168,14 @@ class AutomaticPage(Page):
         }
         return frozenset(key for key, why in found.items() if why)
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of this page."""
         looked_at = self._visible_view
         return {
             "F2": self.show_file_prompt,
             "F3": self._open_editor,
             "F4": self.desk.select_next_readout,
-            "F5": looked_at.fit_all,
+            "F5": looked_at.fit_all_panes,
             "F6": partial(self.host.open_page, page_table.SEARCHTO_PAGE),
             "F8": partial(self.host.open_page, page_table.TOOLS),
             "F9": partial(self.host.open_page, page_table.SECCMP),
@@ -210,7 +210,7 @@ class AutomaticPage(Page):
         """Open the stock settings of the displayed part."""
         from app.part.part_model import PartModel
 
-        sheet = self.desk.page_registry.find(PartModel)
+        sheet = self.desk.page_registry.find_model(PartModel)
         if sheet is not None and self.host.open_page(page_table.PART):
             sheet.show_stock()
 
@@ -221,7 +221,7 @@ class AutomaticPage(Page):
         wanted = self.file_prompt.wanted_name if self.file_prompt.isVisible() else ""
         if self.file_prompt.isVisible() and not wanted:
             self.desk.say(NO_NAME_TYPED)
-        elif (editor := self.desk.page_registry.find(EditorModel)) is not None:
+        elif (editor := self.desk.page_registry.find_model(EditorModel)) is not None:
             editor.pending_name = wanted
             self.host.open_page(page_table.EDITOR)
 

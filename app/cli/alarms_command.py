@@ -29,11 +29,11 @@ def add_parser(subparsers: SubParsers) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the whole alarm catalog, or only the entries with the given numbers."""
-    from core.alarms import CATALOGUE
+    from core.alarms import CATALOG
 
-    chosen = sorted(CATALOGUE.items(), key=lambda each: each[1].number)
+    chosen = sorted(CATALOG.items(), key=lambda each: each[1].number)
     if args.number:
-        known = {entry.number for entry in CATALOGUE.values()}
+        known = {entry.number for entry in CATALOG.values()}
         missing = [str(number) for number in args.number if number not in known]
         if missing:
             raise CommandError(
@@ -52,12 +52,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _object(code: AlarmCode, entry: AlarmEntry) -> dict[str, object]:
-    from core.alarms.alarms_page import alarm_kind
+    from core.alarms.alarms_page import get_alarm_kind
 
     return {
         "number": entry.number,
         "code": code,
-        "kind": alarm_kind(entry.reaction),
+        "kind": get_alarm_kind(entry.reaction),
         "text": entry.text.upper(),
         "causes": list(entry.causes),
         "remedy": entry.remedy,
@@ -65,8 +65,8 @@ def _object(code: AlarmCode, entry: AlarmEntry) -> dict[str, object]:
 
 
 def _text(entry: AlarmEntry) -> str:
-    from core.alarms.alarms_page import alarm_kind
+    from core.alarms.alarms_page import get_alarm_kind
 
     causes = "".join(f"     why: {cause}\n" for cause in entry.causes)
-    head = f"{entry.number}  {entry.text.upper()}  ({alarm_kind(entry.reaction)})"
+    head = f"{entry.number}  {entry.text.upper()}  ({get_alarm_kind(entry.reaction)})"
     return f"{head}\n{causes}      do: {entry.remedy}\n"

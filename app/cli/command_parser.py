@@ -15,7 +15,7 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from app.desk.command_errors import EXIT_USAGE, CommandError
-from core.message import Message, find_nearest
+from core.message import Message, find_similar_word
 
 # The texts are English. For each of them, argparse would search the system for catalogs of translations.
 argparse._ = str  # type: ignore[attr-defined]
@@ -52,7 +52,7 @@ class _StoreOnce(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
-class Subcommands(argparse._SubParsersAction):  # type: ignore[type-arg]
+class SubcommandsAction(argparse._SubParsersAction):  # type: ignore[type-arg]
     """Argparse action for subcommands that takes missing help texts by name from ``help_texts``."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -103,7 +103,7 @@ class CommandParser(argparse.ArgumentParser):
                 )
             if isinstance(action, argparse._SubParsersAction) and os.path.splitext(str(value))[1]:
                 self.error(Message("{value}: neither a file nor a command has this name", value=value))
-            near = find_nearest(str(value), map(str, action.choices))
+            near = find_similar_word(str(value), map(str, action.choices))
             if near:
                 raise argparse.ArgumentError(
                     action,
@@ -149,7 +149,7 @@ class CommandParser(argparse.ArgumentParser):
         options = self._all_options()
         if name in options:
             self.error(elsewhere_message)
-        near = find_nearest(name, options)
+        near = find_similar_word(name, options)
         self.error(
             Message(
                 "unrecognized arguments: {words}{nearest}",
@@ -199,7 +199,7 @@ def add_screen_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", metavar="FILE", dest=f"before_{name}", help=texts[name])
 
 
-def is_for_screen(argv: Sequence[str]) -> bool:
+def has_only_screen_options(argv: Sequence[str]) -> bool:
     """Return whether the arguments consist only of valid screen options, without a command."""
     words = iter(argv)
     for word in words:
@@ -212,7 +212,7 @@ def is_for_screen(argv: Sequence[str]) -> bool:
     return True
 
 
-def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
+def insert_program_option(argv: Sequence[str], commands: Collection[str]) -> Sequence[str]:
     """Return the arguments with ``--program`` inserted ahead of a program file.
 
     The option is inserted if the first word is a file and not a command. ``commands`` are the names of all
@@ -229,7 +229,7 @@ def with_program_option(argv: Sequence[str], commands: Collection[str]) -> Seque
     return argv
 
 
-def with_demo_first(argv: Sequence[str]) -> Sequence[str]:
+def move_demo_first(argv: Sequence[str]) -> Sequence[str]:
     """Return the arguments with ``--demo`` moved ahead of the command.
 
     The screen's parser reads the option at this position.

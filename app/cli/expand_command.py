@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     path = Path(args.file)
     around = read_context(args)
     source = read_source(path, args)
-    timeline = Timeline.from_program(source, around.setup, around.machine, ideal=args.ideal)
+    timeline = Timeline.from_program(source, around.setup, around.machine, is_ideal=args.ideal)
     output_module = importlib.import_module(f"app.cli.figures.{source.dialect}_output")
     if not args.json:
         sys.stdout.write(output_module.TABLE_HEAD)

@@ -187,7 +187,8 @@ def check(file: str | None, *, json_output: bool) -> int:
         machine = load_named_machine(file)
     except MachineFileError as error:
         errors = [
-            {"path": each.path, "value": each.value, "expected": each.expected} for each in error.findings
+            {"path": each.path, "value": each.value, "expected": each.expected_value}
+            for each in error.findings
         ]
         _report(json_output, {"file": error.source, "errors": errors, "ports": []})
         sys.stderr.write("".join(f"turndesk: {error.source}: {finding}\n" for finding in error.findings))
@@ -367,14 +368,14 @@ def simulate_devices(file: str) -> int:
 
     Raises CommandError if the devices cannot be simulated.
     """
-    from app.compose.backends.backend_entry import find_backend, list_playable_backends
+    from app.compose.backends.backend_entry import find_backend, list_simulatable_backends
     from app.compose.machine.machine_setup import read_machine
     from core.ports import DriverError
 
     machine = read_machine(file)
-    play_it = find_backend(machine).play_devices
+    play_it = find_backend(machine).simulate_devices
     if play_it is None:
-        there = " and ".join(list_playable_backends())
+        there = " and ".join(list_simulatable_backends())
         why = Message(
             "machine.backend is {backend}, which does not have a simulator; simulators are "
             "available for {present}",

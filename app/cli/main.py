@@ -17,15 +17,20 @@ from collections.abc import Mapping, Sequence
 from types import ModuleType
 
 from app import VERSION
-from app.cli.bug_report.crash_report import catch_interrupts, raise_interrupt, report_crash, report_thread
+from app.cli.bug_report.crash_report import (
+    catch_interrupts,
+    raise_interrupt,
+    report_crash,
+    report_thread_exception,
+)
 from app.cli.command_parser import (
     CommandParser,
-    Subcommands,
+    SubcommandsAction,
     add_screen_options,
     assign_screen_options,
-    is_for_screen,
-    with_demo_first,
-    with_program_option,
+    has_only_screen_options,
+    insert_program_option,
+    move_demo_first,
 )
 from app.compose.optional_features import Subcommand, extras, insert_after, map_command_modules
 from app.desk import command_errors
@@ -100,9 +105,13 @@ def build_parser(
     )
     add_screen_options(parser)
     subparsers = parser.add_subparsers(
-        title="commands", metavar="COMMAND", dest="command", parser_class=CommandParser, action=Subcommands
+        title="commands",
+        metavar="COMMAND",
+        dest="command",
+        parser_class=CommandParser,
+        action=SubcommandsAction,
     )
-    assert isinstance(subparsers, Subcommands)
+    assert isinstance(subparsers, SubcommandsAction)
     for name in list_commands() if commands is None else commands:
         if without_options:
             subparsers.add_parser(name, help=_help_of(name))
@@ -123,10 +132,10 @@ def _commands_for(argv: Sequence[str]) -> Sequence[str]:
 
 def _arguments(argv: Sequence[str]) -> Sequence[str]:
     """Return the arguments with ``--demo`` and a program file in the places where the parser expects them."""
-    argv = with_demo_first(argv)
-    if is_for_screen(argv) or (argv and argv[0] in CORE_COMMANDS):
+    argv = move_demo_first(argv)
+    if has_only_screen_options(argv) or (argv and argv[0] in CORE_COMMANDS):
         return argv
-    return with_program_option(argv, list_commands())
+    return insert_program_option(argv, list_commands())
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -139,7 +148,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     gc.set_threshold(200_000)  # imports alone would cause a hundred useless collections
     try:
         reset_standard_input()
-        bare = is_for_screen(argv)
+        bare = has_only_screen_options(argv)
         args = build_parser(None if bare else _commands_for(argv), without_options=bare).parse_args(argv)
         from app.desk.data_folder import check_data_folder
 
@@ -251,9 +260,9 @@ def _screen(args: argparse.Namespace) -> int:
             "no-screen",
         )
     if args.program and not (args.machine or args.offsets or args.kiosk):
-        from app.screen.window.running_screen import hand_over
+        from app.screen.window.running_screen import hand_over_program
 
-        if hand_over(args.program):
+        if hand_over_program(args.program):
             sys.stdout.write(f"{args.program}: opened in the TurnDesk that is already running\n")
             return EXIT_OK
     from app.screen.screen_startup import run_screen
@@ -281,7 +290,7 @@ def run_console() -> int:
     """Run the installed ``turndesk`` command, and report crashes instead of printing tracebacks."""
     _make_streams_tolerant()
     sys.excepthook = report_crash
-    threading.excepthook = report_thread
+    threading.excepthook = report_thread_exception
     # numpy would start a thread pool for linear algebra that is not used here, which takes a fifth of a short
     # command's time.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

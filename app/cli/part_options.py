@@ -53,22 +53,22 @@ def add_part_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def read_part_setting(args: argparse.Namespace, circumstances: CommandContext) -> PartSettings:
+def read_part_settings(args: argparse.Namespace, context: CommandContext) -> PartSettings:
     """Return the part settings from the options. Raises CommandError if an option is invalid."""
     from app.compose.part_data import read_known_part
 
-    stick_out = _read_stickout(args, circumstances.machine)
-    setting = read_known_part(circumstances.machine, circumstances.setup.tools, _read_shapes(args), stick_out)
+    stick_out = _read_stickout(args, context.machine)
+    setting = read_known_part(context.machine, context.setup.tools, _read_shapes(args), stick_out)
     if args.stock is None:
         if args.keep_stock:
             raise CommandError(
                 "--keep-stock needs --stock, which specifies the stock to save", "nothing-to-keep"
             )
         return setting
-    return replace(setting, stock=_said(args.stock, args, circumstances, setting))
+    return replace(setting, stock=_said(args.stock, args, context, setting))
 
 
-def apply_stored_stock(setting: PartSettings, program: str, args: argparse.Namespace) -> PartSettings:
+def apply_stored_stock(part_settings: PartSettings, program: str, args: argparse.Namespace) -> PartSettings:
     """Return the part settings with the stored stock, unless --stock specifies a stock.
 
     With --keep-stock, the specified stock is also saved. Raises CommandError if the stock is invalid or
@@ -90,11 +90,11 @@ def apply_stored_stock(setting: PartSettings, program: str, args: argparse.Names
         with open_store() as store:
             get_change_author(store, args, ProtectedChange.STOCK)
         save_stock(program, make_stock_absolute(args.stock), _read_stickout(args, around.machine))
-    return apply_stored_part(setting, program, read_stored_part(program), args)
+    return apply_stored_part(part_settings, program, read_stored_part(program), args)
 
 
 def apply_stored_part(
-    setting: PartSettings, program: str, stored: StoredPart, args: argparse.Namespace
+    part_settings: PartSettings, program: str, stored_part: StoredPart, args: argparse.Namespace
 ) -> PartSettings:
     """Return the part settings, completed with stored values that no option specifies.
 
@@ -103,11 +103,13 @@ def apply_stored_part(
     from app.compose.part_data import apply_stored_clamping
 
     around = read_context(args)
-    setting = apply_stored_clamping(setting, around.machine, stored, is_explicit=args.stick_out is not None)
-    if args.stock is not None or not stored.stock:
-        return setting
+    part_settings = apply_stored_clamping(
+        part_settings, around.machine, stored_part, is_explicit=args.stick_out is not None
+    )
+    if args.stock is not None or not stored_part.stock:
+        return part_settings
     try:
-        return replace(setting, stock=_said(stored.stock, args, around, setting))
+        return replace(part_settings, stock=_said(stored_part.stock, args, around, part_settings))
     except CommandError as error:
         remedy = "specify the stock again with --stock and --keep-stock"
         raise CommandError(

@@ -62,28 +62,29 @@ class CommandContext:
 def read_context(args: argparse.Namespace) -> CommandContext:
     """Return the machine and setup that the options specify. Raises CommandError if an option is invalid."""
     from app.compose.machine.machine_setup import read_machine
-    from app.compose.stored_offsets import create_setup_with, make_offsets_reader
+    from app.compose.stored_offsets import create_setup_with_offsets, make_offsets_reader
 
     machine = read_machine(args.machine)
     inputs = read_input_states(args.inputs, machine.inputs)
-    setup = create_setup_with(
+    setup = create_setup_with_offsets(
         machine,
         make_offsets_reader(args.offsets)(),
-        inputs=inputs,
+        input_states=inputs,
         block_delete=args.block_delete,
-        strict=args.strict,
+        is_strict=args.strict,
     )
     return CommandContext(machine, setup)
 
 
-def read_input_states(path: str | None, known: Collection[str] = ()) -> dict[str, bool]:
+def read_input_states(path: str | None, known_names: Collection[str] = ()) -> dict[str, bool]:
     """Return the input states from the file ``path``, or {} if ``path`` is None.
 
-    If ``known`` is not empty, only these input names are valid. Raises CommandError if the file is invalid.
+    If ``known_names`` is not empty, only these input names are valid. Raises CommandError if the file is
+    invalid.
     """
     if path is None:
         return {}
-    return read_inputs_file(Path(path), known)
+    return read_inputs_file(Path(path), known_names)
 
 
 def read_source(path: Path, args: argparse.Namespace) -> ProgramSource:
@@ -130,8 +131,8 @@ def parse_output_path(text: str) -> str | None:
     return None if text == STDIN_ARGUMENT else text
 
 
-def read_inputs_file(path: Path, known: Collection[str] = ()) -> dict[str, bool]:
-    """Return input states by name. If ``known`` is not empty, other names are errors.
+def read_inputs_file(path: Path, known_names: Collection[str] = ()) -> dict[str, bool]:
+    """Return input states by name. If ``known_names`` is not empty, other names are errors.
 
     The file has a table [inputs] with ``10 = true`` for PLC input 10 and ``"TB2-5" = false`` for a
     terminal. M95 reads the input that the control calls 7, which is terminal TB2-9. The state of ``7`` is
@@ -152,8 +153,10 @@ def read_inputs_file(path: Path, known: Collection[str] = ()) -> dict[str, bool]
         if not isinstance(state, bool)
     ]
     mistakes += [
-        make_unknown_key_error(name, known, "inputs") for name in table if known and name not in known
+        make_unknown_key_error(name, known_names, "inputs")
+        for name in table
+        if known_names and name not in known_names
     ]
     raise_mistakes(path, mistakes)
-    also = "7" in table and (not known or "TB2-9" in known)
+    also = "7" in table and (not known_names or "TB2-9" in known_names)
     return {"TB2-9": table["7"], **table} if also else dict(table)

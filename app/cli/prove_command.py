@@ -23,7 +23,7 @@ MAX_JOBS = 256
 
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
-    from app.cli.proofs.proof_job import FittingJobs, OtherOffsets, ProofJob
+    from app.cli.proofs.proof_job import ComparisonOffsets, JobsByMachine, ProofJob
     from app.cli.proofs.proof_work import ProofFindings
     from app.cli.proofs.report_file import ReportFile
     from core.interpreter.shared.job_setup import Setup
@@ -91,10 +91,10 @@ def _parse_count(word: str) -> int:
 def run(args: argparse.Namespace) -> int:
     """Prove each file. Return 1 if a program has errors, or 2 if a program cannot be read."""
     many = _uses_workers(args)
-    from app.cli.proofs.proof_job import FittingJobs
+    from app.cli.proofs.proof_job import JobsByMachine
 
-    jobs = FittingJobs(args, _create_job)
-    jobs.get_job_for("")  # reports errors in the options before anything is proved
+    jobs = JobsByMachine(args, _create_job)
+    jobs.get_job("")  # reports errors in the options before anything is proved
     if many:
         from app.cli.proofs.folder_proofs import prove_programs
 
@@ -139,11 +139,11 @@ def _uses_workers(args: argparse.Namespace) -> bool:
 
 def _create_job(args: argparse.Namespace) -> ProofJob:
     """Return the common job from the options. Raises CommandError if an option is invalid."""
-    from app.cli.part_options import read_part_setting
+    from app.cli.part_options import read_part_settings
     from app.cli.proofs.proof_job import ProofJob
 
     around = read_context(args)
-    setting = read_part_setting(args, around)
+    setting = read_part_settings(args, around)
     reported, other = args.report is not None, _other_offsets(args, around.setup)
     if other is not None:
         from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM
@@ -152,22 +152,22 @@ def _create_job(args: argparse.Namespace) -> ProofJob:
     return ProofJob(around.machine, around.setup, setting, args.ideal, args.optional_stop, reported, other)
 
 
-def _other_offsets(args: argparse.Namespace, setup: Setup) -> OtherOffsets | None:
+def _other_offsets(args: argparse.Namespace, setup: Setup) -> ComparisonOffsets | None:
     """Return the offsets of --compare, or None without the option.
 
     Raises CommandError that lists every error.
     """
     if args.compare is None:
         return None
-    from app.cli.proofs.proof_job import OtherOffsets
+    from app.cli.proofs.proof_job import ComparisonOffsets
     from app.compose.stored_offsets import read_offsets
 
     tools, secondary, zero, *_ = read_offsets(Path(args.compare))
-    return OtherOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
+    return ComparisonOffsets(args.compare, replace(setup, tools=tools, secondary=secondary, zero=zero))
 
 
 def _prove_and_print(
-    path: Path, jobs: FittingJobs, args: argparse.Namespace, report: ReportFile | None
+    path: Path, jobs: JobsByMachine, args: argparse.Namespace, report: ReportFile | None
 ) -> int:
     """Prove one file and return its exit status.
 
@@ -182,8 +182,8 @@ def _prove_and_print(
         name = jobs.select_machine_name(source)
         if name:
             sys.stderr.write(describe_machine_choice(path.name, name))
-        job = jobs.get_job_for(name)
-        job = replace(job, part_setting=apply_stored_stock(job.part_setting, source.name, args))
+        job = jobs.get_job(name)
+        job = replace(job, part_settings=apply_stored_stock(job.part_settings, source.name, args))
     except CommandError as error:
         if report is not None:
             report.add_proof(path, Proof({}, failure_reason=str(error)))
@@ -213,7 +213,7 @@ def _prove(path: Path, source: ProgramSource, job: ProofJob, args: argparse.Name
         if compare is not None:
             from app.cli.figures.comparison_output import format_comparison
 
-            sys.stdout.write(format_comparison(compare, metric=report.is_metric, dialect=report.dialect))
+            sys.stdout.write(format_comparison(compare, is_metric=report.is_metric, dialect=report.dialect))
     return found
 
 

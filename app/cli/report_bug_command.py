@@ -14,7 +14,7 @@ from core.message import Message
 if TYPE_CHECKING:
     from app.cli.program_options import SubParsers
 
-OUT = "turndesk-report.txt"
+DEFAULT_FILE_NAME = "turndesk-report.txt"
 
 
 def add_parser(subparsers: SubParsers) -> None:
@@ -24,7 +24,12 @@ def add_parser(subparsers: SubParsers) -> None:
         "file", nargs="?", metavar="FILE", help="program to include (default: the one that was started last)"
     )
     parser.add_argument("--machine", metavar="FILE", help="machine file to include (default: the one in use)")
-    parser.add_argument("--out", metavar="FILE", default=OUT, help=f"file to write (default: {OUT})")
+    parser.add_argument(
+        "--out",
+        metavar="FILE",
+        default=DEFAULT_FILE_NAME,
+        help=f"file to write (default: {DEFAULT_FILE_NAME})",
+    )
     parser.add_argument("--yes", action="store_true", help="write the file without asking")
 
 
@@ -33,14 +38,14 @@ def run(args: argparse.Namespace) -> int:
 
     Raises CommandError if the file exists or cannot be written.
     """
-    from app.cli.bug_report.bug_report import bug_report
+    from app.cli.bug_report.bug_report import generate_bug_report
 
     target = Path(args.out)
     if target.exists():
         raise CommandError(
             Message("{file} exists already; name another file with --out", file=target), "file-exists"
         )
-    text = bug_report(args.machine, Path(args.file) if args.file else None)
+    text = generate_bug_report(args.machine, Path(args.file) if args.file else None)
     sys.stdout.write(text)
     if not args.yes and not _is_confirmed(target):
         sys.stdout.write("nothing was written\n")

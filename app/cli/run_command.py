@@ -106,10 +106,10 @@ def run(args: argparse.Namespace) -> int:
 
 def _prove_program(args: argparse.Namespace, circumstances: CommandContext, job: Job) -> ProofReport:
     """Return the proof of the program and its part."""
-    from app.cli.part_options import apply_stored_stock, read_part_setting
+    from app.cli.part_options import apply_stored_stock, read_part_settings
     from core.proving.part_proof import prove_with_part
 
-    setting = apply_stored_stock(read_part_setting(args, circumstances), job.source.name, args)
+    setting = apply_stored_stock(read_part_settings(args, circumstances), job.source.name, args)
     report, _part = prove_with_part(job.shared_program, circumstances.setup, circumstances.machine, setting)
     return report
 
@@ -128,12 +128,12 @@ def _run(args: argparse.Namespace, around: CommandContext, job: Job, report: Pro
         ProgressBar(f"running {path.name}", report.times.cycle_s) as progress,
         run_headless(
             around.machine,
-            inputs=inputs,
-            real_time=args.realtime,
+            input_states=inputs,
+            is_real_time=args.realtime,
             discard_interrupted=args.anew,
-            log=log,
+            event_log=log,
             print_line=lambda text: _say(path, text),
-            progress=progress.report_progress,
+            report_progress=progress.report_progress,
             duration_s=report.times.cycle_s + _EXTRA_RECORD_S,
         ) as play,
     ):

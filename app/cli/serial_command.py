@@ -196,7 +196,7 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineMod
     from app.compose.program_proving import create_loading_steps
     from app.compose.program_transfer import SerialLines, create_proof_check
     from app.compose.stored_offsets import make_offsets_reader
-    from core.language.source import Dialect, default_extension
+    from core.language.source import Dialect, get_default_extension
 
     if args.out and Path(args.out).exists():  # checked before waiting, because the program could not be saved
         sys.stderr.write(
@@ -204,7 +204,7 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineMod
         )
         return EXIT_ERRORS
     who = get_permitted_user(open_store, args, ProtectedChange.PROGRAMS)  # checked before waiting
-    ending = default_extension(Dialect(machine.language))
+    ending = get_default_extension(Dialect(machine.mdi_language))
     lines = SerialLines(
         create_proof_check(create_loading_steps(machine, make_offsets_reader(None), draw_pictures=False)),
         ending,
@@ -220,12 +220,14 @@ def _receive(args: argparse.Namespace, machine: Machine, settings: SerialLineMod
 def _store(args: argparse.Namespace, received: ReceivedProgram, who: str) -> int:
     from app.desk.data_folder import find_data_folder
     from app.programs.atomic_files import FileOperationError
-    from app.transfer.line_transfer import find_unused_name, store_received
+    from app.transfer.line_transfer import find_unused_name, store_received_program
 
     out = Path(args.out) if args.out else None
     folder = out.parent if out else find_data_folder() / "programs"
     try:
-        path = store_received(received, folder, out.name if out else find_unused_name(folder, received.name))
+        path = store_received_program(
+            received, folder, out.name if out else find_unused_name(folder, received.name)
+        )
     except FileOperationError as error:
         sys.stderr.write(f"turndesk: {error}\n")
         return EXIT_ERRORS
@@ -293,8 +295,8 @@ def run_transfer(transfer: SerialLineTransfer[T], description: str) -> T | None:
         future, printed_text = pool.submit(transfer.run_transfer), ""
         try:
             while not wait([future], _POLL_INTERVAL_S).done:
-                progress.total = transfer.progress.total_bytes
-                progress.report_progress(transfer.progress.done_bytes)
+                progress.total = transfer.progress.total_byte_count
+                progress.report_progress(transfer.progress.done_byte_count)
                 printed_text = _tell(printed_text, transfer.progress)
             return future.result()
         except (DriverError, FileOperationError) as error:

@@ -110,8 +110,8 @@ class _Table:
 
         names = ",".join(axis.name.lower() for axis in machine.axes)
         self.header = f"t,{names},spindle_deg,line\n"
-        self._scales = [1.0 if axis.rotary or not inch else MM_PER_INCH for axis in machine.axes]
-        places = (5 if axis.rotary else 7 if inch else 6 for axis in machine.axes)
+        self._scales = [1.0 if axis.is_rotary or not inch else MM_PER_INCH for axis in machine.axes]
+        places = (5 if axis.is_rotary else 7 if inch else 6 for axis in machine.axes)
         self._row = ",".join(("%.6f", *(f"%.{count}f" for count in places), "%.4f", "%d")) + "\n"
 
     def format_lines(self, rows: SetpointRows) -> str:

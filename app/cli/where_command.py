@@ -44,9 +44,9 @@ def run(args: argparse.Namespace) -> int:
 def find_places(machine_file: str | None) -> Mapping[str, str]:
     """Return the path of each file and folder by name. Raises CommandError if the machine file is invalid."""
     from app import __file__ as package
-    from app.compose.machine.machine_files import machine_path
+    from app.compose.machine.machine_files import find_machine_path
     from app.compose.machine.machine_setup import read_machine
-    from app.desk.data_folder import BACKUPS_FOLDER, RECORDS_FOLDER, find_data_folder
+    from app.desk.data_folder import BACKUPS_FOLDER_NAME, RECORDS_FOLDER_NAME, find_data_folder
     from core.store.store_file import STORE_FILE_NAME
 
     read_machine(machine_file)
@@ -56,8 +56,8 @@ def find_places(machine_file: str | None) -> Mapping[str, str]:
         "store": str(data / STORE_FILE_NAME),
         "programs": str(data / "programs"),
         "logs": str(data / "logs"),
-        "backups": str(data / BACKUPS_FOLDER),
-        "scope_records": str(data / RECORDS_FOLDER),
-        "machine_file": str(machine_path(machine_file)),
+        "backups": str(data / BACKUPS_FOLDER_NAME),
+        "scope_records": str(data / RECORDS_FOLDER_NAME),
+        "machine_file": str(find_machine_path(machine_file)),
         "code": str(package),
     }

@@ -28,7 +28,7 @@ from core.store.store_export import import_programs_and_offsets
 from core.store.store_file import has_store
 from core.store.store_rows import FieldValue, OffsetKind
 
-DEMO_FOLDER = "demo"  # subfolder of the data folder
+DEMO_FOLDER_NAME = "demo"  # subfolder of the data folder
 _CHANGE_REASON = "offsets of the sample programs"
 
 
@@ -47,7 +47,7 @@ def open_demo(machine_file: str | None) -> Path:
             ),
             "real-machine",
         )
-    folder = find_data_folder() / DEMO_FOLDER
+    folder = find_data_folder() / DEMO_FOLDER_NAME
     if not has_store(folder):
         _seed(folder)
     os.environ[HOME_VARIABLE] = str(folder)
@@ -62,7 +62,7 @@ def find_demo_program(machine_file: str | None) -> str:
 
     The result is the program that was loaded last if the machine uses its language, and otherwise a sample.
     """
-    dialect = Dialect(read_machine(machine_file).language)
+    dialect = Dialect(read_machine(machine_file).mdi_language)
     last = _last_program()
     if last is not None and guess_dialect(last.name) is dialect:
         return str(last)

@@ -33,7 +33,7 @@ from app.desk.stored_part import load_stored_part
 from app.desk.translation import tr
 from core.executor.commands import ReportInterruptedJob
 from core.executor.executor import Executor
-from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.scope_recorder import ScopeRecorder, list_recorded_signals
 from core.executor.snapshot import InterruptedJob, LogEvent
 from core.interpreter.shared.modal_state import ModalState
 from core.machine.machine_model import Machine
@@ -45,35 +45,36 @@ from core.store.store_rows import EventRow
 
 def create_desk_and_executor(
     machine_file: str | None,
-    offsets: Callable[[], Offsets],
+    read_offsets: Callable[[], Offsets],
     clock: Clock,
     journal: Journal | None = None,
-    records: Path | None = None,
+    records_folder: Path | None = None,
 ) -> tuple[Desk, Executor]:
     """Return the screen model and the executor, which is not yet ticked. Events are written to ``journal``.
 
-    Scope records are saved in the folder ``records``. None stores the records only in memory.
+    Scope records are saved in the folder ``records_folder``. None stores the records only in memory.
     """
     machine = read_machine(machine_file)
     if journal is not None:
         store_machine(machine_file, journal)
-    return create_desk_parts(machine, offsets, clock, journal, records)[:2]
+    return create_desk_parts(machine, read_offsets, clock, journal, records_folder)[:2]
 
 
 def create_desk_parts(
     machine: Machine,
-    offsets: Callable[[], Offsets],
+    read_offsets: Callable[[], Offsets],
     clock: Clock,
     journal: Journal | None,
-    records: Path | None,
-) -> tuple[Desk, Executor, Recorder]:
+    records_folder: Path | None,
+) -> tuple[Desk, Executor, ScopeRecorder]:
     """Create the operator screen's model, its executor and its recorder, all in this process.
 
-    ``records`` is the folder of the scope records, or None if no records are written to files. Without a
-    ``journal``, interruptions are not saved. Raises CommandError if the machine cannot be connected.
+    ``records_folder`` is the folder of the scope records, or None if no records are written to files.
+    Without a ``journal``, interruptions are not saved. Raises CommandError if the machine cannot be
+    connected.
     """
     connected = _connected(machine, clock)
-    recorder = Recorder(list_recorded_signals(machine, connected.ports), records)
+    recorder = ScopeRecorder(list_recorded_signals(machine, connected.ports), records_folder)
     events = EventDistributor(clock, journal, recorder.assign_record_name)
     executor = Executor(
         machine,
@@ -92,18 +93,21 @@ def create_desk_parts(
         connected.ports.warnings,
         recorder,
     )
-    desk = create_desk(machine, control, events, offsets)
+    desk = create_desk(machine, control, events, read_offsets)
     desk.closing_sequence.close_drivers = connected.close
     return desk, executor, recorder
 
 
 def create_desk(
-    machine: Machine, control: DeskControl, events: EventDistributor, offsets: Callable[[], Offsets]
+    machine: Machine,
+    control: DeskControl,
+    event_distributor: EventDistributor,
+    read_offsets: Callable[[], Offsets],
 ) -> Desk:
     """Return the screen model with all its pages, and report the warnings from startup."""
-    journal = events.journal
-    desk = _create_desk_model(machine, control, events, offsets)
-    events.desk = desk
+    journal = event_distributor.journal
+    desk = _create_desk_model(machine, control, event_distributor, read_offsets)
+    event_distributor.desk = desk
     if journal is not None:
         desk.alarm_log.add_stored(_list_stops(journal))
         journal.on_late_open(partial(_handle_late_store, desk, journal))
@@ -111,12 +115,12 @@ def create_desk(
         *control.warnings,
         *(Message("machine file: {item}", item=each) for each in desk.changes.changes),
     ):
-        events.report_event("warning", warning)
+        event_distributor.report_event("warning", warning)
     if journal is not None:
-        _report_damage(desk, journal, partial(events.report_event, "warning"))
+        _report_damage(desk, journal, partial(event_distributor.report_event, "warning"))
     recordings = control.recordings
     if recordings is not None and recordings.storage_error:
-        events.report_event("warning", recordings.storage_error)
+        event_distributor.report_event("warning", recordings.storage_error)
     if any(each.startswith(NO_PRIORITY_TEXT) for each in control.warnings):
         desk.say(tr("NO REAL-TIME PRIORITY: AXES STOP IF THE COMPUTER IS 10 MS LATE"))
     if desk.changes.barred:
@@ -150,9 +154,9 @@ class EventDistributor:
         self,
         clock: Clock,
         journal: Journal | None,
-        record: Callable[[LogEvent], LogEvent] = lambda event: event,
+        record_event: Callable[[LogEvent], LogEvent] = lambda event: event,
     ) -> None:
-        self.journal, self._record = journal, record
+        self.journal, self._record = journal, record_event
         self.desk: Desk | None = None
         self._clock = clock
 
@@ -192,7 +196,7 @@ def _create_desk_model(
         control, post=guard_commands(control.post, changed, partial(events.report_event, "refused"))
     )
     steps = create_loading_steps(
-        machine, offsets, journal, last_modal_state=left, read_shapes=try_read_shapes, read_stored_part=kept
+        machine, offsets, journal, read_modal_state=left, read_shapes=try_read_shapes, read_stored_part=kept
     )
     desk = Desk(
         guarded_control,
@@ -210,8 +214,8 @@ def _create_desk_model(
         persistence=keep,
         journal=journal,
         program_folder=get_program_folder(),
-        loading_steps=create_loading_steps(machine, offsets, last_modal_state=left),
-        proof_steps=create_loading_steps(machine, offsets, last_modal_state=left, draw_pictures=False),
+        loading_steps=create_loading_steps(machine, offsets, read_modal_state=left),
+        proof_steps=create_loading_steps(machine, offsets, read_modal_state=left, draw_pictures=False),
         read_offsets=offsets,
         read_stored_part=kept,
         draw_thumbnail=create_thumbnail_drawer(machine, try_read_shapes, kept),
@@ -226,7 +230,7 @@ def _displayed_machine(machine: Machine) -> DeskMachine:
         name=Message("{machine} · {machine2}", machine=machine.name, machine2=_describe_drives(machine)),
         machine=machine,
         is_two_hand=machine.interlocks.two_hand_start,
-        has_c_axis=machine.c_enabled,
+        has_c_axis=machine.is_c_enabled,
         allows_one_hand=is_simulated(machine) and not has_inverter(machine),
     )
 

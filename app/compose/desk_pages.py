@@ -19,8 +19,8 @@ from app.compose.program_proving import (
     create_line_prover,
     create_loading_steps,
     create_part_comparer,
+    create_search,
     get_samples_folder,
-    rebuild_search,
 )
 from app.compose.runs.journal import Journal
 from app.compose.scope_desk import register_scope
@@ -44,7 +44,7 @@ from core.access.access_table import ProtectedChange
 from core.executor.job import Job
 from core.interpreter.dialects import get_code_book
 from core.interpreter.restart.restart_approach import OperatorChoices
-from core.language.source import Dialect, default_extension
+from core.language.source import Dialect, get_default_extension
 from core.machine.machine_model import Machine
 from core.store.store_rows import OffsetKind
 
@@ -113,11 +113,11 @@ def _create_editor(setup: PageSetup) -> EditorModel:
     work = create_loading_steps(
         machine,
         setup.read_offsets,
-        last_modal_state=lambda: desk.read_snapshot().modal,
+        read_modal_state=lambda: desk.read_snapshot().modal,
         read_shapes=try_read_shapes,
         read_stored_part=setup.read_stored_part,
     )
-    ending = default_extension(Dialect(machine.language))
+    ending = get_default_extension(Dialect(machine.mdi_language))
     editor = EditorModel(
         work,
         setup.journal or NullArchive(),
@@ -166,7 +166,7 @@ def _register_lines(setup: PageSetup) -> None:
     prove_line = create_line_prover(machine, setup.read_offsets)
     if desk.start_watch is not None:
         prove_line = desk.start_watch.wrap_line_proof(prove_line)
-    codes = partial(get_code_book, Dialect(machine.language))
+    codes = partial(get_code_book, Dialect(machine.mdi_language))
     line = MdiInput(setup.persistence)
     mdi = MdiModel(prove_line, desk.post, desk.read_snapshot, desk.say, desk.clear_prompt_line, codes, line)
     for each in (mdi, ManualFunctions(desk, machine, prove_line)):
@@ -201,7 +201,7 @@ def _register_searchto(setup: PageSetup) -> None:
         desk.read_snapshot,
         desk.say,
         desk.clear_prompt_line,
-        rebuild_search,
+        create_search,
         prove,
         choices,
     )
@@ -216,7 +216,7 @@ def register_sounds(setup: PageSetup) -> None:
     """Register the sounds of the screen, which the special functions need."""
     sounds = EventSounds(setup.desk, setup.persistence)
     setup.desk.page_registry.attach_model(sounds)
-    setup.desk.page_registry.add_frame_watcher(sounds.play_new_events)
+    setup.desk.page_registry.add_frame_watcher(sounds.play_new_event_sounds)
 
 
 def register_special_functions(setup: PageSetup) -> None:
@@ -228,7 +228,7 @@ def register_special_functions(setup: PageSetup) -> None:
 def _special_functions(setup: PageSetup) -> SpecialFunctionList:
     from app.compose.special_functions_desk import create_special_functions
 
-    sounds = setup.desk.page_registry.find(EventSounds)
+    sounds = setup.desk.page_registry.find_model(EventSounds)
     assert sounds is not None
     return create_special_functions(
         setup.desk, setup.machine, setup.persistence, setup.loading_steps, setup.program_folder, sounds
@@ -239,8 +239,8 @@ def register_production(setup: PageSetup) -> None:
     """Register the models that count and store production data."""
     desk, tools = setup.desk, find_tool_table_kind(setup.machine.kind)
     book = setup.journal.create_parts_book(tools) if setup.journal is not None else PartsBook(tool_kind=tools)
-    book.access = desk.user_access
-    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.desk_control.identity))
+    book.user_access = desk.user_access
+    watch = PartsWatch(desk, book, ToolLifeWatch(book, desk.desk_control.read_identity))
     desk.page_registry.attach_model(watch)
     desk.page_registry.add_run_watcher(watch)
     if tools is OffsetKind.MILL_TOOL:

@@ -12,7 +12,7 @@ from pathlib import Path
 from app.compose.optional_features import extras
 from app.compose.runs.journal import Journal
 from app.desk.daily_backup import DailyBackup
-from app.desk.data_folder import BACKUPS_FOLDER, find_data_folder
+from app.desk.data_folder import BACKUPS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.status.prompt_line import ACTIVE_STATES
 from app.desk.translation import tr
@@ -27,7 +27,7 @@ from core.store.backup import find_problems as backup_problems
 from core.store.store_rows import get_utc_now_text
 
 # Threads other than the executor, with the function that is lost when they end.
-SUPERVISED_THREADS = {
+SUPERVISED_THREAD_TEXTS = {
     "store-writer": "STORAGE OF OFFSETS AND COUNTS",
     "daily-backup": "DAILY BACKUP",
     "status": "STATUS.JSON",
@@ -46,7 +46,7 @@ def report_ended_thread(desk: Desk, journal: Journal, name: str) -> None:
     The function is called in the watchdog's thread.
     """
     text = tr(
-        Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED_THREADS[name]))
+        Message("{what} STOPPED. SAVE THE LOG, THEN RESTART TURNDESK", what=tr(SUPERVISED_THREAD_TEXTS[name]))
     )
     desk.say(text)
     journal.hear(LogEvent(desk.read_snapshot().t, "warning", text))
@@ -108,7 +108,7 @@ def _start_daily_backup(desk: Desk, machine: Machine, journal: Journal) -> Calla
         journal.hear(LogEvent(desk.read_snapshot().t, "warning", tr(Message(text, folder=folder))))
 
     table = machine.hardware.find_driver_table(BackupTable) or BackupTable()
-    folder = Path(table.folder) if table.folder else find_data_folder() / BACKUPS_FOLDER
+    folder = Path(table.folder) if table.folder else find_data_folder() / BACKUPS_FOLDER_NAME
     daily = DailyBackup(folder, table.keep, journal.backup, backup_problems, still, tell)
     if table.folder:
         daily.data_folder, daily.report_same_disk = find_data_folder(), same_disk

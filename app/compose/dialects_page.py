@@ -55,7 +55,7 @@ def _languages(found: dict[str, Machine]) -> Iterator[str]:
         endings = " ".join(f"`{each}`" for each in _ENDINGS if guess_dialect(f"a{each}") is dialect)
         book = get_code_book(dialect)
         count = sum(len(entries) for _, entries in book.chapters)
-        speak = [name for name, machine in found.items() if machine.language == str(dialect)]
+        speak = [name for name, machine in found.items() if machine.mdi_language == str(dialect)]
         codes = Message(
             "[{count} in {chapters_count} chapters]({pages}.md)",
             count=count,
@@ -69,10 +69,10 @@ def _shipped(found: dict[str, Machine]) -> Iterator[str]:
     yield "| `--machine` | type | backend | axes |"
     yield "|---|---|---|---|"
     for name, machine in found.items():
-        axes = " ".join(f"{axis.name}{'°' if axis.rotary else ''}" for axis in machine.axes)
+        axes = " ".join(f"{axis.name}{'°' if axis.is_rotary else ''}" for axis in machine.axes)
         yield f"| {name} | {machine.kind} | {machine.backend} | {axes} |"
 
 
 if __name__ == "__main__":
-    page = Path(sys.argv[1])
-    page.write_text(update_page(page.read_text("utf-8")), "utf-8")
+    page_path = Path(sys.argv[1])
+    page_path.write_text(update_page(page_path.read_text("utf-8")), "utf-8")

@@ -14,7 +14,7 @@ from decimal import Decimal
 from math import isfinite
 from pathlib import Path
 
-from app.compose.machine.driver_modules import all_drivers
+from app.compose.machine.driver_modules import load_all_drivers
 from core.key_declaration import (
     LENGTH_UNITS,
     FileUnit,
@@ -24,7 +24,7 @@ from core.key_declaration import (
     get_declared_keys,
 )
 from core.machine import axis_tables, machine_tables, mill_kinematics
-from core.machine.driver_tables import all_driver_tables
+from core.machine.driver_tables import list_driver_tables
 from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, OutputModel
 from core.page_contents import make_contents
@@ -67,11 +67,11 @@ def generate_page() -> str:
 
 def iterate_references() -> Iterator[TableReference]:
     """Yield every table that a machine file may have, in the order of the page."""
-    plain = dict(machine_tables.tables_without_subtables(all_drivers()))
+    plain = dict(machine_tables.list_tables_without_subtables(load_all_drivers()))
     yield TableReference(
         "machine",
         "General machine settings and the timing of the setpoint queue.",
-        machine_tables.machine_table_fields(all_drivers()),
+        machine_tables.get_machine_table_keys(load_all_drivers()),
     )
     yield TableReference("limits", "Limits that apply to all axes. The table is optional.", plain["limits"])
     yield from _axes()
@@ -99,7 +99,7 @@ def iterate_references() -> Iterator[TableReference]:
     )
     yield from _signals()
     yield from _kinematics()
-    for table in all_driver_tables(all_drivers()):
+    for table in list_driver_tables(load_all_drivers()):
         yield TableReference(table.path, table.purpose, table.key_class)
         yield from table.sub_tables
     yield from family_table.FAMILY_TABLES
@@ -300,9 +300,9 @@ def _format_inches(value: float) -> str:
     return re.sub(r"^(−?)0\.", r"\1.", text)
 
 
-def main(argv: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Write the reference page to the file named in the arguments."""
-    path = Path(argv[0])
+    path = Path(arguments[0])
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(generate_page(), encoding="utf-8")
     return 0

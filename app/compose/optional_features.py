@@ -62,7 +62,7 @@ class OptionalFeature:
     programs, and which the list of programs shows. ``editor_panel_class`` is the dotted name of a subclass
     of ``EditorPanel`` that replaces the editor's text area and writes lines. ``machine_actions`` lists the
     actions of ``turndesk machine``, each with a module ``app.extras.NAME.ACTION_command``.
-    ``list_machine_tables`` maps each module whose ``DRIVER`` declares tables of the machine file to the
+    ``machine_tables`` maps each module whose ``DRIVER`` declares tables of the machine file to the
     paths of these tables. ``preceding_table`` is the table of the machine file that precedes the tables of
     this feature in lists. If it is empty, the tables are listed last.
     """
@@ -74,12 +74,12 @@ class OptionalFeature:
     worker_class_name = ""
     drawing_suffixes: Sequence[str] = ()
     editor_panel_class: str = ""
-    list_machine_tables: Mapping[str, tuple[str, ...]] = {}
+    machine_tables: Mapping[str, tuple[str, ...]] = {}
     preceding_table: str = ""
     own_special_functions: Collection[str] = ()
 
     @property
-    def pages(self) -> Sequence[PageDescription]:
+    def page_descriptions(self) -> Sequence[PageDescription]:
         """Return the descriptions of the pages that this feature adds to the main window."""
         return ()
 
@@ -116,20 +116,27 @@ class OptionalFeature:
     def extend_model(self, model: object, desk: Desk, machine: Machine) -> None:
         """Extend ``model``, which belongs to a required feature, when it is created."""
 
-    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+    def start_services(
+        self, desk: Desk, journal: Journal, report_reason: ReportFunction
+    ) -> CloseFunction | None:
         """Start the threads of this feature, and return the function that ends them.
 
-        The result is None if the feature has no threads. If the feature cannot run, ``report`` shows the
-        reason on the prompt line and in the event log.
+        The result is None if the feature has no threads. If the feature cannot run, ``report_reason`` shows
+        the reason on the prompt line and in the event log.
         """
 
     def start_headless(
-        self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
+        self,
+        machine: Machine,
+        read_snapshot: Callable[[], Snapshot],
+        report_reason: ReportFunction,
+        *,
+        is_real_time: bool,
     ) -> CloseFunction | None:
         """Start the services of this feature for a run without a screen.
 
-        Returns the function that ends the services, or None. ``real_time`` means that the run takes as long
-        as on the machine. ``report`` prints the reason if the feature cannot run.
+        Returns the function that ends the services, or None. ``is_real_time`` means that the run takes as
+        long as on the machine. ``report_reason`` prints the reason if the feature cannot run.
         """
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
@@ -150,7 +157,7 @@ class OptionalFeature:
         """
         return ()
 
-    def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
+    def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
         """Ask for the PIN of this user on the command line, and return whether this feature supports PINs.
 
         ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.

@@ -16,7 +16,7 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.machine.machine_model import Machine
 from core.part.stock import Clamping
 from core.part.tool_shape import ToolShape
-from core.proving.checks.machine_checks import LIVE_TOOL
+from core.proving.checks.machine_checks import LIVE_TOOL_PREFIX
 from core.proving.checks.thread_checks import DriveLimits
 from core.proving.program_tools import PartSettings
 from core.store.store_file import has_store
@@ -31,7 +31,7 @@ def read_known_part(
     machine: Machine,
     tools: Mapping[int, ToolOffset],
     shapes: Mapping[int, ToolShape],
-    stick_out: float | None = None,
+    stick_out_mm: float | None = None,
 ) -> PartSettings:
     """Return the part settings without a stock.
 
@@ -40,25 +40,25 @@ def read_known_part(
     return PartSettings(
         shapes=shapes,
         nose_radii={number: tool.nose_radius for number, tool in tools.items()},
-        clamping=_stock_clamping(machine, stick_out),
-        drives=DriveLimits(machine.axes[1].amax, machine.spindle.decel),
+        clamping=_stock_clamping(machine, stick_out_mm),
+        drives=DriveLimits(machine.axes[1].max_acceleration, machine.spindle.decel),
         gang={n: (tool.z, tool.x) for n, tool in tools.items()} if machine.tooling_kind == "gang" else {},
-        live_codes=any(on and name.startswith(LIVE_TOOL) for name, on in machine.m_codes.values()),
+        live_codes=any(on and name.startswith(LIVE_TOOL_PREFIX) for name, on in machine.m_codes.values()),
         silenced=dict.fromkeys(machine.silenced_checks, MACHINE_FILE_REASON),
         travel=_axis_travel(machine),
     )
 
 
 def apply_stored_clamping(
-    setting: PartSettings, machine: Machine, stored: StoredPart, *, is_explicit: bool = False
+    part_settings: PartSettings, machine: Machine, stored_part: StoredPart, *, is_explicit: bool = False
 ) -> PartSettings:
     """Return the part settings with the stored stick-out and the stored silenced checks.
 
     ``is_explicit`` retains the current stick-out, because it was specified explicitly.
     """
-    if stored.stick_out is not None and not is_explicit and machine.clamping.diameter:
-        setting = replace(setting, clamping=_stock_clamping(machine, stored.stick_out))
-    return replace(setting, silenced={**setting.silenced, **stored.silenced_checks})
+    if stored_part.stick_out_mm is not None and not is_explicit and machine.clamping.diameter:
+        part_settings = replace(part_settings, clamping=_stock_clamping(machine, stored_part.stick_out_mm))
+    return replace(part_settings, silenced={**part_settings.silenced, **stored_part.silenced_checks})
 
 
 def _axis_travel(machine: Machine) -> tuple[tuple[float, float], tuple[float, float]] | None:
@@ -111,7 +111,7 @@ def read_stored_parts(programs: Iterable[str]) -> dict[str, StoredPart]:
     return {program: kept for program, kept in found.items() if kept != EMPTY_STORED_PART}
 
 
-def save_stock(program: str, text: str, stick_out: float | None) -> None:
+def save_stock(program: str, text: str, stick_out_mm: float | None) -> None:
     """Save the stock text and the stick-out of a program.
 
     ``stick_out`` is in mm. None retains the stored stick-out. Raises CommandError if the store cannot be
@@ -121,6 +121,6 @@ def save_stock(program: str, text: str, stick_out: float | None) -> None:
 
     with convert_to_command_error(StoreError), Store.open(find_data_folder()) as store:
         kept = replace(load_stored_part(store.settings.read_setting, program), stock=text)
-        kept = kept if stick_out is None else replace(kept, stick_out=stick_out)
+        kept = kept if stick_out_mm is None else replace(kept, stick_out_mm=stick_out_mm)
         for key, value in kept.make_settings(program).items():
             store.settings.save_setting(key, value).result()

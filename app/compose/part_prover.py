@@ -57,7 +57,7 @@ class PartProver:
     read_stored_part: ReadStoredPart
     read_source: Callable[[Path], ProgramSource]
 
-    def read_setting(
+    def read_settings(
         self, job: Job, report_progress: ProgressCallback
     ) -> tuple[PartSettings, Diagnostic | None]:
         """Return the specified stock, tools and clamping, and a finding or None.
@@ -93,7 +93,7 @@ class PartProver:
         from core.proving.offset_comparison import FINE_COLUMN_WIDTH_MM, ProvedPart, prove_other_offsets
         from core.proving.part_proof import prove_with_part
 
-        setting = replace(self.read_setting(old_job, report_progress)[0], step=FINE_COLUMN_WIDTH_MM)
+        setting = replace(self.read_settings(old_job, report_progress)[0], step=FINE_COLUMN_WIDTH_MM)
         around = old_job.setup, self.machine, setting
         report, part = prove_with_part(
             old_job.shared_program, *around, report_progress, check_canceled=report_progress
@@ -104,13 +104,15 @@ class PartProver:
         return prove_other_offsets(old_job.shared_program, this, new_job.setup, self.machine, report_progress)
 
     def prove_part(
-        self, moves: ProgramSteps, stock_finding: Diagnostic | None, report_progress: ProgressCallback
+        self, program_steps: ProgramSteps, stock_finding: Diagnostic | None, report_progress: ProgressCallback
     ) -> PartProof:
         """Return the proof of the part. An exception while proving becomes a warning."""
         from core.proving.part_proof import PartProof
 
         try:
-            report = PartProof(moves.part_settings, moves.parts).make_report(report_progress)
+            report = PartProof(program_steps.part_settings, program_steps.block_groups).make_report(
+                report_progress
+            )
         except AbandonedError:
             raise
         except Exception as error:  # noqa: BLE001 - the program itself is proved, and may be run

@@ -20,7 +20,7 @@ def create_program_list(
     persistence: Persistence,
     loading_steps: LoadingSteps,
     folder: Path,
-    thumbnail: DrawThumbnail | None,
+    draw_thumbnail: DrawThumbnail | None,
 ) -> ProgramListModel:
     """Return the list of programs in ``folder``.
 
@@ -44,5 +44,5 @@ def create_program_list(
     chooser = FolderChooser(Path.home(), accepts_name=desk.program_choice.program_folders.accepts_name)
     transfer = ImportExport(desk, folder, persistence, worker, check, chooser)
     return ProgramListModel(
-        desk, folder, persistence, worker, ProgramPreview(loading_steps, thumbnail), transfer
+        desk, folder, persistence, worker, ProgramPreview(loading_steps, draw_thumbnail), transfer
     )

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from app.compose.part_prover import PartProver, ReadShapes, ReadStoredPart, get_empty_part
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import Offsets, create_setup_with
+from app.compose.stored_offsets import Offsets, create_setup_with_offsets
 from app.compose.thumbnails import HIGH, WIDE, ThumbnailCache
 from app.desk.background_work import ProgressCallback
 from app.desk.data_folder import find_data_folder
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from app.offsets.offset_effect import ComparePart, DrawPaths
     from app.path.path_picture import ProgramPicture, TimedBlocks
     from app.programs.program_rows import DrawThumbnail
-    from app.searchto.restart_finder import Search
+    from app.searchto.restart_finder import RestartSearch
     from core.proving.program_timeline import MotionSpan, RestSpan
 
 
@@ -45,10 +45,10 @@ def get_samples_folder() -> Path:
 
 def create_loading_steps(
     machine: Machine,
-    offsets: Callable[[], Offsets],
+    read_offsets: Callable[[], Offsets],
     journal: Journal | None = None,
     *,
-    last_modal_state: Callable[[], ModalState] | None = None,
+    read_modal_state: Callable[[], ModalState] | None = None,
     read_shapes: ReadShapes = dict,
     read_stored_part: ReadStoredPart = get_empty_part,
     draw_pictures: bool = True,
@@ -56,21 +56,21 @@ def create_loading_steps(
     """Return the functions that load a program.
 
     Offsets, tool shapes and the stored part data of a program are read at the time of loading. The unit and
-    the rapid rate of the previous job are then read from ``last_modal_state``. ``draw_pictures`` means that
+    the rapid rate of the previous job are then read from ``read_modal_state``. ``draw_pictures`` means that
     programs are drawn and their parts proved.
     """
 
     def new_job(source: ProgramSource, block_delete: bool) -> Job:
         if journal is not None:
             journal.keep(source)
-        setup = create_setup_with(machine, offsets(), block_delete=block_delete)
-        if last_modal_state is not None:
-            modal = last_modal_state()
+        setup = create_setup_with_offsets(machine, read_offsets(), block_delete=block_delete)
+        if read_modal_state is not None:
+            modal = read_modal_state()
             setup = replace(setup, metric=modal.metric, last_rapid=modal.rapid_rate)
         return make_job(_read_complete(source), setup)
 
     def renewed(job: Job) -> Job:
-        now = create_setup_with(machine, offsets(), block_delete=job.setup.block_delete)
+        now = create_setup_with_offsets(machine, read_offsets(), block_delete=job.setup.block_delete)
         setup = replace(now, metric=job.setup.metric, last_rapid=job.setup.last_rapid)
         return replace(make_job(job.source, setup), shared_program=job.shared_program)
 
@@ -97,12 +97,12 @@ class _ProofAndPicture:
         self._drawn, sketch = None, PictureBuilder(millimetres)
         gathered, waits = None, False
         if self._pictures and self._machine.kind == "lathe":
-            setting, self._trouble = self._parts.read_setting(job, report_progress)
+            setting, self._trouble = self._parts.read_settings(job, report_progress)
             gathered = StepCollector(setting)
 
         def seen(span: MotionSpan | RestSpan) -> None:
             for each in span.iter_group_times():
-                sketch.add_timed(each)
+                sketch.add_timed_blocks(each)
             if gathered is not None:
                 gathered.add_span(span)
 
@@ -115,7 +115,9 @@ class _ProofAndPicture:
         )
         if self._pictures:
             part, why = (
-                (gathered.collected_steps(), gathered.overflow_reason) if gathered is not None else (None, "")
+                (gathered.make_program_steps(), gathered.overflow_reason)
+                if gathered is not None
+                else (None, "")
             )
             waits = part is not None and part.part_settings.can_refuse_start
             self._drawn = job, replace(sketch.build_picture(), part=part, no_part=why)
@@ -184,14 +186,14 @@ def create_thumbnail_drawer(
     machine: Machine,
     read_shapes: ReadShapes,
     read_stored_part: ReadStoredPart,
-    size: tuple[int, int] = (WIDE, HIGH),
+    size_px: tuple[int, int] = (WIDE, HIGH),
 ) -> DrawThumbnail:
     """Return a function that draws the finished part of a job and saves the drawing in the data folder.
 
-    ``size`` is in pixels.
+    ``size_px`` is in pixels.
     """
     parts = PartProver(machine, read_shapes, read_stored_part, _read)
-    return ThumbnailCache(find_data_folder() / "thumbnails", machine, parts, *size).get_thumbnail
+    return ThumbnailCache(find_data_folder() / "thumbnails", machine, parts, *size_px).get_thumbnail
 
 
 def create_drawer(machine: Machine) -> DrawPaths:
@@ -228,7 +230,7 @@ def read_checkpoint(snapshot: Snapshot) -> Checkpoint:
     )
 
 
-def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> ProveLine:
+def create_line_prover(machine: Machine, read_offsets: Callable[[], Offsets]) -> ProveLine:
     """Return a function that proves an MDI line like a program.
 
     The line starts at the current position of the axes.
@@ -238,11 +240,11 @@ def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> Prov
         from core.proving.prove_program import prove
 
         setup = replace(
-            create_setup_with(machine, offsets()),
+            create_setup_with_offsets(machine, read_offsets()),
             start=snapshot.demand,
             begin=PassStart(read_checkpoint(snapshot), is_mdi_line=True),
         )
-        job = make_job(ProgramSource("MDI", text, Dialect(machine.language)), setup)
+        job = make_job(ProgramSource("MDI", text, Dialect(machine.mdi_language)), setup)
         report = prove(job.shared_program, job.setup, machine, watch)
         return job, ProvedJob(create_proof(job, report), report.diagnostics)
 
@@ -252,7 +254,7 @@ def create_line_prover(machine: Machine, offsets: Callable[[], Offsets]) -> Prov
 # --- SEARCHTO on this machine.
 
 
-def rebuild_search(job: Job, report_progress: ProgressCallback) -> Search:
+def create_search(job: Job, report_progress: ProgressCallback) -> RestartSearch:
     """Return the search through the program of a job. The interpreter is loaded on first use."""
     if job.source.dialect is not Dialect.OMNITURN:
         from core.interpreter.restart.program_search import BlockSearch

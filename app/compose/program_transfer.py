@@ -11,7 +11,7 @@ from app.desk.programs.program_loading import LoadingSteps
 from app.programs.atomic_files import FileOperationError
 from app.transfer.line_transfer import ReceivedProgram
 from core.input_file import read_input_bytes
-from core.language.source import MAX_FILE_SIZE, ProgramSource, SourceError, load_source
+from core.language.source import MAX_FILE_BYTES, ProgramSource, SourceError, load_source
 from core.machine.serial_and_backup_tables import SerialLineModel
 from core.message import Message
 from core.ports import Clock, DriverError
@@ -28,11 +28,14 @@ CheckProgram = Callable[[ProgramSource], tuple[tuple[str, ...], float]]  # error
 class SerialLines:
     """Implementation of ``app.transfer.line_transfer.Lines``.
 
-    ``check`` proves received programs, and ``suffix`` is the suffix of the files that it creates.
+    ``check_program`` proves received programs, and ``file_suffix`` is the suffix of the files that it
+    creates.
     """
 
-    def __init__(self, check: CheckProgram, suffix: str = ".nc", clock: Clock | None = None) -> None:
-        self._check, self._ending, self._clock = check, suffix, clock or RealClock()
+    def __init__(
+        self, check_program: CheckProgram, file_suffix: str = ".nc", clock: Clock | None = None
+    ) -> None:
+        self._check, self._ending, self._clock = check_program, file_suffix, clock or RealClock()
 
     def list_ports(self) -> Sequence[tuple[str, str]]:
         """Return the device and the description of each serial port of this computer."""
@@ -86,7 +89,7 @@ class FileSendTransfer(_LineTransfer):
     def run_transfer(self) -> int:
         """Read the file, open the line, and send the data. Raises FileOperationError or DriverError."""
         try:
-            text = read_input_bytes(self._path, MAX_FILE_SIZE)
+            text = read_input_bytes(self._path, MAX_FILE_BYTES)
         except OSError as error:
             raise FileOperationError(
                 Message("{path} CANNOT BE READ: {cause}", path=self._path.name, cause=error.strerror)
@@ -95,15 +98,17 @@ class FileSendTransfer(_LineTransfer):
         wire = open_serial_port(self._settings.sending_settings)
         inner = SendTransfer(wire, self._clock, self._settings, data)
         self._begin(inner)
-        return inner.run()
+        return inner.send_program()
 
 
 class ProgramReceiveTransfer(_LineTransfer):
     """Transfer that receives and proves a program."""
 
-    def __init__(self, settings: TransferSettings, clock: Clock, check: CheckProgram, suffix: str) -> None:
+    def __init__(
+        self, settings: TransferSettings, clock: Clock, check_program: CheckProgram, file_suffix: str
+    ) -> None:
         super().__init__()
-        self._settings, self._clock, self._check, self._ending = settings, clock, check, suffix
+        self._settings, self._clock, self._check, self._ending = settings, clock, check_program, file_suffix
 
     def run_transfer(self) -> ReceivedProgram:
         """Receive a program and prove it.
@@ -116,7 +121,7 @@ class ProgramReceiveTransfer(_LineTransfer):
             self._settings,
         )
         self._begin(inner)
-        return self._looked_at(inner.run())
+        return self._looked_at(inner.receive_program())
 
     def _looked_at(self, program: ReceivedText) -> ReceivedProgram:
         name = program.name or "RECEIVED"
@@ -129,7 +134,7 @@ class ProgramReceiveTransfer(_LineTransfer):
             line_count=program.line_count,
             sha256=program.sha256,
             is_seven_bit=program.is_seven_bit,
-            skipped_bytes=program.skipped_bytes,
+            skipped_bytes=program.skipped_byte_count,
             finding_texts=findings,
             cycle_time_s=cycle,
         )

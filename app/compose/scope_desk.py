@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
+from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from core.records.record import Channel, ScopeRecord
 from core.records.recordings import ScopeRecordings
@@ -38,9 +38,11 @@ class RecordedSamples:
         """Return the duration of the ring buffer, in seconds."""
         return self.recorder.ring.layout.duration_s
 
-    def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+    def read_between(
+        self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
+    ) -> ScopeRecord:
         """Return the samples from ``start_s`` to ``end_s`` inclusive."""
-        return self.recorder.get_record_between(start_s, end_s, names)
+        return self.recorder.get_record_between(start_s, end_s, channel_names)
 
 
 def register_scope(desk: Desk, live_samples: LiveSamples | None) -> None:
@@ -64,7 +66,7 @@ def _scope(desk: Desk, live: LiveSamples | None) -> ScopeModel:
     return ScopeModel(
         desk,
         live,
-        RecordingStore(find_data_folder() / RECORDS_FOLDER, save_record, open_record, write_csv_lines),
+        RecordingStore(find_data_folder() / RECORDS_FOLDER_NAME, save_record, open_record, write_csv_lines),
     )
 
 
@@ -72,6 +74,6 @@ def _open_alarm_recording(desk: Desk, name: str) -> None:
     from app.scope.scope_files import ScopeFiles
     from app.scope.scope_model import ScopeModel
 
-    scope = desk.page_registry.find(ScopeModel)
+    scope = desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     ScopeFiles(scope).open_alarm_recording(name)

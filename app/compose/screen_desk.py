@@ -13,13 +13,13 @@ from app.compose.control.control_client import ControlClient, ControlEventHandle
 from app.compose.control.control_start import StartedControl
 from app.compose.control.live_control import LiveControl
 from app.compose.desk_assembly import EventDistributor, create_desk, create_desk_parts
-from app.compose.desk_services import SUPERVISED_THREADS, report_ended_thread, start_services
+from app.compose.desk_services import SUPERVISED_THREAD_TEXTS, report_ended_thread, start_services
 from app.compose.machine.machine_setup import store_machine
 from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import Offsets, read_stored_offsets
 from app.desk.command_errors import convert_to_command_error
-from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
+from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.programs.program_folder import ProgramFileMonitor
 from app.desk.state.desk_control import DeskControl
@@ -32,7 +32,7 @@ from core.ports import DriverError
 from drivers.wakeups import RealClock
 
 if TYPE_CHECKING:
-    from app.compose.control.control_attachment import Begun
+    from app.compose.control.control_attachment import MachineAndControl
 
 CONTROL_TIMEOUT_S = 30.0  # s for the executor and its drivers; then the process is killed
 EXECUTOR_TIMEOUT_S = 12.0  # s, for drives that are switching on; then the machine is halted
@@ -44,8 +44,8 @@ SWITCH_INTERVAL_S = 0.001  # s after which a worker that proves or draws yields 
 
 def build_desk(
     machine_file: str | None = None,
-    offsets: Callable[[], Offsets] = read_stored_offsets,
-    begun_control: Begun | None = None,
+    read_offsets: Callable[[], Offsets] = read_stored_offsets,
+    begun_control: MachineAndControl | None = None,
 ) -> Desk:
     """Return the operator screen's model for a machine file, and start its control.
 
@@ -59,9 +59,9 @@ def build_desk(
     try:
         store_machine(machine_file, journal)
         if control is None:
-            desk = _create_threaded_desk(machine, offsets, journal)
+            desk = _create_threaded_desk(machine, read_offsets, journal)
         else:
-            desk = _create_process_desk(machine, offsets, journal, control)
+            desk = _create_process_desk(machine, read_offsets, journal, control)
     except BaseException:
         if isinstance(control, StartedControl):
             control.kill_process()
@@ -78,7 +78,7 @@ def build_desk(
         ClosingStep("store", partial(_close_store, journal), STORE_TIMEOUT_S),
         ClosingStep("log", log.close),
     ]
-    desk.storage_state.set_file_readers(lambda: file.difference_text, file.check_soon)
+    desk.storage_state.set_file_readers(lambda: file.difference_text, file.request_check)
     desk.storage_state.set_store_readers(lambda: journal.trouble or log.error_text, lambda: journal.held)
     gc.freeze()  # modules and other permanent objects need not be scanned again
     gc.set_threshold(*_GC_THRESHOLDS)
@@ -90,11 +90,11 @@ def _create_threaded_desk(machine: Machine, offsets: Callable[[], Offsets], jour
     """Return the screen model, with its control running in a thread of this process."""
     clock = RealClock()
     desk, executor, recorder = create_desk_parts(
-        machine, offsets, clock, journal, find_data_folder() / RECORDS_FOLDER
+        machine, offsets, clock, journal, find_data_folder() / RECORDS_FOLDER_NAME
     )
     thread = ExecutorThread(executor, clock)
     watchdog = Watchdog(
-        thread, executor.halt_function, SUPERVISED_THREADS, partial(report_ended_thread, desk, journal)
+        thread, executor.halt_function, SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, desk, journal)
     )
     desk.closing_sequence.stop_steps += [
         ClosingStep("watchdog", watchdog.stop_checks),  # threads that end from now on end as intended
@@ -132,13 +132,13 @@ def _create_process_desk(
     live = LiveControl(client, machine, find_data_folder())
     events = EventDistributor(client.clock, journal)
     used = DeskControl(
-        live.post,
+        live.post_command,
         lambda: live.snapshot,
         live.hands,
         live.set_input if client.hello_message.can_switch_inputs else None,
         client.hello_message.warnings,
         client.control_records,
-        live.open_stop_line,
+        live.open_stop_socket,
         live.restart,
         lambda: live.client.hello_message.identity,
     )
@@ -146,13 +146,13 @@ def _create_process_desk(
     for right in client.hello_message.rights:
         words = Message("control process: {name}: {granted}", name=right.name, granted=right.granted)
         events.report_event("rights", right.missing or words)
-    threads = ThreadWatch(SUPERVISED_THREADS, partial(report_ended_thread, desk, journal))
+    threads = ThreadWatch(SUPERVISED_THREAD_TEXTS, partial(report_ended_thread, desk, journal))
     desk.closing_sequence.stop_steps += [
         ClosingStep("threads", threads.stop_reporting),  # threads that end from now on end as intended
         ClosingStep("control", live.close, CONTROL_TIMEOUT_S),
     ]
-    desk.page_registry.add_frame_watcher(live.see)
-    live.begin(
+    desk.page_registry.add_frame_watcher(live.report_alive)
+    live.start_threads(
         ControlEventHandlers(
             events.hear,
             journal.note,

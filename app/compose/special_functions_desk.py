@@ -8,7 +8,7 @@ from pathlib import Path
 from app.compose.optional_features import extras, insert_after
 from app.compose.program_transfer import DEFAULT_SETTINGS, SerialLines, create_proof_check
 from app.desk.background_work import LatestRequestWorker
-from app.desk.data_folder import BACKUPS_FOLDER, find_data_folder
+from app.desk.data_folder import BACKUPS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.persistence import Persistence
 from app.desk.programs.program_loading import LoadingSteps
@@ -23,7 +23,7 @@ from app.special.operator_settings import RParametersFunction, ScreenSettingsFun
 from app.special.setup_sheet_function import SetupSheetFunction
 from app.special.special_functions import SpecialFunction, SpecialFunctionList
 from app.transfer.serial_transfer import SerialTransferFunction
-from core.language.source import Dialect, default_extension
+from core.language.source import Dialect, get_default_extension
 from core.machine.machine_model import Machine
 from core.machine.serial_and_backup_tables import BackupTable, SerialLineModel
 
@@ -36,7 +36,7 @@ def _backup(
     table = machine.hardware.find_driver_table(BackupTable)
     daily = Path(table.folder) if table is not None and table.folder else None
     backup = BackupFunction(
-        desk, persistence, worker, find_data_folder() / BACKUPS_FOLDER, daily_folder=daily
+        desk, persistence, worker, find_data_folder() / BACKUPS_FOLDER_NAME, daily_folder=daily
     )
 
     def restored() -> None:
@@ -58,7 +58,7 @@ def _create_transfer(
     desk: Desk, machine: Machine, persistence: Persistence, workshop: LoadingSteps, program_folder: Path
 ) -> SpecialFunction:
     """Return the RS-232 function. Its initial settings come from [dnc], and it proves received programs."""
-    lines = SerialLines(create_proof_check(workshop), default_extension(Dialect(machine.language)))
+    lines = SerialLines(create_proof_check(workshop), get_default_extension(Dialect(machine.mdi_language)))
     return SerialTransferFunction(
         desk,
         persistence,
@@ -100,11 +100,11 @@ def create_special_functions(
     functions.append(_create_transfer(desk, machine, persistence, loading_steps, program_folder))
     functions.append(_setup_sheet(desk, machine, persistence, worker))
     functions.append(ScopeFunction(desk))
-    watch = desk.page_registry.find(PartsWatch)
+    watch = desk.page_registry.find_model(PartsWatch)
     if watch is not None and machine.kind == "lathe":
         functions.append(ToolLifeFunction(desk, watch))
     functions.append(LampsAndSoundFunction(desk, machine, sounds))
-    if machine.language == Dialect.SINUMERIK:
+    if machine.mdi_language == Dialect.SINUMERIK:
         functions.append(RParametersFunction(desk, persistence, worker))
     elsewhere = {name for extra in extras().values() for name in extra.own_special_functions}
     functions = [each for each in functions if each.name not in elsewhere]

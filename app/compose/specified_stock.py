@@ -40,7 +40,7 @@ class StockContext(NamedTuple):
     read_source: Callable[[Path], ProgramSource]
     setup: Setup
     machine: Machine
-    part_setting: PartSettings
+    part_settings: PartSettings
     report_progress: ReportProgress | None = None
     read_stored_part: Callable[[str], StoredPart] = lambda _name: EMPTY_STORED_PART
     preceding_programs: tuple[str, ...] = ()
@@ -103,7 +103,7 @@ def _stock_from_program(path: Path, context: StockContext, spec: StockSpec) -> S
 def _initial_setting(name: str, spec: StockSpec, context: StockContext) -> PartSettings:
     """Return the part settings of the preceding program with its stored stock and stick-out."""
     kept = context.read_stored_part(name)
-    setting = apply_stored_clamping(context.part_setting, context.machine, kept)
+    setting = apply_stored_clamping(context.part_settings, context.machine, kept)
     if not kept.stock:
         return setting
     if name in context.preceding_programs:

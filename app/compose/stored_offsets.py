@@ -52,13 +52,13 @@ class Offsets(NamedTuple):
 NO_OFFSETS = Offsets({}, {}, {})
 
 
-def create_setup_with(
+def create_setup_with_offsets(
     machine: Machine,
     offsets: Offsets,
     *,
-    inputs: Mapping[str, bool] | None = None,
+    input_states: Mapping[str, bool] | None = None,
     block_delete: bool = False,
-    strict: bool = False,
+    is_strict: bool = False,
 ) -> Setup:
     """Return the setup of a program after power-up with these offsets."""
     return add_mill_offsets(
@@ -68,9 +68,9 @@ def create_setup_with(
             secondary_offsets=offsets.secondary_offsets,
             zero_offsets=offsets.zero_offsets,
             r_parameters=offsets.r_parameters,
-            inputs=inputs,
+            input_states=input_states,
             block_delete=block_delete,
-            strict=strict,
+            is_strict=is_strict,
         ),
         offsets.mill_offsets,
     )
@@ -159,28 +159,28 @@ def make_offsets_reader(path: str | None) -> Callable[[], Offsets]:
     return read_stored_offsets if path is None else partial(read_offsets, Path(path))
 
 
-def create_offset_book(offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
+def create_offset_book(load_offsets: Callable[[], Offsets], journal: Journal | None) -> OffsetBook:
     """Return the offsets for the screen.
 
     They are the offsets of the journal's store, or the read-only offsets of a file. Raises CommandError if
     the file has errors.
     """
-    if journal is not None and offsets is read_stored_offsets:
+    if journal is not None and load_offsets is read_stored_offsets:
         return journal.book()
     from app.offsets.offset_book import OffsetBook
 
-    tools, secondary, zero, mill, _ = offsets()
+    tools, secondary, zero, mill, _ = load_offsets()
     return OffsetBook(
         lock_reason=OFFSETS_FILE_TEXT,
-        tools={
+        tool_offsets={
             n: ToolRow(row.x, row.z, row.nose_radius, quadrant=row.quadrant, remark=row.name)
             for n, row in tools.items()
         },
-        secondary={n: SecondaryRow(row.x, row.z, row.nose_radius) for n, row in secondary.items()},
-        zero={n: ZeroRow(row.x, row.z, row.c) for n, row in zero.items()},
+        secondary_offsets={n: SecondaryRow(row.x, row.z, row.nose_radius) for n, row in secondary.items()},
+        zero_offsets={n: ZeroRow(row.x, row.z, row.c) for n, row in zero.items()},
         mill_tools=dict(mill.tools),
         presets=dict(mill.presets),
-        active_preset=mill.preset,
+        active_preset=mill.active_preset,
     )
 
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from core.proving.program_tools import PartSettings
 
 WIDE, HIGH = 168, 112  # pixels
-MAX_FILES = 400  # files; beyond this number the oldest fifth is deleted
+MAX_FILE_COUNT = 400  # files; beyond this number the oldest fifth is deleted
 _CORE_FOLDER = Path(__file__).parents[2] / "core"
 _AZIMUTH, _TILT = 32.0, 32.0
 
@@ -49,7 +49,7 @@ class ThumbnailCache:
         """
         if self.machine.kind != "lathe":
             return None
-        setting = self.part_prover.read_setting(job, report_progress)[0]
+        setting = self.part_prover.read_settings(job, report_progress)[0]
         path = self.folder / self._cache_key(job, setting)
         pixels = _found(path, self.width_px * self.height_px)
         if pixels is None:
@@ -74,7 +74,7 @@ class ThumbnailCache:
             gathered.add_span(span)
             if number % 200 == 0:
                 watch(number)
-        moves = gathered.collected_steps()
+        moves = gathered.make_program_steps()
         part = make_finished_part(moves, watch) if moves is not None else None
         if part is None:
             return None
@@ -129,7 +129,7 @@ def _save_cached(path: Path, pixels: bytes) -> None:
         aside.write_bytes(zlib.compress(pixels))
         aside.replace(path)
         there = sorted(path.parent.iterdir(), key=lambda each: each.stat().st_mtime)
-        for old in there[: MAX_FILES // 5] if len(there) > MAX_FILES else []:
+        for old in there[: MAX_FILE_COUNT // 5] if len(there) > MAX_FILE_COUNT else []:
             old.unlink(missing_ok=True)
     except OSError:
         return

@@ -87,15 +87,15 @@ class UserAccess:
         level = tr(self.access_level.name)
         return join_messages(" · ", (mark_untranslated(self.user_name), level)) if self.user_name else level
 
-    def find_refusal(self, act: ProtectedChange) -> str:
+    def find_refusal(self, change: ProtectedChange) -> str:
         """Return why the current level does not permit this act, or an empty text if the act is permitted."""
-        needed = get_required_level(act)
+        needed = get_required_level(change)
         if not self.users.is_access_restricted or self.access_level >= needed:
             return ""
         text = tr("{what}: {level} REQUIRED (NOW {now}). F10, ACCESS LEVELS: SIGN IN")
         if self.sign_in_session is None:
             text = tr("{what}: {level} REQUIRED (NOW {now}). THIS TURNDESK IS INSTALLED WITHOUT SIGN-IN")
-        return tr(Message(text, what=tr(act.value), level=tr(needed.name), now=tr(self.access_level.name)))
+        return tr(Message(text, what=tr(change.value), level=tr(needed.name), now=tr(self.access_level.name)))
 
     def sign_out(self, reason: str = "") -> None:
         """Sign out the user and set the level to OPERATOR. ``reason`` is added to the log entry."""

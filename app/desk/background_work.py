@@ -39,7 +39,7 @@ class DaemonWorker:
         self._lock = threading.Lock()
         self._closed = False
 
-    def submit(self, task: Callable[[], None]) -> None:
+    def submit_task(self, task: Callable[[], None]) -> None:
         """Add a task to the queue, or drop the task if the worker is closed."""
         with self._lock:
             if self._closed:
@@ -79,19 +79,19 @@ class WorkRequest:
 
     worker: LatestRequestWorker
     # Does the work and returns the function that delivers the result.
-    work: Callable[[WorkRequest], Callable[[], None]]
-    on_failed: FailureCallback
+    run_work: Callable[[WorkRequest], Callable[[], None]]
+    report_failure: FailureCallback
     is_queued: bool  # Runs to its end even if a newer request arrives.
     is_wanted: bool = True
     is_superseded: bool = False  # Replaced by a newer request, which waits for ``grace_time_s`` seconds.
-    started_at: float = 0.0
+    start_time_s: float = 0.0
 
     def __call__(self, reached: float = 0.0) -> None:
         """Report the progress of the work. Raises AbandonedError if the work must stop."""
-        self.worker.check_continue(self)
+        self.worker.check_canceled(self)
         self.worker.progress = int(reached)
 
-    def publish(self, deliver: Callable[[], None]) -> None:
+    def publish_result(self, deliver: Callable[[], None]) -> None:
         """Call ``deliver`` on the worker with an intermediate result.
 
         Newer requests are blocked during the call. Raises AbandonedError if the result is no longer needed.
@@ -106,7 +106,7 @@ class WorkRequest:
 class LatestRequestWorker:
     """Worker on which a new request replaces the previous request.
 
-    ``enqueue`` adds work that is never canceled. For requests that follow typing, work begins after
+    ``enqueue_work`` adds work that is never canceled. For requests that follow typing, work begins after
     ``quiet_time_s`` seconds without another request, and at the latest after ``max_delay_s`` seconds. A
     replaced request may continue for ``grace_time_s`` seconds. ``thread_owner`` is another worker whose
     thread this worker shares.
@@ -117,7 +117,7 @@ class LatestRequestWorker:
     max_delay_s: float = 0.0
     grace_time_s: float = 0.0
     thread_owner: LatestRequestWorker | None = None
-    clock: Callable[[], float] = time.monotonic
+    read_time_s: Callable[[], float] = time.monotonic
     progress: int = 0  # Progress of the work in progress, in the unit of the work.
     lock: threading.Condition = field(default_factory=threading.Condition)
     _waiting: deque[WorkRequest] = field(default_factory=deque)
@@ -135,12 +135,12 @@ class LatestRequestWorker:
 
     @property
     def is_busy(self) -> bool:
-        """Return whether work is in progress or a result is waiting for ``poll``."""
+        """Return whether work is in progress or a result is waiting for ``deliver_results``."""
         with self.lock:
             at_work = self._current is not None and self._current.is_wanted
             return at_work or bool(self._waiting or self._answers)
 
-    def request(
+    def request_work(
         self,
         work: Callable[[WorkRequest], ResultT],
         on_done: Callable[[ResultT], None],
@@ -148,28 +148,28 @@ class LatestRequestWorker:
     ) -> None:
         """Request ``work`` in place of the previous request.
 
-        ``poll`` later calls ``on_done`` with the result, or ``on_failed`` with an error text. ``work`` is
-        called with the request as its progress callback.
+        ``deliver_results`` later calls ``on_done`` with the result, or ``on_failed`` with an error text.
+        ``work`` is called with the request as its progress callback.
         """
         with self.lock:
             if not self.grace_time_s:
-                self.cancel()
+                self.cancel_request()
             elif self._current is not None:
                 self._current.is_superseded = True
             self._drop_waiting()
             self._begin(work, on_done, on_failed, queued=False)
 
-    def enqueue(
+    def enqueue_work(
         self, work: Callable[[], ResultT], on_done: Callable[[ResultT], None], on_failed: FailureCallback
     ) -> None:
         """Add ``work`` that runs after all waiting work and is never canceled.
 
-        ``poll`` delivers the result as for ``request``.
+        ``deliver_results`` delivers the result as for ``request``.
         """
         with self.lock:
             self._begin(lambda _request: work(), on_done, on_failed, queued=True)
 
-    def cancel(self) -> None:
+    def cancel_request(self) -> None:
         """Cancel the current request. Queued work continues, and its result is still delivered."""
         with self.lock:
             self._drop_waiting()
@@ -178,7 +178,7 @@ class LatestRequestWorker:
             self._answers = deque(each for each in self._answers if each[0].is_queued)
             self.progress = 0
 
-    def poll(self) -> None:
+    def deliver_results(self) -> None:
         """Deliver the finished results in the order of the work.
 
         The screen calls this method once per frame.
@@ -199,7 +199,7 @@ class LatestRequestWorker:
         while self.is_busy and time.monotonic() < end:
             with self.lock:
                 self.lock.wait_for(lambda: self._answers or not self.is_busy, end - time.monotonic())
-            self.poll()
+            self.deliver_results()
 
     def close(self) -> None:
         """End the thread after canceling requests and finishing queued work.
@@ -209,7 +209,7 @@ class LatestRequestWorker:
         """
         with self.lock:
             self._closing = True
-            self.cancel()
+            self.cancel_request()
             self.lock.notify_all()
         if self.thread_owner is None:
             self._pool.close(CLOSE_TIMEOUT_S)
@@ -229,20 +229,20 @@ class LatestRequestWorker:
         if self._closing:
             return
         self._waiting.append(WorkRequest(self, run, failed, queued))
-        self._asked = self.clock()
+        self._asked = self.read_time_s()
         self.lock.notify_all()
         if not self._running:
             self._running = True
-            self._pool.submit(self._work_off)
+            self._pool.submit_task(self._work_off)
 
     def _drop_waiting(self) -> None:
         self._waiting = deque(each for each in self._waiting if each.is_queued)
 
     # --- worker thread -------------------------------------------------------------------------------
 
-    def check_continue(self, request: WorkRequest) -> None:
+    def check_canceled(self, request: WorkRequest) -> None:
         """Raise AbandonedError if the work on this request must stop."""
-        late = request.is_superseded and self.clock() - request.started_at > self.grace_time_s
+        late = request.is_superseded and self.read_time_s() - request.start_time_s > self.grace_time_s
         if late or not request.is_wanted:
             raise AbandonedError
 
@@ -262,9 +262,9 @@ class LatestRequestWorker:
         ``max_delay_s`` seconds have passed.
         """
         with self.lock:
-            end = self.clock() + self.max_delay_s
+            end = self.read_time_s() + self.max_delay_s
             while self._waiting and not self._closing:
-                left = min(self._asked + self.quiet_time_s, end) - self.clock()
+                left = min(self._asked + self.quiet_time_s, end) - self.read_time_s()
                 if left <= 0.0:
                     break
                 self.lock.wait(left)
@@ -272,7 +272,7 @@ class LatestRequestWorker:
             if self._current is None:
                 self._running = False
             else:
-                self._current.started_at = self.clock()
+                self._current.start_time_s = self.read_time_s()
             self.progress = 0
             return self._current
 
@@ -280,14 +280,14 @@ class LatestRequestWorker:
 def _run_request(request: WorkRequest) -> Callable[[], None] | None:
     """Do the work, and return the function that delivers its result, or None if the work was canceled."""
     try:
-        return request.work(request)
+        return request.run_work(request)
     except AbandonedError:
         return None
     except BaseException as error:  # noqa: BLE001 - whatever it is, it is told where it was asked for
         if _is_defect(error):
             _log.error("on the worker %s", request.worker.name, exc_info=error)
         why = describe_error(error)
-        return lambda: request.on_failed(why)
+        return lambda: request.report_failure(why)
 
 
 def _is_defect(error: BaseException) -> bool:
@@ -296,15 +296,16 @@ def _is_defect(error: BaseException) -> bool:
 
 
 class RepeatingThread:
-    """Thread that calls ``action`` after ``first_delay_s`` seconds and then every ``interval_s`` seconds.
+    """Thread that calls ``read_status`` after ``first_delay_s`` seconds and then every ``interval_s``
+    seconds.
 
     The watchdog identifies the thread by its name.
     """
 
     def __init__(
-        self, name: str, action: Callable[[], object], interval_s: float, first_delay_s: float = 0.0
+        self, name: str, read_status: Callable[[], object], interval_s: float, first_delay_s: float = 0.0
     ) -> None:
-        self._look, self._every, self._first = action, interval_s, first_delay_s
+        self._look, self._every, self._first = read_status, interval_s, first_delay_s
         self._closing = threading.Event()
         self._thread = threading.Thread(target=self._repeat, name=name, daemon=True)
 

@@ -39,7 +39,7 @@ class DailyBackup:
     write_backup: Callable[[Path], None]
     verify_backup: Callable[[Path], tuple[str, ...]]
     is_idle: Callable[[], bool]
-    report: Callable[[str], None]
+    report_error: Callable[[str], None]
     read_clock: Callable[[], datetime] = datetime.now
     data_folder: Path | None = None
     report_same_disk: Callable[[], None] = lambda: None
@@ -130,7 +130,7 @@ class DailyBackup:
     def _trouble(self, why: str) -> None:
         now = why, self.read_clock().date()
         if now != self._told:
-            self.report(Message("{folder}: {why}", folder=self.folder, why=why))
+            self.report_error(Message("{folder}: {why}", folder=self.folder, why=why))
         self._told = now
 
 

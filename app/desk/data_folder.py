@@ -8,8 +8,8 @@ from pathlib import Path
 from core.message import CodedError, Message
 
 HOME_VARIABLE = "TURNDESK_HOME"
-BACKUPS_FOLDER = "backups"  # Subfolder for backups.
-RECORDS_FOLDER = "records"  # Subfolder for recordings of the scope.
+BACKUPS_FOLDER_NAME = "backups"  # Subfolder for backups.
+RECORDS_FOLDER_NAME = "records"  # Subfolder for recordings of the scope.
 
 
 class DataFolderError(CodedError):

@@ -13,7 +13,7 @@ from functools import partial
 from typing import Final
 
 from app.desk.access import UserAccess
-from app.desk.late_presses import LatePresses, StartingAction
+from app.desk.late_presses import LatePressFilter, StartingAction
 from app.desk.pages.attached_parts import ClosingSequence
 from app.desk.pages.page_registry import PageRegistry
 from app.desk.persistence import Persistence
@@ -36,7 +36,7 @@ from app.desk.status import prompt_line
 from app.desk.status.alarm_log import AlarmLog
 from app.desk.status.machine_file_changes import MachineFileChanges
 from app.desk.status.machine_status import MachineStatus, Tone, make_status
-from app.desk.status.prompt_line import ONE_HAND_HINT, ONE_PALM_PRESSED, YES_KEY, PromptAnswers
+from app.desk.status.prompt_line import ONE_HAND_HINT, ONE_PALM_PRESSED, YES_KEY, PromptLine
 from app.desk.status.readouts import ReadoutKind
 from app.desk.stop_keys.stop_records import SOURCE_ESC, SOURCE_SCREEN
 from app.desk.translation import tr
@@ -88,7 +88,7 @@ class Desk:
         # Changes of the machine file that the operator must accept.
         self.changes: Final = file_changes or MachineFileChanges()
         self.offset_book: Final = offset_book or OffsetBook(lock_reason=OFFSETS_NOT_STORED)
-        self.window_state: Final = WindowState(LatePresses(self.read_snapshot, self.clock.read_seconds))
+        self.window_state: Final = WindowState(LatePressFilter(self.read_snapshot, self.clock.read_seconds))
         self.desk_control: Final = replace(
             control, post=self.window_state.late_presses.guard_post(control.post)
         )
@@ -100,11 +100,11 @@ class Desk:
         self.settings_store: Final = SettingsStore(persistence)
         self.program_runs: Final = ProgramRuns(persistence)
         self.alarm_log: Final = AlarmLog(self.clock.format_local_time)
-        self.prompt_answers: Final = PromptAnswers(
+        self.prompt_answers: Final = PromptLine(
             self.read_snapshot, self.storage_state.read_problem, self._now
         )
         self.user_access: Final = UserAccess(persistence, self.say, self.clock.read_seconds)
-        self.offset_book.access = self.user_access
+        self.offset_book.user_access = self.user_access
         self.renewal: Final = ProgramRenewal(program_loader, self.show_warning)
         self.program_choice: Final = ProgramChoice(
             folders, program_loader, self.read_snapshot, self.prompt_answers, self._save_path
@@ -176,7 +176,7 @@ class Desk:
 
     def clear_prompt_line(self) -> None:
         """Remove the message or the question from the prompt line."""
-        self.prompt_answers.withdraw()
+        self.prompt_answers.withdraw_question()
 
     @property
     def prompt_notice(self) -> str:
@@ -211,9 +211,9 @@ class Desk:
         """Return the kind of value that the large position display shows."""
         return ReadoutKind(self.settings_store.current.readout)
 
-    def is_refused(self, act: ProtectedChange) -> bool:
+    def is_refused(self, change: ProtectedChange) -> bool:
         """Return whether the access level is too low for this act, and if so show the reason."""
-        why = self.user_access.find_refusal(act)
+        why = self.user_access.find_refusal(change)
         if why:
             self.say(why)
         return bool(why)
@@ -257,7 +257,9 @@ class Desk:
         """Return why the start buttons have no effect now, or an empty text if they can start a cycle."""
         if self.window_state.is_stop_held() or not self.window_state.can_start_here:
             return (
-                prompt_line.STOP_HELD if self.window_state.is_stop_held() else prompt_line.START_ON_AUTOMATIC
+                prompt_line.RELEASE_STOP_KEY
+                if self.window_state.is_stop_held()
+                else prompt_line.START_ON_AUTOMATIC
             )
         if self.storage_state.is_restoring:
             return prompt_line.RESTORE_IN_PROGRESS
@@ -295,7 +297,7 @@ class Desk:
             self.readout_kind,
             machine.has_c_axis,
             settings.display_units,
-            machine.language,
+            machine.program_language,
             machine.third_axis_name,
             machine.is_table_rotary,
         )
@@ -442,7 +444,7 @@ class Desk:
         if self.window_state.late_presses.refuse_late_press(StartingAction.YES):
             return
         self.prompt_answers.remove_expired(self.read_snapshot())
-        self.prompt_answers.confirm(self.station_controls.at())
+        self.prompt_answers.confirm_question(self.station_controls.at())
 
     @property
     def was_question_read(self) -> bool:

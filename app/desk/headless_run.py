@@ -112,9 +112,9 @@ class HeadlessRun:
         if not lost or snapshot.state is not MachineState.IDLE:
             return True
         self._say(Message("homing {lost}", lost=", ".join(lost)))
-        self._until(lambda s: s.state is MachineState.HOME, HomeAxes(), tries=20)
+        self._until(lambda s: s.state is MachineState.HOMING, HomeAxes(), tries=20)
         return self._wait(
-            lambda s: s.state is not MachineState.HOME, tries=round(HOMING_TIMEOUT_S / POLL_INTERVAL_S)
+            lambda s: s.state is not MachineState.HOMING, tries=round(HOMING_TIMEOUT_S / POLL_INTERVAL_S)
         )
 
     def _start(self, reached: Callable[[Snapshot], bool]) -> bool:

@@ -137,22 +137,22 @@ HARMLESS_COMMANDS: frozenset[type[Command]] = frozenset(
 """All other commands. They start nothing without one of the commands that start."""
 
 
-def find_starting_action(command: Command, now: Snapshot) -> StartingAction | None:
+def find_starting_action(command: Command, snapshot: Snapshot) -> StartingAction | None:
     """Return the action that a command starts, or None if the command does not start an action."""
     found = STARTING_COMMANDS.get(type(command))
-    return found[0] if found is not None and found[1](command, now) else None
+    return found[0] if found is not None and found[1](command, snapshot) else None
 
 
 @dataclass(slots=True)
-class LatePresses:
+class LatePressFilter:
     """Filter that drops actions of a late press, and collects their names for one message.
 
-    ``clock`` returns monotonic time in seconds. ``report_names`` receives the names of all dropped actions.
-    ``on_answer_dropped`` is called when the reply to a question is dropped.
+    ``read_time_s`` returns monotonic time in seconds. ``report_names`` receives the names of all dropped
+    actions. ``on_answer_dropped`` is called when the reply to a question is dropped.
     """
 
-    snapshot: Callable[[], Snapshot]
-    clock: Callable[[], float]
+    read_snapshot: Callable[[], Snapshot]
+    read_time_s: Callable[[], float]
     report_names: Callable[[tuple[str, ...]], None] = lambda _names: None
     on_answer_dropped: Callable[[], None] = lambda: None
     is_late: bool = False  # The press that is being handled is late.
@@ -167,7 +167,7 @@ class LatePresses:
 
     def report_dropped(self, action: StartingAction) -> None:
         """Report a dropped action together with the actions that were dropped shortly before."""
-        now = self.clock()
+        now = self.read_time_s()
         if now - self._last > REPORT_INTERVAL_S:
             self._dropped.clear()
         self._last = now
@@ -189,12 +189,12 @@ class LatePresses:
         finally:
             self.is_late = late
 
-    def guard_post(self, post: Callable[[Command], None]) -> Callable[[Command], None]:
-        """Return a version of ``post`` that drops commands that a late press must not send."""
+    def guard_post(self, post_command: Callable[[Command], None]) -> Callable[[Command], None]:
+        """Return a version of ``post_command`` that drops commands that a late press must not send."""
 
         def guarded(command: Command) -> None:
-            starting = find_starting_action(command, self.snapshot()) if self.is_late else None
+            starting = find_starting_action(command, self.read_snapshot()) if self.is_late else None
             if starting is None or not self.refuse_late_press(starting):
-                post(command)
+                post_command(command)
 
         return guarded

@@ -116,7 +116,7 @@ class Persistence:
         """
         return ()
 
-    def move_program_data(self, old: str, new: str) -> None:
+    def rename_program(self, old_name: str, new_name: str) -> None:
         """Move the versions, part count and run record of a program to its new name."""
 
     def save_version(self, _name: str, _text: bytes, _why: str) -> int:

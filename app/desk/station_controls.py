@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from app.desk.late_presses import LatePresses, StartingAction
+from app.desk.late_presses import LatePressFilter, StartingAction
 from app.desk.status.prompt_line import ONE_PALM_PRESSED, RELEASE_BOTH_PALMS
 
 # --- palm buttons and pots ----------------------------------------------------------------------------
@@ -62,7 +62,7 @@ class StationPanel(Protocol):
         """Turn the feed override pot to a fraction of the programmed feed, 0 to 1.5."""
         ...
 
-    def turn_handwheel(self, counts: int) -> None:
+    def turn_handwheel(self, count_change: int) -> None:
         """Turn the handwheel of a machine with a handwheel by a signed number of counts."""
         ...
 
@@ -78,10 +78,10 @@ class PalmButtons:
 
     # "left" or "right", with its monotonic time in seconds.
     press_times: dict[str, float] = field(default_factory=dict)
-    both_pressed: bool = False  # Both were down together since the last time both were up.
+    are_both_pressed: bool = False  # Both were down together since the last time both were up.
     is_pair_invalid: bool = False
 
-    def press(self, side: str, time_s: float) -> bool:
+    def record_press(self, side: str, time_s: float) -> bool:
         """Record a press, and return whether both buttons are now pressed.
 
         The result is False if the buttons were not pressed within the time limit.
@@ -93,20 +93,20 @@ class PalmButtons:
         if len(self.press_times) < 2:
             return False
         self.is_pair_invalid = self.is_pair_invalid or max(times) - min(times) > TWO_HAND_WINDOW_S
-        self.both_pressed = self.both_pressed or not self.is_pair_invalid
+        self.are_both_pressed = self.are_both_pressed or not self.is_pair_invalid
         return not self.is_pair_invalid
 
-    def release(self, side: str) -> bool:
+    def record_release(self, side: str) -> bool:
         """Record a release, and return True if the other button was not pressed in time.
 
         The result is False if this button was not pressed.
         """
         if self.press_times.pop(side, None) is None:
             return False
-        alone = not self.both_pressed
+        alone = not self.are_both_pressed
         self.is_pair_invalid = bool(self.press_times)
         if not self.press_times:
-            self.both_pressed = False
+            self.are_both_pressed = False
         return alone
 
 
@@ -120,11 +120,11 @@ class OverridePot:
     ``wanted`` is the target that a touch sets. ``position`` moves toward the target at a limited speed.
     """
 
-    maximum: float
+    max_fraction: float
     wanted: float = 1.0
     position: float = 1.0
     starting_action: StartingAction = StartingAction.OVERRIDE
-    late_presses: LatePresses | None = None
+    late_presses: LatePressFilter | None = None
 
     def set(self, fraction: float) -> None:
         """Set the target of the pot, toward which the pot turns at a limited speed.
@@ -139,7 +139,7 @@ class OverridePot:
             self._choose(fraction)
 
     def _choose(self, fraction: float) -> None:
-        self.wanted = max(0.0, min(self.maximum, fraction))
+        self.wanted = max(0.0, min(self.max_fraction, fraction))
 
     def advance(self, elapsed_s: float) -> bool:
         """Turn the pot for this number of seconds, and return whether it has moved."""
@@ -175,8 +175,8 @@ class StationControls:
     find_press_age: Callable[[], float] = float  # Seconds since the press that is being handled.
     palms: PalmButtons = field(default_factory=PalmButtons)
     one_palm_message: str = ONE_PALM_PRESSED  # Message after a single palm button was pressed.
-    estop_pressed: bool = False
-    late: LatePresses | None = None
+    is_estop_pressed: bool = False
+    late: LatePressFilter | None = None
     spindle_pot: OverridePot = field(
         default_factory=lambda: OverridePot(1.0, starting_action=StartingAction.SPINDLE)
     )
@@ -185,9 +185,9 @@ class StationControls:
     _latched_at: float = 0.0
     _looked: float | None = None
 
-    def use_late_presses(self, late: LatePresses) -> None:
+    def use_late_presses(self, late_presses: LatePressFilter) -> None:
         """Drop late presses that would start an action at the station."""
-        self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late
+        self.late = self.spindle_pot.late_presses = self.feed_pot.late_presses = late_presses
 
     def _refuses(self, starting: StartingAction) -> bool:
         return self.late is not None and self.late.refuse_late_press(starting)
@@ -215,7 +215,7 @@ class StationControls:
             self._palm_down(station, side)
         elif not is_down and side in self.palms.press_times:
             (station.release_left if side == "left" else station.release_right)()
-            if self.palms.release(side):
+            if self.palms.record_release(side):
                 self.say(self.one_palm_message)
 
     def latch(self, side: str) -> None:
@@ -253,7 +253,7 @@ class StationControls:
 
     def _palm_down(self, station: StationPanel, side: str) -> None:
         self.clear()
-        if self.palms.press(side, self.at()):
+        if self.palms.record_press(side, self.at()):
             self.starting()
         if self.palms.is_pair_invalid:
             self.say(RELEASE_BOTH_PALMS)
@@ -279,8 +279,8 @@ class StationControls:
         """Press the E-stop button, or release it by twisting."""
         if not is_pressed and self._refuses(StartingAction.RELEASE_ESTOP):
             return
-        if self.station and is_pressed is not self.estop_pressed:
-            self.estop_pressed = is_pressed
+        if self.station and is_pressed is not self.is_estop_pressed:
+            self.is_estop_pressed = is_pressed
             self.clear()
             (self.station.press_estop if is_pressed else self.station.release_estop)()
 

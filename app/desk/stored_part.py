@@ -23,12 +23,12 @@ class StoredPart:
     """
 
     stock: str = ""
-    stick_out: float | None = None
+    stick_out_mm: float | None = None
     silenced_checks: Mapping[str, str] = field(default_factory=dict)
 
     def make_settings(self, program: str) -> dict[str, object]:
         """Return the settings to store for a program, by setting name. The value None removes a setting."""
-        rest: dict[str, object] = {"stick_out": self.stick_out, "silenced": dict(self.silenced_checks)}
+        rest: dict[str, object] = {"stick_out": self.stick_out_mm, "silenced": dict(self.silenced_checks)}
         said = {name: value for name, value in rest.items() if value}
         return {
             make_stock_setting_key(program): self.stock or None,

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.desk.command_errors import CommandError
 from app.desk.standard_input import STDIN_ARGUMENT, read_standard_input
 from core.input_file import TooLargeError, parse_toml, read_input_bytes
-from core.message import CodedError, Message, find_nearest
+from core.message import CodedError, Message, find_similar_word
 
 _MOST_BYTES = 16 * 1024 * 1024
 # Strings and comments are not changed. A number after =, [ or a comma may begin with its point.
@@ -70,10 +70,10 @@ def _too_large(path: Path) -> CommandError:
     return CommandError(text, "too-large")
 
 
-def describe_unknown_key(key: str, known: Iterable[str]) -> str:
+def describe_unknown_key(key: str, known_keys: Iterable[str]) -> str:
     """Return the error text for an unknown key, which names the most similar known key."""
-    names = list(known)
-    near = find_nearest(key, names)
+    names = list(known_keys)
+    near = find_similar_word(key, names)
     return Message(
         "{key} is unknown; {nearest}",
         key=key,
@@ -81,12 +81,12 @@ def describe_unknown_key(key: str, known: Iterable[str]) -> str:
     )
 
 
-def make_unknown_key_error(key: str, known: Iterable[str], table: str = "") -> CodedError:
+def make_unknown_key_error(key: str, known_keys: Iterable[str], table_name: str = "") -> CodedError:
     """Return the error for an unknown key, which names the table of the key."""
     return CodedError(
-        Message("[{table}] {key}", table=table, key=describe_unknown_key(key, known))
-        if table
-        else describe_unknown_key(key, known),
+        Message("[{table}] {key}", table=table_name, key=describe_unknown_key(key, known_keys))
+        if table_name
+        else describe_unknown_key(key, known_keys),
         "unknown-key",
     )
 

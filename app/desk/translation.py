@@ -27,13 +27,13 @@ class _ActiveTranslation:
     language = ENGLISH_CODE
 
 
-def set_translator(translate: Translate | None, language: str = ENGLISH_CODE) -> None:
+def set_translator(translate: Translate | None, language_code: str = ENGLISH_CODE) -> None:
     """Set the translator for all texts. With None, the texts remain in English.
 
     ``language`` is the ISO 639-1 code of the translator's language.
     """
     _ActiveTranslation.translate = None if translate is None else lru_cache(8192)(translate)
-    _ActiveTranslation.language = language
+    _ActiveTranslation.language = language_code
 
 
 def get_language() -> str:

@@ -13,7 +13,7 @@ from app.desk.pages.code_help import CodeHelp
 from app.desk.pages.table_content import FunctionKey
 from app.editor.live_proof import LiveProof
 from app.editor.text_view import ProgramTextField
-from app.screen.code_choices_view import CodeChoiceList, draw_entry
+from app.screen.code_choices_view import CodeChoiceList, draw_code_entry
 from app.screen.drawings import SketchPanel
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter
@@ -151,7 +151,7 @@ SKETCH_HEIGHT = 17.0  # units: height of a sketch
 class CodeStrip(Panel):
     """Strip that shows one code with its syntax and meaning; a press opens the list of codes."""
 
-    ground_color = "panel"
+    background_color = "panel"
     entry: RedrawingAttribute[CodeBookEntry | None] = RedrawingAttribute(None)
 
     def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
@@ -161,11 +161,13 @@ class CodeStrip(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the current code with its meaning, or the word CODES if no code is shown."""
         self.add_target(self.find_full_area(), self._press)
-        box = self.find_full_area().adjusted(1.2 * self.theme.u, 0.3 * self.theme.u, -0.6 * self.theme.u, 0)
+        box = self.find_full_area().adjusted(
+            1.2 * self.theme.unit_px, 0.3 * self.theme.unit_px, -0.6 * self.theme.unit_px, 0
+        )
         if self.entry is None:
             painter.draw_text_line(box, "CODES", 1.8, "accent", fit=False)
             return
-        draw_entry(painter, box, self.entry, "accent", "text")
+        draw_code_entry(painter, box, self.entry, "accent", "text")
 
 
 class CodeList(CodeChoiceList):
@@ -196,7 +198,7 @@ class CodeList(CodeChoiceList):
         """Look up the code at the cursor and return its entry, or None if no code is there."""
         field = self._field
         self._codes.update_for_cursor(
-            self._proof.current.code_book, field.textCursor().block().text(), field.cursor_column
+            self._proof.current_findings.code_book, field.textCursor().block().text(), field.cursor_column
         )
         return self._codes.current_entry
 
@@ -231,7 +233,7 @@ class CodeList(CodeChoiceList):
                 "",
                 frozenset(),
             )
-            u, foot = self.theme.u, self._find_foot_height()
+            u, foot = self.theme.unit_px, self._find_foot_height()
             self._picture.setGeometry(
                 round(0.8 * u),
                 round(self.height() - foot),
@@ -245,7 +247,7 @@ class CodeList(CodeChoiceList):
 
     def _find_sketch_height(self) -> float:
         """Return the height of the sketch in pixels, or 0 while the sketch is hidden."""
-        return SKETCH_HEIGHT * self.theme.u if not self._picture.isHidden() else 0.0
+        return SKETCH_HEIGHT * self.theme.unit_px if not self._picture.isHidden() else 0.0
 
     def function_keys(self) -> dict[int, FunctionKey]:
         """Return the function keys that apply while the list is open."""

@@ -221,7 +221,7 @@ class DraftStore:
 
         ``show_message`` is called with the result for the operator.
         """
-        self.worker.enqueue(lambda: self._recovered(document), show_message, show_message)
+        self.worker.enqueue_work(lambda: self._recovered(document), show_message, show_message)
 
     def _recovered(self, document: Document) -> str:
         place = self._place(document.name)
@@ -233,7 +233,7 @@ class DraftStore:
             if self.archive.save_version(document.name, document.encode(text), WHY):
                 place.unlink(missing_ok=True)
                 return messages.DRAFT_IN_HISTORY
-            why = messages.NO_STORE
+            why = messages.HISTORY_UNAVAILABLE
         except (FileNotFoundError, NotADirectoryError):
             return ""  # No draft was left.
         except (OSError, UnicodeDecodeError, StoreError) as error:
@@ -246,7 +246,7 @@ class DraftStore:
 
         This method is called once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         self._go_on()
 
     def close(self) -> None:
@@ -260,7 +260,7 @@ class DraftStore:
             return
         name, text = next(iter(self._wanted.items()))
         del self._wanted[name]
-        self.worker.enqueue(lambda: self._write_draft(name, text), self._written, self._written)
+        self.worker.enqueue_work(lambda: self._write_draft(name, text), self._written, self._written)
 
     def _written(self, error_text: str) -> None:
         self.error_text = error_text

@@ -107,7 +107,7 @@ class EditorModel:
 
         This method is called once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         self.draft_store.poll()
         if self.draft_store.error_text and not self.message:
             self.message = self.draft_store.error_text
@@ -125,7 +125,9 @@ class EditorModel:
         self.clear_message()
         self.block_delete = block_delete
         self.stage = EditorStage.READING
-        self.worker.enqueue(lambda: open_document(path, self.samples_folder), self._opened, self._not_opened)
+        self.worker.enqueue_work(
+            lambda: open_document(path, self.samples_folder), self._opened, self._not_opened
+        )
 
     def offer_new(self, typed_name: str) -> None:
         """Ask whether to create a new file with the typed name."""
@@ -290,7 +292,7 @@ class EditorModel:
 
     def _write(self, document: Document, text: str, *, replacing: bool = False) -> None:
         self.stage = EditorStage.SAVING
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             lambda: save_document(document, text, self.version_archive, replacing),
             lambda problem: self._saved(document, text, problem),
             self._not_saved,

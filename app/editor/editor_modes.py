@@ -21,7 +21,7 @@ class EditorMode(StrEnum):
     PANEL = "panel"  # a form of an optional feature writes the lines
 
 
-ASKING_MODES = frozenset({EditorMode.FIND, EditorMode.LINE_NUMBER, EditorMode.NAME})
+ENTRY_MODES = frozenset({EditorMode.FIND, EditorMode.LINE_NUMBER, EditorMode.NAME})
 MODE_PROMPTS = {
     EditorMode.FIND: messages.SEARCH_HINT,
     EditorMode.LINE_NUMBER: messages.LINE_NUMBER_HINT,

@@ -15,7 +15,7 @@ from app.desk.status import formats
 from app.desk.translation import tr
 from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.editor_model import EditorModel
-from app.editor.editor_modes import ASKING_MODES, EditorMode
+from app.editor.editor_modes import ENTRY_MODES, EditorMode
 from app.editor.live_proof import ProofFindings
 from app.editor.question_view import QuestionLine
 from app.editor.text_view import SEVERITY_COLORS, SEVERITY_NAMES, ProgramTextField, TextSynchronizer
@@ -24,7 +24,7 @@ from app.path.path_aspects import TipPosition
 from app.path.path_view import PathView
 from app.screen.code_choices_view import CODE_ROW_HEIGHT
 from app.screen.entry_panel import LetterPad, send_key
-from app.screen.page_base import EditorPanel, HeadKey, Page
+from app.screen.page_base import EditorPanel, HeaderKey, Page
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter
 from app.screen.table_panel import RowPanel
@@ -37,7 +37,7 @@ from core.message import Message
 
 if TYPE_CHECKING:
     from app.path.part_player import PartPlayer
-    from app.path.path_pane_view import PathPane, Position
+    from app.path.path_pane_view import PathPane, PlanePosition
     from app.path.path_picture import ProgramPicture
 
 
@@ -49,7 +49,7 @@ class EditorPathView(PathView):
     """
 
     title = "PATH TO THE CURSOR"
-    keeps_view = True
+    preserves_view = True
 
     def __init__(
         self,
@@ -99,7 +99,7 @@ class EditorPathView(PathView):
         return {
             2: FunctionKey("FEED HOLD", self._set_measured_point),
             4: FunctionKey("VIEW", self.select_next_view),
-            5: FunctionKey("FIT", self.fit_all),
+            5: FunctionKey("FIT", self.fit_all_panes),
             6: FunctionKey("ZOOM IN", partial(self.zoom_view, 1)),
             7: FunctionKey("ZOOM OUT", partial(self.zoom_view, -1)),
         }
@@ -121,8 +121,8 @@ class EditorPathView(PathView):
         if line:
             self._go_to(line)
 
-    def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> Position | None:
-        return pane.find_block_end(tip.block)
+    def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> PlanePosition | None:
+        return pane.find_block_end(tip.active_block)
 
 
 FINDING_ROW_HEIGHT = 5.2  # units: two lines of text, at least a fingertip high
@@ -180,7 +180,7 @@ class FindingList(RowPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the findings, and scroll the list so that the finding of the cursor line is visible."""
         u, high, found = (
-            self.theme.u,
+            self.theme.unit_px,
             self.theme.find_row_height(FINDING_ROW_HEIGHT, 9.0, is_touchable=True),
             self.findings.diagnostics,
         )
@@ -194,7 +194,7 @@ class FindingList(RowPanel):
             self._row(painter, box, found[number])
 
     def _row(self, painter: ThemedPainter, box: QRectF, found: Diagnostic) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         if found.line == self._line:
             painter.fill_rect(box, "here")
         patch = QRectF(box.x() + 0.4 * u, box.center().y() - 1.6 * u, 3.2 * u, 3.2 * u)
@@ -231,24 +231,28 @@ class EditorHeading(NamedTuple):
 class EditorHeadLine(Panel):
     """Head line with the edited program, which can differ from the loaded program in the title line."""
 
-    ground_color = "panel"
+    background_color = "panel"
     heading = RedrawingAttribute(EditorHeading())
     # keys of optional features that write into this program
-    panel_keys: RedrawingAttribute[tuple[HeadKey, ...]] = RedrawingAttribute(())
+    panel_keys: RedrawingAttribute[tuple[HeaderKey, ...]] = RedrawingAttribute(())
 
     def __init__(
-        self, theme: ScreenTheme, keys: Callable[[], None], open_panel: Callable[[str], None], parent: QWidget
+        self,
+        theme: ScreenTheme,
+        toggle_keyboard: Callable[[], None],
+        open_panel: Callable[[str], None],
+        parent: QWidget,
     ) -> None:
         """Create the head line.
 
-        ``keys`` shows or hides the keyboard, and ``open_panel`` opens the panel of a key.
+        ``toggle_keyboard`` shows or hides the keyboard, and ``open_panel`` opens the panel of a key.
         """
         super().__init__(theme, parent)
-        self._keys, self._panel = keys, open_panel
+        self._keys, self._panel = toggle_keyboard, open_panel
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the program name with its mark, the cursor position and the touch keys."""
-        look, u, high, now = self.theme, self.theme.u, self.height(), self.heading
+        look, u, high, now = self.theme, self.theme.unit_px, self.height(), self.heading
         painter.draw_text_line(QRectF(1.4 * u, 0, 41 * u, high), now.name, 2.3, "text", raw=True, margin=1.0)
         left = 3.0 * u + min(40 * u, QFontMetricsF(painter.font()).horizontalAdvance(now.name))
         if now.mark:
@@ -342,7 +346,7 @@ class EditorParts(Page):
     version_list: VersionList
     question_line: QuestionLine
     editor_panel: EditorPanel
-    typed_text: TextSynchronizer
+    text_synchronizer: TextSynchronizer
     _with_letters = False
 
     def show_text(self) -> None:
@@ -356,10 +360,10 @@ class EditorParts(Page):
         if self.mode is EditorMode.PANEL:  # of the text including the lines of the form
             line, count = self.editor_panel.model.path_line, self.editor_panel.model.text.count("\n") + 1
         place = Message("LINE {line} OF {count}  ·  COL {column}", line=line, count=count, column=column)
-        self.head_line.heading = EditorHeading(editor.name, self.typed_text.mark, place)
-        self.head_line.panel_keys = tuple(self.editor_panel.make_head_keys(editor.name))
+        self.head_line.heading = EditorHeading(editor.name, self.text_synchronizer.mark, place)
+        self.head_line.panel_keys = tuple(self.editor_panel.make_header_keys(editor.name))
         self.code_list.dialect = guess_dialect(editor.name)
-        findings = editor.live_proof.current
+        findings = editor.live_proof.current_findings
         self.text_field.show_findings(findings.line_findings)
         self.finding_list.show_findings(findings, line)
         if self.mode is EditorMode.TEXT:
@@ -376,7 +380,7 @@ class EditorParts(Page):
         self.path_view.show_picture(picture if scene is None else None)
         if scene is not None:
             here = make_line_instant(scene, line)
-            self.plane_view.show_instant(here, describe_plane(here.swivel))
+            self.plane_view.show_instant(here, describe_plane(here.plane_position))
             return
         self.path_view.follow_line(line)
         self.path_view.draw_slice()
@@ -394,7 +398,7 @@ class EditorParts(Page):
             part.setVisible(self.mode is not EditorMode.NEW_FILE and not self.is_keyboard_shown)
         self.letter_pad.setVisible(self.is_keyboard_shown)
         self.letter_pad.set_target_field(
-            self.question_line.first_field if self.mode in ASKING_MODES else self.text_field
+            self.question_line.first_field if self.mode in ENTRY_MODES else self.text_field
         )
         self._lay_out()
 
@@ -406,7 +410,7 @@ class EditorParts(Page):
 
         The keyboard is visible if the user has requested it and the mode accepts text.
         """
-        return self._with_letters and self.mode in ASKING_MODES | {EditorMode.TEXT}
+        return self._with_letters and self.mode in ENTRY_MODES | {EditorMode.TEXT}
 
     def toggle_keyboard(self) -> None:
         """Show or hide the drawn keyboard."""
@@ -423,9 +427,9 @@ class EditorParts(Page):
 
     def _lay_out(self) -> None:
         keys = KEYBOARD_HEIGHT if self.is_keyboard_shown else 0.0
-        asking = self.mode in ASKING_MODES
+        asking = self.mode in ENTRY_MODES
         at = make_editor_layout(
-            self.width(), self.height(), self.theme.u, has_question=asking, keyboard_height=keys
+            self.width(), self.height(), self.theme.unit_px, has_question=asking, keyboard_height=keys
         )
         for part, rect in (
             (self.head_line, at.head_line),

@@ -22,7 +22,7 @@ from app.desk.status.prompt_line import MOVING_STATES
 from app.editor import editor_messages as messages
 from app.editor.code_help_view import CodeList, CodeStrip
 from app.editor.editor_model import EditorModel, EditorStage, find_load_label, open_editor
-from app.editor.editor_modes import ASKING_MODES, MODE_PROMPTS, EditorMode
+from app.editor.editor_modes import ENTRY_MODES, MODE_PROMPTS, EditorMode
 from app.editor.editor_parts_view import EditorHeadLine, EditorParts, EditorPathView, FindingList
 from app.editor.live_proof import describe_finding
 from app.editor.panel_text_view import PanelSynchronizer
@@ -72,9 +72,11 @@ class EditorPage(EditorParts):
         self.version_list = VersionList(look, self.version_history, self)
         self.question_line = QuestionLine(look, self, self)
         self.text_finder = TextFinder(self.text_field, self.question_line)
-        self.typed_text = TextSynchronizer(self.text_field, self.editor)
-        self.editor_panel: EditorPanel = page_table.find_editor_panel(EditorPanel)(host, self)
-        self.panel_text = PanelSynchronizer(self.editor_panel, self.editor, self.text_field, self.typed_text)
+        self.text_synchronizer = TextSynchronizer(self.text_field, self.editor)
+        self.editor_panel: EditorPanel = page_table.find_editor_panel_class(EditorPanel)(host, self)
+        self.panel_text = PanelSynchronizer(
+            self.editor_panel, self.editor, self.text_field, self.text_synchronizer
+        )
 
     # --- calls of the main window --------------------------------------------------------------------
 
@@ -99,15 +101,15 @@ class EditorPage(EditorParts):
             self.editor.cancel_offer()
         if self.editor.stage is not EditorStage.CLOSED:
             self._target = page_table.AUTOMATIC
-            self.editor.save_and_leave(self.typed_text.read_text())
+            self.editor.save_and_leave(self.text_synchronizer.read_text())
         return self.editor.stage is EditorStage.CLOSED
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of the present function keys."""
         now = self._find_mode_keys()
         return tuple(now[n].label if n in now else "" for n in range(1, 11))
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the present function keys."""
         found = {f"F{number}": key.action for number, key in self._find_mode_keys().items()}
         found["Codes"] = self.complete_code
@@ -142,14 +144,14 @@ class EditorPage(EditorParts):
             self.editor.clear_message()
         elif self.desk.prompt_notice:
             return False
-        elif self.editor.is_dirty(self.typed_text.read_text()):
+        elif self.editor.is_dirty(self.text_synchronizer.read_text()):
             self.editor.message = messages.UNSAVED_CHANGES
         else:
             self._target = page_table.AUTOMATIC
             self.discard_and_leave()
         return True
 
-    def pending_question(self) -> str:
+    def find_pending_question(self) -> str:
         """Return the question that F6 confirms, or an empty string."""
         return self.editor.message if self.editor.pending_action else ""
 
@@ -166,7 +168,7 @@ class EditorPage(EditorParts):
         if own is not None or self.mode in MODE_PROMPTS:
             return own() if own is not None else MODE_PROMPTS[self.mode]
         line = self.text_field.cursor_line
-        found = self.text_field.finding_at(line)
+        found = self.text_field.find_finding(line)
         if found is not None:
             return describe_finding(found, line)
         return messages.SAVE_HINT
@@ -179,7 +181,7 @@ class EditorPage(EditorParts):
         if editor.stage is EditorStage.CLOSED:
             self._handle_closed()
             return
-        self.typed_text.synchronize()
+        self.text_synchronizer.synchronize()
         self._update_stage()
         if self.mode is EditorMode.PANEL:
             self.panel_text.synchronize()
@@ -209,7 +211,7 @@ class EditorPage(EditorParts):
 
     def _find_mode_keys(self) -> ModeKeys:
         """Return the function keys of the present mode."""
-        word = "SAV+MENU" if self.mode is EditorMode.TEXT and self.typed_text.is_dirty else "MENU"
+        word = "SAV+MENU" if self.mode is EditorMode.TEXT and self.text_synchronizer.is_dirty else "MENU"
         menu, back = (
             FunctionKey(word, partial(self.save_and_open_page, page_table.MENU)),
             FunctionKey("BACK", self.return_to_text),
@@ -246,7 +248,7 @@ class EditorPage(EditorParts):
         }
 
     def _text_keys(self) -> ModeKeys:
-        load_label = find_load_label(self.desk, self.editor, is_dirty=self.typed_text.is_dirty)
+        load_label = find_load_label(self.desk, self.editor, is_dirty=self.text_synchronizer.is_dirty)
         return {
             2: FunctionKey("SAVE", self.save_text),
             3: FunctionKey(load_label, partial(self.save_and_open_page, page_table.AUTOMATIC)),
@@ -265,7 +267,7 @@ class EditorPage(EditorParts):
         self.show_mode()
         if mode is EditorMode.HISTORY:
             self.version_list.raise_()
-            self.version_history.open_history(self.editor.name, self.typed_text.read_text())
+            self.version_history.open_history(self.editor.name, self.text_synchronizer.read_text())
         if mode is EditorMode.CODES:
             self.code_list.raise_()
         if mode is EditorMode.PANEL:
@@ -279,7 +281,7 @@ class EditorPage(EditorParts):
         """Return to the text from a question, a list or the path."""
         self.editor.cancel_naming()
         if self.mode is EditorMode.PANEL:
-            self.typed_text.is_stale = True  # The present proof can belong to the preview of a form.
+            self.text_synchronizer.is_stale = True  # The present proof can belong to the preview of a form.
         self.enter_mode(EditorMode.TEXT)
 
     def move_cursor_to(self, line: int, column: int = 0) -> None:
@@ -308,20 +310,22 @@ class EditorPage(EditorParts):
 
     def save_text(self) -> None:
         """Save the text and continue editing."""
-        self.editor.save_document(self.typed_text.read_text())
+        self.editor.save_document(self.text_synchronizer.read_text())
 
     def save_and_open_page(self, page_name: str) -> None:
         """Save the text and open another page."""
         self._target = page_name
-        self.editor.save_and_leave(self.typed_text.read_text(), should_load=page_name == page_table.AUTOMATIC)
+        self.editor.save_and_leave(
+            self.text_synchronizer.read_text(), should_load=page_name == page_table.AUTOMATIC
+        )
 
     def discard_and_leave(self) -> None:
         """Close the editor without saving."""
-        self.editor.discard_and_leave(self.typed_text.read_text())
+        self.editor.discard_and_leave(self.text_synchronizer.read_text())
 
     def confirm_question(self) -> None:
         """Confirm the pending question of the editor."""
-        self.editor.confirm_question(self.typed_text.read_text())
+        self.editor.confirm_question(self.text_synchronizer.read_text())
 
     def restore_version(self) -> None:
         """Restore the selected version into the editor."""
@@ -436,7 +440,7 @@ class EditorPage(EditorParts):
         key, modifiers = event.key(), event.modifiers()
         if modifiers & Qt.KeyboardModifier.ControlModifier:
             return self._make_chord_actions().get(key)
-        if self.mode in ASKING_MODES:
+        if self.mode in ENTRY_MODES:
             before = bool(modifiers & Qt.KeyboardModifier.ShiftModifier) and self.mode is EditorMode.FIND
             enter, tab = (
                 partial(self.text_finder.select_match, -1) if before else self._accept_entry,

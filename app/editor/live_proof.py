@@ -71,10 +71,10 @@ def map_by_line(diagnostics: tuple[Diagnostic, ...]) -> dict[int, Diagnostic]:
 class LiveProof:
     """Proof of the latest text.
 
-    ``submit_text`` and ``current`` never block, and older texts are skipped.
+    ``submit_text`` and ``current_findings`` never block, and older texts are skipped.
     """
 
-    steps: LoadingSteps
+    loading_steps: LoadingSteps
     worker: LatestRequestWorker = field(
         default_factory=lambda: LatestRequestWorker(
             "editing-proof", quiet_time_s=QUIET_TIME_S, max_delay_s=MAX_DELAY_S, grace_time_s=GRACE_TIME_S
@@ -84,24 +84,24 @@ class LiveProof:
     _number: int = 0
 
     @property
-    def current(self) -> ProofFindings:
+    def current_findings(self) -> ProofFindings:
         """Return the latest findings.
 
         If the worker fails, ``error_text`` of the findings contains the reason.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         return self._now
 
     @property
     def is_outdated(self) -> bool:
-        """Return whether a text newer than that of ``current`` is waiting or being proved."""
+        """Return whether a text newer than that of ``current_findings`` is waiting or being proved."""
         return self.worker.is_busy
 
     def submit_text(self, name: str, text: str, block_delete: bool = False) -> int:
         """Submit the present text for proving, and return its number."""
         self._number += 1
         work = partial(self._prove_text, self._number, ProgramSource(name, text), block_delete)
-        self.worker.request(work, self._show, self._failed)
+        self.worker.request_work(work, self._show, self._failed)
         return self._number
 
     def clear_findings(self) -> None:
@@ -120,19 +120,19 @@ class LiveProof:
 
         The findings are published before the picture is drawn. The findings about the part follow last.
         """
-        job = self.steps.make_job(source, block_delete)
-        proved = self.steps.prove_job(job, request)
+        job = self.loading_steps.make_job(source, block_delete)
+        proved = self.loading_steps.prove_job(job, request)
         found, proof = proved.diagnostics, proved.proof
         before = self._now.picture
-        book = get_code_book(source.dialect).with_compiled_patterns()
+        book = get_code_book(source.dialect).compile_patterns()
         findings = ProofFindings(
             number, found, map_by_line(found), before, proof.cycle_time_s, proof.block_count, code_book=book
         )
-        request.publish(partial(self._show, findings))
-        picture = self.steps.draw_path(job, request)
+        request.publish_result(partial(self._show, findings))
+        picture = self.loading_steps.draw_path(job, request)
         findings = replace(findings, picture=picture)
-        request.publish(partial(self._show, findings))
-        part = self.steps.prove_part(picture, request)
+        request.publish_result(partial(self._show, findings))
+        part = self.loading_steps.prove_part(picture, request)
         if part is None:
             return findings
         found = part.merge_diagnostics(found)

@@ -40,9 +40,9 @@ class PanelSynchronizer:
         This method is called once per frame.
         """
         model, (proved, written) = self._panel.model, self._shown
-        model.poll()
+        model.process_results()
         if model.write_count != written:
-            self._field.put_text(model.text, as_new=False)
+            self._field.replace_text(model.text, as_new=False)
             self._field.move_cursor_to(model.cursor_line)
         if model.text_number != proved and not self._typed_text.is_stale:
             self._editor.preview_text(model.text)

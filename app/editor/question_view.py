@@ -99,17 +99,17 @@ MESSAGE_WIDTH = 34.0  # units: width of the message
 class QuestionLine(Panel):
     """Line with one or two labeled fields, and a message about the entry on the right."""
 
-    ground_color = "panel"
+    background_color = "panel"
     message_text = RedrawingAttribute("")  # message about the entry
 
-    def __init__(self, theme: ScreenTheme, keys: QObject, parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, toggle_keyboard: QObject, parent: QWidget) -> None:
         super().__init__(theme, parent)
         self.first_field, self.second_field = QLineEdit(self), QLineEdit(self)
         self._labels: tuple[str, ...] = ("",)
         for edit in (self.first_field, self.second_field):
             edit.setMaxLength(250)
             edit.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
-            edit.installEventFilter(keys)
+            edit.installEventFilter(toggle_keyboard)
         self.hide()
 
     def show_question(self, *labels: str, initial_text: str | None = None) -> None:
@@ -146,18 +146,18 @@ class QuestionLine(Panel):
         self.apply_theme()
 
     def _place(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         for edit, box in zip((self.first_field, self.second_field), self._boxes(), strict=False):
             edit.setGeometry(box.adjusted(LABEL_WIDTH * u, 0.8 * u, 0, -0.8 * u).toRect())
 
     def _boxes(self) -> list[QRectF]:
-        u, count = self.theme.u, len(self._labels)
+        u, count = self.theme.unit_px, len(self._labels)
         wide = (self.width() - (MESSAGE_WIDTH + 2) * u) / count
         return [QRectF(n * wide + u, 0, wide - u, self.height()) for n in range(count)]
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the labels of the fields, and the message about the entry on the right."""
-        u = self.theme.u
+        u = self.theme.unit_px
         for label, box in zip(self._labels, self._boxes(), strict=True):
             painter.draw_text_line(
                 QRectF(box.x(), 0, (LABEL_WIDTH - 1) * u, box.height()), label, 1.8, "soft"

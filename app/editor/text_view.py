@@ -96,7 +96,7 @@ class SyntaxHighlighter(QSyntaxHighlighter):
         key = (colour, bold)
         if key not in self._formats:
             made = QTextCharFormat()
-            made.setForeground(self._look.color(colour))
+            made.setForeground(self._look.get_color(colour))
             if bold:
                 made.setFontWeight(QFont.Weight.Bold)
             if colour == "alarm":
@@ -136,7 +136,7 @@ class ProgramTextField(QPlainTextEdit):
         """Return the line number of the cursor, counted from 1."""
         return self.textCursor().blockNumber() + 1
 
-    def put_text(self, text: str, *, as_new: bool) -> None:
+    def replace_text(self, text: str, *, as_new: bool) -> None:
         """Replace the text of the field.
 
         ``as_new`` clears the undo history. Otherwise one undo reverses the change.
@@ -204,7 +204,7 @@ class ProgramTextField(QPlainTextEdit):
             self.line_margin.update()
             self.viewport().update()
 
-    def finding_at(self, line: int) -> Diagnostic | None:
+    def find_finding(self, line: int) -> Diagnostic | None:
         """Return the finding in a line, or None."""
         return self._found.get(line)
 
@@ -214,14 +214,14 @@ class ProgramTextField(QPlainTextEdit):
         self.setFont(self.theme.make_font(TEXT_SIZE))
         self.setStyleSheet(
             f"QPlainTextEdit {{ background: {colours.panel}; color: {colours.text};"
-            f" border: {max(1, round(0.16 * self.theme.u))}px solid {colours.frame};"
+            f" border: {max(1, round(0.16 * self.theme.unit_px))}px solid {colours.frame};"
             f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
-            f"QScrollBar:vertical {{ width: {max(FINGERTIP_PX, round(3.4 * self.theme.u))}px; }}"
-            f"QScrollBar:horizontal {{ height: {round(2.4 * self.theme.u)}px; }}"
+            f"QScrollBar:vertical {{ width: {max(FINGERTIP_PX, round(3.4 * self.theme.unit_px))}px; }}"
+            f"QScrollBar:horizontal {{ height: {round(2.4 * self.theme.unit_px)}px; }}"
         )
         for part in (self, self.verticalScrollBar(), self.horizontalScrollBar()):
             part.setAccessibleName(tr("PROGRAM"))
-        self.setCursorWidth(max(2, round(0.3 * self.theme.u)))
+        self.setCursorWidth(max(2, round(0.3 * self.theme.unit_px)))
         self.setTabStopDistance(4 * QFontMetricsF(self.font()).horizontalAdvance("0"))
         self.highlighter.apply_theme()
         self._make_room()
@@ -270,13 +270,13 @@ class ProgramTextField(QPlainTextEdit):
                     self._message(painter, block, box, found)
 
     def _message(self, painter: ThemedPainter, block: QTextBlock, box: QRectF, found: Diagnostic) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         wide = QFontMetricsF(self.font()).horizontalAdvance(block.text().expandtabs(4))
         room = QRectF(
             box.x() + wide + 3 * u, box.y(), self.viewport().width() - box.x() - wide - 4 * u, box.height()
         )
         if room.width() > 12 * u:
-            painter.setPen(self.theme.color(SEVERITY_COLORS[found.severity]))
+            painter.setPen(self.theme.get_color(SEVERITY_COLORS[found.severity]))
             draw_text(painter, room, ALIGN_LEFT, found.text)
 
     def find_visible_blocks(self) -> list[tuple[QTextBlock, QRectF]]:
@@ -300,7 +300,7 @@ class ProgramTextField(QPlainTextEdit):
 
     def _mark_line(self) -> None:
         mark = QTextEdit.ExtraSelection()
-        mark.format.setBackground(self.theme.color("here"))
+        mark.format.setBackground(self.theme.get_color("here"))
         mark.format.setProperty(QTextFormat.Property.FullWidthSelection, True)
         mark.cursor = self.textCursor()
         mark.cursor.clearSelection()
@@ -319,18 +319,18 @@ class LineMargin(QWidget):
     def width_px(self) -> int:
         """Return the width in pixels that the present number of digits needs."""
         digits = max(3, len(str(self._field.blockCount())))
-        return round((3.4 + 1.35 * digits) * self._field.theme.u)
+        return round((3.4 + 1.35 * digits) * self._field.theme.unit_px)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         """Draw the visible line numbers and findings."""
-        look, u, field = self._field.theme, self._field.theme.u, self._field
+        look, u, field = self._field.theme, self._field.theme.unit_px, self._field
         with ThemedPainter(self, look) as painter:
             painter.fill_rect(QRectF(self.rect()), "ground")
             for block, box in field.find_visible_blocks():
                 number = block.blockNumber() + 1
                 here = number == field.cursor_line
                 row = QRectF(0, box.y(), self.width(), box.height())
-                found = field.finding_at(number)
+                found = field.find_finding(number)
                 if found is not None:
                     patch = row.adjusted(0.2 * u, 0.1 * u, -(row.width() - 2.2 * u), -0.1 * u)
                     painter.fill_rect(patch, SEVERITY_COLORS[found.severity])
@@ -400,7 +400,7 @@ class TextSynchronizer:
         if editor.text_number != self._taken:
             self._taken = editor.text_number
             self._taking = True
-            field.put_text(editor.text, as_new=not editor.is_restored)
+            field.replace_text(editor.text, as_new=not editor.is_restored)
             self._taking = False
             field.setFocus()
             self.is_stale = True

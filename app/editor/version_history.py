@@ -138,7 +138,7 @@ class VersionHistory:
         """
         self.program_name, self.current_text = name, current_text
         self.rows, self.marked, self.text, self.changes, self.error_text = (), 0, None, (), ""
-        self.worker.enqueue(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
+        self.worker.enqueue_work(lambda: tuple(self.archive.versions(name)), self._listed, self._failed)
 
     def mark(self, index: int) -> None:
         """Select a version and compare its text with the present text."""
@@ -152,7 +152,7 @@ class VersionHistory:
             text = decode_text(self.archive.read_version_text(name, number))
             return text, compare_texts(*self.order_texts(text, now))
 
-        self.worker.request(compare, self._compared, self._failed)
+        self.worker.request_work(compare, self._compared, self._failed)
 
     def order_texts(self, selected: str, current: str) -> tuple[str, str]:
         """Return the texts of the comparison, the old text first."""

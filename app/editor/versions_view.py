@@ -59,7 +59,7 @@ class VersionList(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the versions around the selected version, and the comparison of the selected version."""
-        u, history = self.theme.u, self._history
+        u, history = self.theme.unit_px, self._history
         high = self.theme.find_row_height(VERSION_ROW_HEIGHT, 9.0, is_touchable=True)
         rows = max(1, int((self.height() - 4.0 * u) / high))
         first = max(0, min(history.marked - rows // 2, len(history.rows) - rows))
@@ -71,7 +71,7 @@ class VersionList(RowPanel):
         self._comparison(painter)
 
     def _version(self, painter: ThemedPainter, box: QRectF, version: VersionRow, marked: bool) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         if marked:
             painter.fill_rect(box, "lit")
         ink, soft = ("on_lit", "on_lit") if marked else ("text", "soft")
@@ -90,7 +90,7 @@ class VersionList(RowPanel):
         )
 
     def _comparison(self, painter: ThemedPainter) -> None:
-        u, history = self.theme.u, self._history
+        u, history = self.theme.unit_px, self._history
         room = QRectF((LIST_WIDTH + 2) * u, 2.8 * u, self.width() - (LIST_WIDTH + 3.4) * u, 3 * u)
         head = history.words() or history.heading()
         painter.draw_text_line(room, head, 1.8, "text", fit=False)
@@ -103,7 +103,7 @@ class VersionList(RowPanel):
             self._change(painter, row, history.changes[number])
 
     def _change(self, painter: ThemedPainter, row: QRectF, change: DifferenceRow) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         number = QRectF(row.x(), row.y(), 5 * u, row.height())
         painter.draw_text_line(number, str(change.old or ""), 1.6, "soft", at=ALIGN_RIGHT, bold=False)
         draw_text(painter, number.translated(5 * u, 0), ALIGN_RIGHT, str(change.new or ""))

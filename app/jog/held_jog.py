@@ -27,23 +27,23 @@ INCH_STEPS, MM_STEPS, DEGREE_STEPS = (
     (1.0, 0.5, 0.1, 0.02),
 )
 INCH_SPEEDS, MM_SPEEDS = (1.0, 5.0, 20.0, 50.0), (25.0, 125.0, 500.0, 1250.0)  # Per minute.
-ROTARY_SPEEDS = (3.0, 15.0, 60.0, 180.0)  # Per second.
-STEP_SPEED = 20 * MM_PER_INCH / 60  # mm/s: the longest step takes a third of a second.
-ROTARY_STEP_SPEED = 60.0  # degrees/s
-ROTARY_RAPID = 360.0  # degrees/s
-CONTINUOUS_STEP = -1
+ROTARY_SPEEDS_DEG_S = (3.0, 15.0, 60.0, 180.0)  # Per second.
+STEP_SPEED_MM_S = 20 * MM_PER_INCH / 60  # mm/s: the longest step takes a third of a second.
+ROTARY_STEP_SPEED_DEG_S = 60.0  # degrees/s
+ROTARY_RAPID_DEG_S = 360.0  # degrees/s
+CONTINUOUS_STEP_INDEX = -1
 
 
 @dataclass(slots=True)
 class JogSpeeds:
     """Selected step and speed.
 
-    ``step_index`` is CONTINUOUS_STEP or the index of one of four lengths. ``speed_index`` is the index of
-    one of four speeds.
+    ``step_index`` is CONTINUOUS_STEP_INDEX or the index of one of four lengths. ``speed_index`` is the index
+    of one of four speeds.
     """
 
     machine: Machine
-    step_index: int = CONTINUOUS_STEP
+    step_index: int = CONTINUOUS_STEP_INDEX
     speed_index: int = 1
 
     def select_next_step(self) -> None:
@@ -51,68 +51,78 @@ class JogSpeeds:
 
         The order is continuous, then the steps from the longest to the shortest, and then continuous again.
         """
-        self.step_index = self.step_index + 1 if self.step_index < len(INCH_STEPS) - 1 else CONTINUOUS_STEP
+        self.step_index = (
+            self.step_index + 1 if self.step_index < len(INCH_STEPS) - 1 else CONTINUOUS_STEP_INDEX
+        )
 
     def select_next_speed(self) -> None:
         """Select the next faster speed, or the slowest speed after the fastest."""
         self.speed_index = (self.speed_index + 1) % len(INCH_SPEEDS)
 
     def _turns(self, axis: str) -> bool:
-        return self.machine.find_axis(axis).rotary
+        return self.machine.find_axis(axis).is_rotary
 
-    def find_step_length(self, axis: str, mode: ValueMode, step: int | None = None) -> float:
+    def find_step_length(self, axis: str, value_mode: ValueMode, step_index: int | None = None) -> float:
         """Return the length of a step in mm or degrees.
 
         If X is displayed as a diameter, a step in X changes the displayed diameter by the length of the
         step. The axis then moves half of this length, which is the returned value.
         """
-        step = self.step_index if step is None else step
+        step_index = self.step_index if step_index is None else step_index
         if self._turns(axis):
-            return DEGREE_STEPS[step]
-        length = MM_STEPS[step] if mode.is_metric else INCH_STEPS[step] * MM_PER_INCH
-        return length / 2 if axis == "X" and mode.is_diameter else length
+            return DEGREE_STEPS[step_index]
+        length = MM_STEPS[step_index] if value_mode.is_metric else INCH_STEPS[step_index] * MM_PER_INCH
+        return length / 2 if axis == "X" and value_mode.is_diameter else length
 
-    def format_step(self, axis: str, mode: ValueMode, step: int) -> str:
+    def format_step(self, axis: str, value_mode: ValueMode, step_index: int) -> str:
         """Return the length of a step of an axis as text."""
-        return _short(DEGREE_STEPS[step]) if self._turns(axis) else make_step_labels(mode)[step]
+        return (
+            _short(DEGREE_STEPS[step_index])
+            if self._turns(axis)
+            else make_step_labels(value_mode)[step_index]
+        )
 
     def find_step_speed(self, axis: str) -> float:
         """Return the speed of a step in mm/s or degrees/s."""
         if self._turns(axis):
-            return min(ROTARY_STEP_SPEED, self.machine.find_axis(axis).vmax)
-        return min(STEP_SPEED, self.machine.limits.manual_rapid)
+            return min(ROTARY_STEP_SPEED_DEG_S, self.machine.find_axis(axis).max_speed)
+        return min(STEP_SPEED_MM_S, self.machine.limits.manual_rapid)
 
-    def find_velocity(self, axis: str, mode: ValueMode, *, is_rapid: bool) -> float:
+    def find_velocity(self, axis: str, value_mode: ValueMode, *, is_rapid: bool) -> float:
         """Return the speed of a continuous jog in mm/s or degrees/s."""
         if self._turns(axis):
             return min(
-                ROTARY_RAPID if is_rapid else ROTARY_SPEEDS[self.speed_index],
-                self.machine.find_axis(axis).vmax,
+                ROTARY_RAPID_DEG_S if is_rapid else ROTARY_SPEEDS_DEG_S[self.speed_index],
+                self.machine.find_axis(axis).max_speed,
             )
         if is_rapid:
             return self.machine.limits.manual_rapid
-        slow = MM_SPEEDS[self.speed_index] if mode.is_metric else INCH_SPEEDS[self.speed_index] * MM_PER_INCH
+        slow = (
+            MM_SPEEDS[self.speed_index]
+            if value_mode.is_metric
+            else INCH_SPEEDS[self.speed_index] * MM_PER_INCH
+        )
         return min(slow / 60, self.machine.limits.manual_rapid)
 
 
-def make_step_labels(mode: ValueMode) -> tuple[str, ...]:
+def make_step_labels(value_mode: ValueMode) -> tuple[str, ...]:
     """Return the lengths of the steps as key labels."""
-    return tuple(_short(step) for step in (MM_STEPS if mode.is_metric else INCH_STEPS))
+    return tuple(_short(step) for step in (MM_STEPS if value_mode.is_metric else INCH_STEPS))
 
 
-def make_speed_labels(mode: ValueMode) -> tuple[str, ...]:
+def make_speed_labels(value_mode: ValueMode) -> tuple[str, ...]:
     """Return the speeds of linear axes as key labels, in mm or inches per minute."""
-    return tuple(f"{speed:g}" for speed in (MM_SPEEDS if mode.is_metric else INCH_SPEEDS))
+    return tuple(f"{speed:g}" for speed in (MM_SPEEDS if value_mode.is_metric else INCH_SPEEDS))
 
 
 def make_rotary_speed_labels() -> tuple[str, ...]:
     """Return the speeds of rotary axes as key labels, in degrees per minute."""
-    return tuple(f"{60 * speed:g}" for speed in ROTARY_SPEEDS)
+    return tuple(f"{60 * speed:g}" for speed in ROTARY_SPEEDS_DEG_S)
 
 
-def format_rapid_speed(machine: Machine, mode: ValueMode) -> str:
+def format_rapid_speed(machine: Machine, value_mode: ValueMode) -> str:
     """Return the manual rapid speed as text, in mm or inches per minute."""
-    return f"{machine.limits.manual_rapid * 60 / mode.unit_mm:.0f}"
+    return f"{machine.limits.manual_rapid * 60 / value_mode.unit_mm:.0f}"
 
 
 def _short(step: float) -> str:
@@ -177,11 +187,11 @@ def make_jog_directions(machine: Machine) -> tuple[JogDirection, ...]:
     """
     if machine.kind != "mill":
         turning = tuple(
-            replace(each, displayed_axis=machine.displayed_axis_name("C")) for each in _LATHE_C_DIRECTIONS
+            replace(each, displayed_axis=machine.get_displayed_axis_name("C")) for each in _LATHE_C_DIRECTIONS
         )
-        return _LATHE_DIRECTIONS + (turning if machine.c_enabled else ())
+        return _LATHE_DIRECTIONS + (turning if machine.is_c_enabled else ())
     found = list(_MILL_DIRECTIONS)
-    rotary = [axis.name for axis in machine.axes if axis.rotary]
+    rotary = [axis.name for axis in machine.axes if axis.is_rotary]
     for name, ends in zip(rotary, _ROTARY_DIRECTIONS, strict=False):
         for sign, end in zip((1, -1), ends, strict=True):
             column, row, key, label = end
@@ -202,10 +212,10 @@ class ActiveJog:
     axis: str
     velocity: float
     is_rapid: bool
-    start_time: float
-    post_time: float
-    update_time: float
-    repeat_time: float | None = None  # Time of the last key repeat; None before the first repeat.
+    start_time_s: float
+    post_time_s: float
+    update_time_s: float
+    repeat_time_s: float | None = None  # Time of the last key repeat; None before the first repeat.
     is_moving: bool = False
     direction: Direction | None = None
 
@@ -215,7 +225,7 @@ class HeldJog:
     """Jog by one key or touch that is held down.
 
     ``lease_s`` is the time in seconds after which the motion ends unless it is renewed. ``find_refusal``
-    returns the reason why jogging is not possible now, or an empty string. ``clock`` returns a monotonic
+    returns the reason why jogging is not possible now, or an empty string. ``read_clock`` returns a monotonic
     time in seconds.
     """
 
@@ -225,7 +235,7 @@ class HeldJog:
     post_command: Callable[[Command], None]
     show_message: Callable[[str], None]
     clear_message: Callable[[], None]
-    clock: Callable[[], float]
+    read_clock: Callable[[], float]
     find_refusal: Callable[[], str]
     value_mode: ValueMode = field(default_factory=ValueMode)
     # Direction in a tilted plane (3D-ROT).
@@ -234,19 +244,21 @@ class HeldJog:
     refuses_late_press: Callable[[StartingAction], bool] = field(default=lambda _starting: False)
     active_jog: ActiveJog | None = None
     is_rapid_armed: bool = False  # Rapid was selected on the screen, for the next jog only.
-    last_button: str = ""  # Input name of the last press, if it was a button at the machine.
-    keys_down: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
+    last_button_name: str = ""  # Input name of the last press, if it was a button at the machine.
+    pressed_keys: set[str] = field(default_factory=set)  # Keys and touches that are pressed.
     _ended: str = ""  # Reason for the end of the last jog, shown again when the axis is at rest.
 
-    def press_direction(self, source: str, axis: str, sign: int, *, is_rapid: bool, button: str = "") -> None:
+    def press_direction(
+        self, key_source: str, axis: str, direction_sign: int, *, is_rapid: bool, button_name: str = ""
+    ) -> None:
         """Handle a press on a direction.
 
-        ``source`` identifies the key or touch. ``button`` is the input name of a button on the machine, or
-        empty.
+        ``source`` identifies the key or touch. ``button_name`` is the input name of a button on the machine,
+        or empty.
         """
-        others, self._ended = self.keys_down - {source}, ""
+        others, self._ended = self.pressed_keys - {key_source}, ""
         self.is_rapid_armed = False
-        self.keys_down.add(source)
+        self.pressed_keys.add(key_source)
         if others or self.active_jog is not None:
             self.stop_jog(tr("TWO KEYS PRESSED, JOG STOPPED. RELEASE BOTH, THEN PRESS ONE"))
         elif self.refuses_late_press(self.starting_action):
@@ -254,15 +266,15 @@ class HeldJog:
         elif why := self.find_refusal():
             self.show_message(why)
         else:
-            self.last_button = button
-            self._start_jog(source, axis, sign, is_rapid)
+            self.last_button_name = button_name
+            self._start_jog(key_source, axis, direction_sign, is_rapid)
 
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         """Start a step or a continuous jog.
 
         A subclass can start another motion.
         """
-        if self.jog_speeds.step_index != CONTINUOUS_STEP:
+        if self.jog_speeds.step_index != CONTINUOUS_STEP_INDEX:
             self._start_step(axis, sign, rapid)
         else:
             self._begin(source, axis, sign, rapid)
@@ -284,24 +296,26 @@ class HeldJog:
     def _begin(self, source: str, axis: str, sign: int, rapid: bool) -> None:
         velocity = sign * self.jog_speeds.find_velocity(axis, self.value_mode, is_rapid=rapid)
         along = self.find_direction(axis)
-        self._hold(source, axis, velocity, rapid, Jog(axis, velocity, self.lease_s, self.last_button, along))
+        self._hold(
+            source, axis, velocity, rapid, Jog(axis, velocity, self.lease_s, self.last_button_name, along)
+        )
 
     def _hold(self, source: str, axis: str, velocity: float, rapid: bool, command: Command) -> None:
         self.clear_message()
-        now = self.clock()
+        now = self.read_clock()
         along = command.along if isinstance(command, Jog) else None
         self.active_jog = ActiveJog(source, axis, velocity, rapid, now, now, now, direction=along)
         self.post_command(command)
 
-    def note_repeat(self, source: str) -> None:
+    def record_repeat(self, key_source: str) -> None:
         """Store the time of a key repeat, which shows that the key is still held down."""
-        if self.active_jog is not None and self.active_jog.key_source == source:
-            self.active_jog.repeat_time = self.clock()
+        if self.active_jog is not None and self.active_jog.key_source == key_source:
+            self.active_jog.repeat_time_s = self.read_clock()
 
-    def release_key(self, source: str) -> None:
+    def release_key(self, key_source: str) -> None:
         """Handle the release of a key or touch."""
-        self.keys_down.discard(source)
-        if self.active_jog is not None and self.active_jog.key_source == source:
+        self.pressed_keys.discard(key_source)
+        if self.active_jog is not None and self.active_jog.key_source == key_source:
             self.stop_jog("")
 
     def stop_for_other_key(self) -> None:
@@ -319,7 +333,7 @@ class HeldJog:
 
     def release_all(self, reason: str = "") -> None:
         """Mark all keys as released and stop the jog, because no release event will arrive."""
-        self.keys_down.clear()
+        self.pressed_keys.clear()
         if self.active_jog is not None:
             self.stop_jog(reason)
 
@@ -341,14 +355,14 @@ class HeldJog:
         This method is called once per frame.
         """
         self.value_mode = ValueMode(snapshot.modal.metric, snapshot.shows_diameter)
-        held, now = self.active_jog, self.clock()
+        held, now = self.active_jog, self.read_clock()
         if held is None:
             self._repeat_reason(snapshot)
             return
-        away, held.update_time = now - held.update_time, now
+        away, held.update_time_s = now - held.update_time_s, now
         if away > self.lease_s:
             self.stop_jog(tr("SCREEN FROZE. JOG STOPPED"))
-        elif held.repeat_time is not None and now - held.repeat_time > REPEAT_TIMEOUT_S:
+        elif held.repeat_time_s is not None and now - held.repeat_time_s > REPEAT_TIMEOUT_S:
             self.stop_jog(tr("JOG KEY SIGNAL LOST. RELEASE THE KEY, THEN PRESS IT AGAIN"))
         elif snapshot.state is MachineState.JOG:
             held.is_moving = True
@@ -356,7 +370,7 @@ class HeldJog:
         elif (
             held.is_moving
             or snapshot.state is not MachineState.IDLE
-            or now - held.start_time > MOTION_TIMEOUT_S
+            or now - held.start_time_s > MOTION_TIMEOUT_S
         ):
             self.active_jog = None  # The machine has ended the motion or never began it.
             self.post_command(StopJog())
@@ -368,9 +382,9 @@ class HeldJog:
             self._ended = ""
 
     def _renew(self, held: ActiveJog, now: float) -> None:
-        if now - held.post_time >= self.lease_s / RENEWALS_PER_LEASE:
-            held.post_time = now
+        if now - held.post_time_s >= self.lease_s / RENEWALS_PER_LEASE:
+            held.post_time_s = now
             self.post_command(self._renewal(held))
 
     def _renewal(self, held: ActiveJog, /) -> Command:
-        return Jog(held.axis, held.velocity, self.lease_s, self.last_button, held.direction)
+        return Jog(held.axis, held.velocity, self.lease_s, self.last_button_name, held.direction)

@@ -28,17 +28,17 @@ def draw_arrow(painter: ThemedPainter, box: QRectF, direction: tuple[int, int], 
         QPointF(direction[1] * size, direction[0] * size),
     )
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.theme.color(color))
+    painter.setBrush(painter.theme.get_color(color))
     painter.drawPolygon(QPolygonF([centre + forward, centre - forward + side, centre - forward - side]))
 
 
-def draw_jog_mode(painter: ThemedPainter, box: QRectF, labels: tuple[str, str, str]) -> None:
+def draw_jog_mode(painter: ThemedPainter, box: QRectF, mode_labels: tuple[str, str, str]) -> None:
     """Draw the present jog mode in the middle of the cross.
 
-    ``labels`` are the type of the mode, its value and its unit.
+    ``mode_labels`` are the type of the mode, its value and its unit.
     """
-    kind, figure, unit = labels
-    high, edge = 2.2 * painter.theme.u, 0.1 * box.height()
+    kind, figure, unit = mode_labels
+    high, edge = 2.2 * painter.theme.unit_px, 0.1 * box.height()
     painter.draw_text_line(
         QRectF(box.x(), box.y() + edge, box.width(), high), kind, 1.6, "soft", at=ALIGN_CENTER
     )
@@ -66,7 +66,7 @@ class JogCross(TouchPanel):
 
     def draw_cross(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the touch targets in a rectangle and return the area in the middle of the cross."""
-        u = self.theme.u
+        u = self.theme.unit_px
         columns = 1 + max(2, *(each.column for each in self._directions))
         wide, high = area.width() / columns, area.height() / 3
         for each in self._directions:
@@ -75,7 +75,7 @@ class JogCross(TouchPanel):
         return QRectF(area.x() + wide, area.y() + high, wide - 0.8 * u, high - 0.6 * u)
 
     def _target(self, painter: ThemedPainter, box: QRectF, direction: JogDirection) -> None:
-        u, held = self.theme.u, self._hold.active_jog
+        u, held = self.theme.unit_px, self._hold.active_jog
         axis, sign, arrow = direction.axis, direction.direction_sign, direction.arrow_point
         moving = held is not None and held.axis == axis and held.velocity * sign > 0
         painter.draw_box(
@@ -180,7 +180,7 @@ class HeldKeysPage(ModelPage):
                 model.held_jog.stop_for_other_key()
             return self.handle_other_key(event)
         if event.isAutoRepeat():
-            model.held_jog.note_repeat(key.name)
+            model.held_jog.record_repeat(key.name)
         elif event.modifiers() & CHORD_MODIFIERS:
             model.held_jog.stop_for_other_key()
         elif event.modifiers() & Qt.KeyboardModifier.KeypadModifier:
@@ -209,7 +209,7 @@ class HeldKeysPage(ModelPage):
         elif key == Key.Key_Shift:
             self.model.held_jog.release_shift()
 
-    def end_held_actions(self) -> None:
+    def stop_held_actions(self) -> None:
         """Stop the motion because another key or touch was pressed."""
         self.model.held_jog.stop_for_other_key()
 

@@ -13,19 +13,19 @@ from dataclasses import dataclass, field
 from app.desk.late_presses import StartingAction
 from app.desk.pages.table_content import following
 from app.desk.translation import tr
-from app.jog.held_jog import CONTINUOUS_STEP, MOTION_TIMEOUT_S, RENEWALS_PER_LEASE, HeldJog, JogSpeeds
+from app.jog.held_jog import CONTINUOUS_STEP_INDEX, MOTION_TIMEOUT_S, RENEWALS_PER_LEASE, HeldJog, JogSpeeds
 from core.executor.commands import Command, DeselectHandwheel, SelectHandwheel
 from core.executor.snapshot import Snapshot
 from core.machine.machine_model import Machine
 from core.machine.station_rules import (
     AXIS_BUTTON,
-    HANDWHEEL,
     HANDWHEEL_ENABLE_INPUT,
+    HANDWHEEL_INPUT,
     JOG_RAPID_INPUT,
     STEP_BUTTON,
     STEP_FACTORS,
-    axis_selector_input,
-    jog_button_input,
+    get_axis_selector_input,
+    get_jog_button_input,
 )
 from core.message import Message
 
@@ -57,17 +57,19 @@ class JogHandwheel:
     @property
     def is_available(self) -> bool:
         """Return whether the machine has a handwheel."""
-        return HANDWHEEL in self.machine.hardware.analog_inputs
+        return HANDWHEEL_INPUT in self.machine.hardware.analog_inputs
 
     @property
     def counts_per_click(self) -> int:
         """Return the number of encoder counts per click, or 0 if the machine has no handwheel."""
-        return self.machine.hardware.analog_inputs[HANDWHEEL].counts_per_click if self.is_available else 0
+        return (
+            self.machine.hardware.analog_inputs[HANDWHEEL_INPUT].counts_per_click if self.is_available else 0
+        )
 
     @property
     def has_axis_switch(self) -> bool:
         """Return whether switches of the operator station select the axis of the handwheel."""
-        return any(axis_selector_input(name) in self.machine.inputs for name in self.axis_names)
+        return any(get_axis_selector_input(name) in self.machine.inputs for name in self.axis_names)
 
     @property
     def _speeds(self) -> JogSpeeds:
@@ -109,13 +111,13 @@ class JogHandwheel:
             self.held_jog.show_message(why)
         else:
             self.held_jog.release_all()
-            self.deselect("")
+            self.turn_off("")
             self._by_hand = axis
-            if axis and self._speeds.step_index in {CONTINUOUS_STEP, _LONG_STEP_INDEX}:
+            if axis and self._speeds.step_index in {CONTINUOUS_STEP_INDEX, _LONG_STEP_INDEX}:
                 self._speeds.step_index = FINE_STEP_INDEX
             self.held_jog.clear_message()
 
-    def deselect(self, reason: str) -> None:
+    def turn_off(self, reason: str) -> None:
         """Turn the handwheel off and show the reason."""
         self._by_hand = ""
         if self.wheel_choice is not None:
@@ -128,22 +130,22 @@ class JogHandwheel:
 
         This method is called once per frame.
         """
-        now = self.held_jog.clock()
+        now = self.held_jog.read_clock()
         away, self._looked = now - self._looked, now
         if not self.is_available:
             return
         wanted = self._find_wanted_choice(snapshot)
         if self.wheel_choice is not None and away > self.held_jog.lease_s:
-            self.deselect(tr("SCREEN FROZE. HANDWHEEL IS OFF"))
+            self.turn_off(tr("SCREEN FROZE. HANDWHEEL IS OFF"))
         elif self.wheel_choice is not None and (why := self.find_refusal()):
-            self.deselect(why)
+            self.turn_off(why)
         elif wanted != self.wheel_choice and self.wheel_choice is not None:
             axis = self._by_hand if wanted is not None else ""
-            self.deselect("")
+            self.turn_off("")
             self._by_hand, self._left = axis, None  # The step or the switch has changed.
         elif self.wheel_choice is not None and now - self._asked > MOTION_TIMEOUT_S and not snapshot.wheel:
             why = snapshot.wheel_ended.upper()  # Reason of the control.
-            self.deselect(tr(Message("HANDWHEEL IS OFF: {why}", why=why)) if why else "")
+            self.turn_off(tr(Message("HANDWHEEL IS OFF: {why}", why=why)) if why else "")
         elif wanted is not None and not self.find_refusal():
             self._renew(wanted, now)
 
@@ -154,13 +156,13 @@ class JogHandwheel:
         """
         axis, step = self._by_hand, self._speeds.step_index
         if self.has_axis_switch:
-            on = [name for name in self.axis_names if axis_selector_input(name) in snapshot.inputs]
+            on = [name for name in self.axis_names if get_axis_selector_input(name) in snapshot.inputs]
             axis = on[0] if len(on) == 1 else ""
-            step = FINE_STEP_INDEX if step in {CONTINUOUS_STEP, _LONG_STEP_INDEX} else step
+            step = FINE_STEP_INDEX if step in {CONTINUOUS_STEP_INDEX, _LONG_STEP_INDEX} else step
         if any(name in self.machine.inputs for name in STEP_FACTORS):
             factors = [factor for name, factor in STEP_FACTORS.items() if name in snapshot.inputs]
-            step = _STEP_BY_FACTOR[factors[0]] if len(factors) == 1 else CONTINUOUS_STEP
-        wanted = (axis, step) if axis and step not in {CONTINUOUS_STEP, _LONG_STEP_INDEX} else None
+            step = _STEP_BY_FACTOR[factors[0]] if len(factors) == 1 else CONTINUOUS_STEP_INDEX
+        wanted = (axis, step) if axis and step not in {CONTINUOUS_STEP_INDEX, _LONG_STEP_INDEX} else None
         if wanted != self._left:
             self._left = None
         return wanted if self._left is None else None
@@ -185,7 +187,7 @@ _MAX_UPDATE_INTERVAL_S = 0.25  # Seconds between two updates. Presses during a l
 
 
 @dataclass(slots=True)
-class PendantButtons:
+class MachineJogButtons:
     """Jog buttons on the machine.
 
     ``jog_buttons`` contains the axis and sign of each jog input by input name.
@@ -201,7 +203,7 @@ class PendantButtons:
 
     def __post_init__(self) -> None:
         both = ((axis, sign) for axis in self.axis_names for sign in (1, -1))
-        named = {jog_button_input(axis, sign): (axis, sign) for axis, sign in both}
+        named = {get_jog_button_input(axis, sign): (axis, sign) for axis, sign in both}
         self.jog_buttons = {name: jog_move for name, jog_move in named.items() if name in self.machine.inputs}
 
     def update(self, snapshot: Snapshot) -> None:
@@ -209,7 +211,7 @@ class PendantButtons:
 
         This method is called once per frame.
         """
-        now, before, on = self.held_jog.clock(), self._on, snapshot.inputs
+        now, before, on = self.held_jog.read_clock(), self._on, snapshot.inputs
         away, self._looked, self._on = now - self._looked, now, on
         for name in self.jog_buttons:
             if name in before and name not in on:
@@ -233,4 +235,4 @@ class PendantButtons:
                 self.held_jog.show_message(tr("ENABLING SWITCH NOT PRESSED. HOLD IT AND PRESS JOG BUTTON"))
                 return
             axis, sign = self.jog_buttons[name]
-            self.held_jog.press_direction(name, axis, sign, is_rapid=JOG_RAPID_INPUT in on, button=name)
+            self.held_jog.press_direction(name, axis, sign, is_rapid=JOG_RAPID_INPUT in on, button_name=name)

@@ -58,20 +58,23 @@ class HomingQuestion:
         return tuple(
             a
             for a in self.machine.axes
-            if a.name != "C" or self.machine.c_enabled or self.machine.kind != "lathe"
+            if a.name != "C" or self.machine.is_c_enabled or self.machine.kind != "lathe"
         )
 
     def find_states(self, snapshot: Snapshot) -> dict[str, HomingState]:
         """Return the homing state of every axis."""
         homed = dict(zip(snapshot.axes, snapshot.homed, strict=True))
         lost = sorted((a for a in self.homing_axes if not homed[a.name]), key=lambda axis: axis.home_order)
-        known = {a.name: HomingState.ABSOLUTE if a.absolute else HomingState.HOMED for a in self.homing_axes}
+        known = {
+            a.name: HomingState.ABSOLUTE if a.is_position_absolute else HomingState.HOMED
+            for a in self.homing_axes
+        }
         known |= {axis.name: HomingState.NOT_HOMED for axis in lost}
-        if snapshot.state is MachineState.HOME and lost:
+        if snapshot.state is MachineState.HOMING and lost:
             known[lost[0].name] = HomingState.HOMING
         return known
 
-    def find_unhomed(self, snapshot: Snapshot) -> list[str]:
+    def find_unhomed_axes(self, snapshot: Snapshot) -> list[str]:
         """Return the names of the axes that must be homed, in homing order."""
         known = self.find_states(snapshot)
         order = sorted(self.homing_axes, key=lambda axis: axis.home_order)
@@ -84,7 +87,7 @@ class HomingQuestion:
 
         If ``refusal`` is not empty, it is shown instead.
         """
-        lost = self.find_unhomed(snapshot)
+        lost = self.find_unhomed_axes(snapshot)
         if refusal:
             self.desk.say(refusal)
         elif not lost:
@@ -96,7 +99,7 @@ class HomingQuestion:
             self.desk.ask_operator(_make_tool_warning(snapshot) + question, lambda: self._go(""), "Enter")
             self._asked = True
 
-    def answer_axis(self, key: str, snapshot: Snapshot) -> bool:
+    def handle_axis_key(self, key: str, snapshot: Snapshot) -> bool:
         """Handle a key while the question is open, and return whether it was the letter of an axis.
 
         The letter of an axis starts homing that axis. Any other key cancels the question.
@@ -106,20 +109,20 @@ class HomingQuestion:
         name, read = key.upper(), self.desk.was_question_read
         self.cancel()
         if name in {axis.name for axis in self.homing_axes}:
-            if name not in self.find_unhomed(snapshot):
+            if name not in self.find_unhomed_axes(snapshot):
                 self.desk.say(tr(Message("{axis} IS ALREADY HOMED", axis=name)))
             elif read:
                 self._go(name)
             return True
         return False
 
-    def home_axis(self, name: str, snapshot: Snapshot, refusal: str) -> None:
+    def handle_axis_touch(self, name: str, snapshot: Snapshot, refusal: str) -> None:
         """Handle a touch on one axis.
 
         The first touch asks a question, and the second touch homes the axis.
         """
         if self.is_open and not refusal:
-            self.answer_axis(name, snapshot)
+            self.handle_axis_key(name, snapshot)
         else:
             self.handle_home_key(snapshot, refusal)
 

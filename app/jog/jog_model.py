@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from app.desk.desk import Desk
 from app.desk.late_presses import StartingAction
 from app.desk.status import prompt_line
-from app.desk.status.prompt_line import STOP_HELD
+from app.desk.status.prompt_line import RELEASE_STOP_KEY
 from app.desk.translation import tr
-from app.jog.held_jog import CONTINUOUS_STEP, JogDirection, JogSpeeds, make_jog_directions
-from app.jog.jog_handwheel import JogHandwheel, PendantButtons
+from app.jog.held_jog import CONTINUOUS_STEP_INDEX, JogDirection, JogSpeeds, make_jog_directions
+from app.jog.jog_handwheel import JogHandwheel, MachineJogButtons
 from app.jog.jog_homing import HomingQuestion
 from app.jog.manual_functions import ManualFunctions
-from app.jog.skim_and_setter import HeldTouchOff, SetterTouchOff, SkimCut
+from app.jog.skim_cut_and_setter import HeldTouchOff, SetterTouchOff, SkimCut
 from app.jog.tilted_jog import TiltedJog
 from app.jog.tool_setting import TOOL_QUESTION, ToolSetting
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
@@ -51,7 +51,7 @@ class JogModel:
     skim_cut: SkimCut = field(init=False)
     manual_functions: ManualFunctions = field(init=False)
     setter_touch: SetterTouchOff = field(init=False)
-    pendant_buttons: PendantButtons = field(init=False)
+    pendant_buttons: MachineJogButtons = field(init=False)
     tilted_jog: TiltedJog = field(init=False)
     directions: tuple[JogDirection, ...] = ()
 
@@ -76,18 +76,18 @@ class JogModel:
         self.homing_question = HomingQuestion(self.machine, desk)
         self.tool_setting = ToolSetting(desk, desk.offset_book)
         self.skim_cut = SkimCut(desk, self.tool_setting)
-        hand = desk.page_registry.find(ManualFunctions)
+        hand = desk.page_registry.find_model(ManualFunctions)
         if hand is None:
             raise RuntimeError("the desk was put together without functions by hand")
         self.manual_functions = hand
         self.setter_touch = SetterTouchOff(desk, self.machine, self.tool_setting, lease, self.directions)
         self.held_jog.setter_touch = self.setter_touch
-        self.pendant_buttons = PendantButtons(self.machine, self.held_jog, self.handwheel, names)
+        self.pendant_buttons = MachineJogButtons(self.machine, self.held_jog, self.handwheel, names)
         self.tilted_jog = TiltedJog(MillTouchCalculator.find_for(desk).machine, self._end_hold, desk.say)
         self.held_jog.find_direction = self.tilted_jog.find_direction
 
     @property
-    def is_asking(self) -> bool:
+    def is_entry_open(self) -> bool:
         """Return whether the operator is entering a value for the tool or the spindle speed."""
         return bool(self.tool_setting.question_name) or self.manual_functions.is_asking_speed
 
@@ -101,8 +101,8 @@ class JogModel:
         """
         state = self.desk.read_snapshot().state
         if self.desk.window_state.is_stop_held():
-            return tr(STOP_HELD)
-        if self.is_asking:
+            return tr(RELEASE_STOP_KEY)
+        if self.is_entry_open:
             return tr("ARROWS DO NOT JOG WHILE YOU TYPE A VALUE. PRESS ENTER OR ESC")
         if self.homing_question.cancel():
             return tr("HOMING CANCELED. PRESS THE ARROW AGAIN TO JOG")
@@ -115,7 +115,7 @@ class JogModel:
         """
         if self.tilted_jog.is_on:
             return tr("HANDWHEEL MOVES ONLY MACHINE AXES. F5: TURN 3D-ROT OFF FIRST")
-        if self.is_asking:
+        if self.is_entry_open:
             return tr("HANDWHEEL IS OFF WHILE YOU ENTER A VALUE")
         return find_jog_refusal(self.desk.read_snapshot().state)
 
@@ -157,7 +157,10 @@ class JogModel:
     def _prompt_of_jog(self, snapshot: Snapshot) -> str:
         wheel = self.handwheel.wheel_choice[0] if self.handwheel.wheel_choice else ""
         why = make_jog_prompt(
-            snapshot.state, self.homing_question.find_unhomed(snapshot), wheel, self.jog_speeds.step_index
+            snapshot.state,
+            self.homing_question.find_unhomed_axes(snapshot),
+            wheel,
+            self.jog_speeds.step_index,
         )
         if why:
             return why
@@ -176,20 +179,20 @@ class JogModel:
         self._another_step()
         self.jog_speeds.select_next_step()
 
-    def select_step(self, step: int) -> None:
+    def select_step(self, step_index: int) -> None:
         """Select a touched step and stop the jog."""
         self._another_step()
-        self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step, False
+        self.jog_speeds.step_index, self.held_jog.is_rapid_armed = step_index, False
 
     def select_next_speed(self) -> None:
         """Select the next speed and stop the jog (F3)."""
         self._another_speed()
         self.jog_speeds.select_next_speed()
 
-    def select_speed(self, speed: int) -> None:
+    def select_speed(self, speed_index: int) -> None:
         """Select a touched speed and stop the jog."""
         self._another_speed()
-        self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed, False
+        self.jog_speeds.speed_index, self.held_jog.is_rapid_armed = speed_index, False
 
     def toggle_rapid(self) -> None:
         """Turn rapid on or off for the next jog by touch.
@@ -199,9 +202,9 @@ class JogModel:
         self._another_speed()
         self.held_jog.is_rapid_armed = not self.held_jog.is_rapid_armed
 
-    def press_direction(self, source: str, axis: str, sign: int) -> None:
+    def press_direction(self, key_source: str, axis: str, direction_sign: int) -> None:
         """Handle a touch or mouse press on a direction."""
-        self.held_jog.press_direction(source, axis, sign, is_rapid=self.held_jog.is_rapid_armed)
+        self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=self.held_jog.is_rapid_armed)
 
     def _another_step(self) -> None:
         self.held_jog.release_all(tr("JOG STOPPED: STEP CHANGED"))
@@ -228,7 +231,7 @@ class JogModel:
 
     def toggle_tilt(self) -> None:
         """Turn 3D-ROT on or off, and turn the handwheel off."""
-        self.handwheel.deselect("")
+        self.handwheel.turn_off("")
         self.tilted_jog.toggle(find_jog_refusal(self.desk.read_snapshot().state))
 
     def _end_hold(self, why: str) -> None:
@@ -244,10 +247,10 @@ class JogModel:
         self.held_jog.stop_for_other_key()
         self.manual_functions.ask_speed()
 
-    def toggle_manual(self) -> None:
+    def toggle_manual_functions(self) -> None:
         """Show or hide the manual functions and stop the jog."""
         self.held_jog.stop_for_other_key()
-        self.manual_functions.toggle_shown()
+        self.manual_functions.toggle_panel()
 
     def ask_master(self) -> None:
         """Ask whether the selected tool becomes the master tool, and stop the jog."""
@@ -257,7 +260,7 @@ class JogModel:
     def start_setter_touch(self) -> None:
         """Start a touch-off at the tool setter, stop the jog, and turn the handwheel off."""
         self.held_jog.stop_for_other_key()
-        self.handwheel.deselect("")
+        self.handwheel.turn_off("")
         self.homing_question.cancel()
         self.setter_touch.toggle_armed()
 
@@ -282,20 +285,20 @@ class JogModel:
     def handle_home_key(self) -> None:
         """Handle the home key by asking which axes to home."""
         self.held_jog.release_all()
-        self.handwheel.deselect("")
+        self.handwheel.turn_off("")
         self.homing_question.handle_home_key(self.desk.read_snapshot(), self._no_homing())
 
-    def home_axis(self, axis: str) -> None:
+    def handle_home_touch(self, axis: str) -> None:
         """Handle a touch on the homing target of one axis.
 
         The first touch asks a question, and the second touch homes the axis.
         """
         self.held_jog.release_all()
-        self.handwheel.deselect("")
-        self.homing_question.home_axis(axis, self.desk.read_snapshot(), self._no_homing())
+        self.handwheel.turn_off("")
+        self.homing_question.handle_axis_touch(axis, self.desk.read_snapshot(), self._no_homing())
 
     def _no_homing(self) -> str:
-        if self.is_asking:
+        if self.is_entry_open:
             return tr("FINISH THE ENTRY FIRST: PRESS ENTER OR ESC")
         state = self.desk.read_snapshot().state
         return tr("AXES ARE STILL MOVING") if state is MachineState.JOG else find_jog_refusal(state)
@@ -305,18 +308,18 @@ class JogModel:
 
         Earlier offset changes are then ignored, and Cycle Start runs the lines of manual functions.
         """
-        self.tool_setting.history.on_open()
+        self.tool_setting.offset_history.on_open()
         self.manual_functions.on_open()
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the window must handle it."""
-        if self.is_asking:
+        if self.is_entry_open:
             return (
                 self.manual_functions.handle_key(key)
                 if self.manual_functions.is_asking_speed
                 else self.tool_setting.handle_key(key)
             )
-        if self.homing_question.answer_axis(key, self.desk.read_snapshot()):
+        if self.homing_question.handle_axis_key(key, self.desk.read_snapshot()):
             return True
         if (not self.is_mill and self.skim_cut.handle_key(key)) or self.manual_functions.handle_key(key):
             return True
@@ -337,7 +340,7 @@ class JogModel:
     def accepts_key(self, key: str) -> bool:
         """Return whether a character has a function on this page."""
         own = {"v", "b"} if self.is_mill else {*QUESTION_LETTERS, "m", "v", "p", "b", "c"}
-        if self.is_asking:
+        if self.is_entry_open:
             return self.manual_functions.accepts_key(key) or self.tool_setting.accepts_key(key)
         return key.lower() in own
 
@@ -353,7 +356,7 @@ class JogModel:
             self.setter_touch.cancel()
             return True
         if self.handwheel.wheel_choice is not None:
-            self.handwheel.deselect(tr("HANDWHEEL IS OFF"))
+            self.handwheel.turn_off(tr("HANDWHEEL IS OFF"))
             return True
         if self.homing_question.cancel() or self.manual_functions.handle_cancel_key():
             return True
@@ -371,7 +374,7 @@ class JogModel:
     def release_all(self) -> None:
         """Stop the jog and turn the handwheel off because the page no longer receives key events."""
         self.held_jog.release_all(tr("JOG STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
-        self.handwheel.deselect(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
+        self.handwheel.turn_off(tr("HANDWHEEL IS OFF: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.is_rapid_armed = False
         self._stop_step()
 
@@ -387,11 +390,11 @@ class JogModel:
         self.held_jog.release_all()
         if not self.manual_functions.try_leave():
             return False
-        self.handwheel.deselect("")
+        self.handwheel.turn_off("")
         self._stop_step()
         self.homing_question.cancel()
         self.held_jog.is_rapid_armed = False
-        self.tilted_jog.switch_off()
+        self.tilted_jog.turn_off()
         self.setter_touch.cancel()
         self.skim_cut.cancel()
         self.tool_setting.cancel_new_tool()
@@ -405,7 +408,7 @@ def find_jog_refusal(state: MachineState) -> str:
         MachineState.DISABLED: tr("DRIVES ARE OFF. PRESS D TO TURN THEM ON"),
         MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
         MachineState.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
-        MachineState.HOME: tr("HOMING. PRESS H TO STOP"),
+        MachineState.HOMING: tr("HOMING. PRESS H TO STOP"),
     }
     if state in ACTIVE_STATES:
         return tr("PROGRAM RUNNING. TO JOG, LET IT END OR PRESS PAUSE, THEN R")
@@ -432,6 +435,6 @@ def make_jog_prompt(state: MachineState, unhomed_axes: list[str], wheel_axis: st
         )
     if wheel_axis:
         return tr(Message("HANDWHEEL MOVES {axis}, ONE STEP PER CLICK. V: NEXT AXIS", axis=wheel_axis))
-    if step_index != CONTINUOUS_STEP:
+    if step_index != CONTINUOUS_STEP_INDEX:
         return tr("EACH ARROW PRESS JOGS ONE STEP. F2: STEP SIZE")
     return ""

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
 from app.jog.held_jog import (
-    CONTINUOUS_STEP,
+    CONTINUOUS_STEP_INDEX,
     format_rapid_speed,
     make_rotary_speed_labels,
     make_speed_labels,
@@ -33,18 +33,18 @@ from core.message import Message
 
 
 NAME_WIDTH = 8.4  # Units: width of the row name.
-SHORT_WORD_LENGTH = 4  # Letters: a longer word gets a wider tile.
+SHORT_LABEL_LENGTH = 4  # Letters: a longer word gets a wider tile.
 
 
 @dataclass(frozen=True, slots=True)
 class TileRow:
     """Row of touch tiles.
 
-    ``row_name`` contains the name of the row and its key. ``is_warning`` shows the selected tile in the
+    ``name_and_key`` contains the name of the row and its key. ``is_warning`` shows the selected tile in the
     warning color, and ``alarmed_indices`` are the indices of the tiles in the alarm color.
     """
 
-    row_name: tuple[str, str]
+    name_and_key: tuple[str, str]
     labels: tuple[str, ...]
     actions: Sequence[Callable[[], None]]
     selected_index: int = -1
@@ -56,11 +56,11 @@ def draw_tiles(
     painter: ThemedPainter, row: QRectF, tiles: TileRow
 ) -> list[tuple[QRectF, Callable[[], None]]]:
     """Draw a row of tiles and return the rectangle and the action of each tile."""
-    u, left = painter.theme.u, row.x()
-    if tiles.row_name[0]:
+    u, left = painter.theme.unit_px, row.x()
+    if tiles.name_and_key[0]:
         left += NAME_WIDTH * u
-        _name(painter, QRectF(row.x(), row.y(), (NAME_WIDTH - 0.6) * u, row.height()), tiles.row_name)
-    shares = [1.0 + 0.11 * max(0, len(word) - SHORT_WORD_LENGTH) for word in tiles.labels]
+        _name(painter, QRectF(row.x(), row.y(), (NAME_WIDTH - 0.6) * u, row.height()), tiles.name_and_key)
+    shares = [1.0 + 0.11 * max(0, len(word) - SHORT_LABEL_LENGTH) for word in tiles.labels]
     part = (row.right() - left + 0.6 * u) / sum(shares)
     boxes = []
     for number, (word, share) in enumerate(zip(tiles.labels, shares, strict=True)):
@@ -100,12 +100,12 @@ _SPOKE_COUNT = 24
 class HandwheelDial:
     """Handwheel on the screen.
 
-    The ``on_turned`` parameter is called with the number of clicks, which is positive for clockwise
+    The ``turn_handwheel`` parameter is called with the number of clicks, which is positive for clockwise
     rotation.
     """
 
-    def __init__(self, on_turned: Callable[[int], None]) -> None:
-        self._turned = on_turned
+    def __init__(self, turn_handwheel: Callable[[int], None]) -> None:
+        self._turned = turn_handwheel
         self._angle = 0.0  # Drawn angle in degrees.
         self._at = 0.0  # Angle of the touch in degrees.
         self._rest = 0.0  # Remaining degrees of an incomplete click.
@@ -136,7 +136,7 @@ class HandwheelDial:
 
     def draw(self, painter: ThemedPainter, box: QRectF, click_text: str) -> None:
         """Draw the handwheel at its present angle, with the text of the distance per click."""
-        size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.u
+        size = 0.5 * min(box.width(), box.height()) - 0.4 * painter.theme.unit_px
         painter.setPen(painter.theme.make_pen("accent", 0.24))
         painter.drawEllipse(box.center(), size, size)
         for spoke in range(_SPOKE_COUNT):
@@ -157,7 +157,7 @@ class HandwheelDial:
 
 
 ROW, HELD = 5.0, 9.4  # Minimum height in units of a row of tiles and of a jog target.
-CROSS_ROWS = 3  # Rows of jog targets.
+CROSS_ROW_COUNT = 3  # Rows of jog targets.
 DrawTileRow = Callable[[ThemedPainter, QRectF], None]
 
 
@@ -196,7 +196,7 @@ class JogPad(JogCross):
         """Draw the rows of touch keys, the arrow keys and the homing keys, and set their touch targets."""
         self.controls.clear()
         self.frame(painter, tr("JOG  ·  HOLD TO MOVE"))
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.inside().adjusted(-0.4 * u, 0, 0.4 * u, 0.3 * u)
         rows = self._make_row_drawers(room)
         high = self._tile_height(room, len(rows) + 1) + 0.6 * u
@@ -218,7 +218,10 @@ class JogPad(JogCross):
         """
         wheel: list[DrawTileRow] = [self._draw_wheel] if self._model.handwheel.is_available else []
         both: list[DrawTileRow] = [self._steps, self._speeds]
-        needed = self.theme.find_key_rows_height(len(both) + len(wheel) + 1 + CROSS_ROWS) + 0.6 * self.theme.u
+        needed = (
+            self.theme.find_key_rows_height(len(both) + len(wheel) + 1 + CROSS_ROW_COUNT)
+            + 0.6 * self.theme.unit_px
+        )
         return [*(both if area.height() >= needed else [self._draw_steps_and_speeds]), *wheel]
 
     def _tile_height(self, area: QRectF, rows: int) -> float:
@@ -226,9 +229,9 @@ class JogPad(JogCross):
 
         The row is as high as a fingertip if this leaves enough height for the jog targets.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         finger = self.theme.find_row_height(ROW, 9.0, is_touchable=True)
-        left = area.height() - CROSS_ROWS * (HELD * u + 0.6 * u) - u
+        left = area.height() - CROSS_ROW_COUNT * (HELD * u + 0.6 * u) - u
         return max(min(finger, float(FINGERTIP_PX)), ROW * u, min(finger, left / rows - 0.6 * u))
 
     def _draw_steps_and_speeds(self, painter: ThemedPainter, row: QRectF) -> None:
@@ -239,7 +242,7 @@ class JogPad(JogCross):
         model, mode = self._model, self._model.held_jog.value_mode
         step = model.jog_speeds.step_index
         said = tr("CONT")
-        if step != CONTINUOUS_STEP:
+        if step != CONTINUOUS_STEP_INDEX:
             turning = self._active_rotary_axis
             said = (
                 model.jog_speeds.format_step(turning, mode, step) if turning else make_step_labels(mode)[step]
@@ -269,8 +272,8 @@ class JogPad(JogCross):
                     for n in range(len(words) - 1)
                 ),
             )
-        chosen = model.jog_speeds.step_index - CONTINUOUS_STEP
-        presses = [partial(model.select_step, step) for step in range(CONTINUOUS_STEP, len(words) - 1)]
+        chosen = model.jog_speeds.step_index - CONTINUOUS_STEP_INDEX
+        presses = [partial(model.select_step, step) for step in range(CONTINUOUS_STEP_INDEX, len(words) - 1)]
         self._tiles(painter, row, TileRow((unit, "F2"), words, presses, chosen))
 
     def _speeds(self, painter: ThemedPainter, row: QRectF) -> None:
@@ -300,7 +303,7 @@ class JogPad(JogCross):
         """
         held, wheel = self._model.held_jog.active_jog, self._model.handwheel.wheel_choice
         axis = held.axis if held else wheel[0] if wheel else ""
-        return axis if axis and self._model.machine.find_axis(axis).rotary else ""
+        return axis if axis and self._model.machine.find_axis(axis).is_rotary else ""
 
     @property
     def _turning_rapid(self) -> str:
@@ -332,9 +335,9 @@ class JogPad(JogCross):
         words = [tr("HOME")]
         presses: list[Callable[[], None]] = [model.handle_home_key]
         for axis in model.homing_question.homing_axes:
-            name = model.machine.displayed_axis_name(axis.name)
+            name = model.machine.get_displayed_axis_name(axis.name)
             words.append(f"{name} {self._known[axis.name].state_name}" if self._known else name)
-            presses.append(partial(model.home_axis, axis.name))
+            presses.append(partial(model.handle_home_touch, axis.name))
         lost = frozenset(
             i
             for i, known in enumerate(self._known.values(), 1)
@@ -342,7 +345,7 @@ class JogPad(JogCross):
         )
         chosen = 0 if model.homing_question.is_open else -1
         armed = model.setter_touch.is_armed
-        if model.setter_touch.setter is not None:
+        if model.setter_touch.tool_setter is not None:
             words.append(tr("SETTER (P)"))
             presses.append(model.start_setter_touch)
             chosen = len(words) - 1 if armed else chosen
@@ -359,7 +362,7 @@ class JogPad(JogCross):
         step = model.jog_speeds.step_index
         words = (
             (tr("STEP"), make_step_labels(mode)[step])
-            if step != CONTINUOUS_STEP
+            if step != CONTINUOUS_STEP_INDEX
             else (tr("CONTINUOUS"), self._speed(mode))
         )
         if model.handwheel.wheel_choice is not None:
@@ -382,9 +385,9 @@ class JogPad(JogCross):
         unit = tr("mm") if mode.is_metric else tr("in")
         if self._active_rotary_axis:
             unit = "°"
-            if step != CONTINUOUS_STEP:
+            if step != CONTINUOUS_STEP_INDEX:
                 words = (tr("STEP"), model.jog_speeds.format_step(self._active_rotary_axis, mode, step))
-        draw_jog_mode(painter, box, (*words, unit if step != CONTINUOUS_STEP else f"{unit}/min"))
+        draw_jog_mode(painter, box, (*words, unit if step != CONTINUOUS_STEP_INDEX else f"{unit}/min"))
 
     def _speed(self, mode: ValueMode) -> str:
         model = self._model

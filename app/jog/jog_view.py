@@ -19,7 +19,7 @@ from app.jog.held_keys_view import CHORD_MODIFIERS, HeldKeysPage
 from app.jog.jog_model import JogModel
 from app.jog.jog_pad_view import JogPad
 from app.jog.manual_functions import CLOSE, COOLANT_OFF, COOLANT_ON, FORWARD, OPEN, REVERSE, SPEED_KEY, STOP
-from app.jog.skim_and_setter import SkimCutStep
+from app.jog.skim_cut_and_setter import SkimCutStep
 from app.jog.tool_setting_view import MillJogPanel, ToolSettingPanel
 from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.screen import page_table
@@ -36,17 +36,17 @@ StripKey = tuple[str, str, Callable[[], object]]  # Letter, label and action.
 
 
 def draw_function_key(
-    painter: ThemedPainter, box: QRectF, letter: str, label: str, *, is_selected: bool, is_on: bool
+    painter: ThemedPainter, box: QRectF, key_letter: str, label: str, *, is_selected: bool, is_on: bool
 ) -> None:
     """Draw a key with its letter and its label.
 
     The key is filled if its function is on, and framed if its function is selected.
     """
-    u = painter.theme.u
+    u = painter.theme.unit_px
     ground, ink = ("run", "on_state") if is_on else ("here" if is_selected else "key", "text")
     painter.draw_box(box, "lit" if is_selected else "frame", 0.3 if is_selected else 0.16, ground)
     painter.draw_text_line(
-        QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), letter, 1.9, ink if is_on else "accent"
+        QRectF(box.x() + 0.8 * u, box.y(), 2.6 * u, box.height()), key_letter, 1.9, ink if is_on else "accent"
     )
     painter.draw_text_line(box.adjusted(3.2 * u, 0, -0.6 * u, 0), label, 2.1, ink, at=ALIGN_CENTER)
 
@@ -82,7 +82,7 @@ class ManualPanel(TouchPanel):
         """
         self.controls.clear()
         self.frame(painter, tr("MANUAL FUNCTIONS  ·  PICK, THEN CYCLE START"))
-        u, room, hand = self.theme.u, self.inside(), self._model.manual_functions
+        u, room, hand = self.theme.unit_px, self.inside(), self._model.manual_functions
         rows = 4 if CLOSE in hand.available_functions else 3
         high = (room.height() + 0.6 * u) / rows
         row = QRectF(room.x(), room.y(), room.width(), high - 0.6 * u)
@@ -119,7 +119,7 @@ class ManualPanel(TouchPanel):
 
     def _draw_spindle(self, painter: ThemedPainter, row: QRectF) -> None:
         """Draw the state of the spindle and the key that stops the spindle."""
-        u, hand, snapshot = self.theme.u, self._model.manual_functions, self._model.desk.read_snapshot()
+        u, hand, snapshot = self.theme.unit_px, self._model.manual_functions, self._model.desk.read_snapshot()
         words = tr("SPINDLE STOPPED")
         if hand.is_spindle_turning(snapshot):
             words = tr(Message("SPINDLE TURNING AT {rpm:.0f} RPM", rpm=abs(snapshot.rpm_actual)))
@@ -137,7 +137,7 @@ class ManualPanel(TouchPanel):
         self.controls.append(stop.make_stop_control())
 
     def _keys(self, painter: ThemedPainter, row: QRectF, *keys: tuple[str, str, str, bool]) -> None:
-        u, hand = self.theme.u, self._model.manual_functions
+        u, hand = self.theme.unit_px, self._model.manual_functions
         wide = (row.width() + 0.6 * u) / len(keys)
         for number, (letter, words, name, on) in enumerate(keys):
             box = QRectF(row.x() + number * wide, row.y(), wide - 0.6 * u, row.height())
@@ -149,7 +149,7 @@ class ManualPanel(TouchPanel):
 
 def find_strip_key_height(theme: ScreenTheme) -> float:
     """Return the height of the strip keys in pixels, which is at least the height of a fingertip."""
-    return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.u)
+    return max(float(FINGERTIP_PX), KEY_HEIGHT * theme.unit_px)
 
 
 class ManualStrip(TouchPanel):
@@ -174,7 +174,7 @@ class ManualStrip(TouchPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the keys for manual functions and skim cut, with the change text or the footer above them."""
         self.controls.clear()
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.fill_rect(self.find_full_area(), "ground")
         keys = self._keys()
         room = self.find_full_area()
@@ -200,7 +200,7 @@ class ManualStrip(TouchPanel):
         hand: StripKey = (
             "B",
             tr("TOOL SETTING") if model.manual_functions.is_shown else tr("MANUAL FUNCTIONS"),
-            model.toggle_manual,
+            model.toggle_manual_functions,
         )
         if skim.cut_step is SkimCutStep.CHOOSE_AXIS:
             return (
@@ -261,12 +261,12 @@ class JogPage(HeldKeysPage):
     def _to_presets(self) -> None:
         self.host.open_page(page_table.SECCMP)
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels.
 
         A mill has no touch-off keys here, because tools and presets are set on their own pages.
         """
-        labels = super().key_labels()
+        labels = super().make_key_labels()
         return (*labels[:3], "", "3D-ROT", "", *labels[6:]) if self.model.is_mill else labels
 
     def handle_other_key(self, event: QKeyEvent) -> bool:
@@ -276,7 +276,7 @@ class JogPage(HeldKeysPage):
         self.model.handle_home_key()
         return True
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions for steps, speeds, readout, touch-off and undo."""
         model = self.model
         common: KeyActions = {
@@ -291,7 +291,7 @@ class JogPage(HeldKeysPage):
         touch = {"F5": lambda: model.ask_tool_value(TOUCH_X), "F6": lambda: model.ask_tool_value(TOUCH_Z)}
         return {**common, **touch, "F4": model.tool_setting.ask_undo}
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys of touch-off, undo and tilted plane that are disabled now."""
         model, snapshot = self.model, self.desk.read_snapshot()
         if model.is_mill:
@@ -300,13 +300,13 @@ class JogPage(HeldKeysPage):
             "F5": model.tool_setting.find_refusal(TOUCH_X, snapshot),
             "F6": model.tool_setting.find_refusal(TOUCH_Z, snapshot),
             "F4": model.tool_setting.find_undo_refusal()
-            or not model.tool_setting.history.can_undo(model.tool_setting.tool_number),
+            or not model.tool_setting.offset_history.can_undo(model.tool_setting.tool_number),
         }
         return frozenset(key for key, why in found.items() if why)
 
     def has_text_field(self) -> bool:
         """Return whether the operator is entering a tool value or the spindle speed."""
-        return self.model.is_asking
+        return self.model.is_entry_open
 
     # --- page ----------------------------------------------------------------------------------------
 
@@ -330,7 +330,7 @@ class JogPage(HeldKeysPage):
         if not self._has_keyboard():
             self.release_if_active()
         self.model.update(snapshot)
-        entering, hand = self.model.is_asking, self.model.manual_functions
+        entering, hand = self.model.is_entry_open, self.model.manual_functions
         self.jog_cross.setVisible(not entering)
         self.number_pad.setVisible(entering)
         self.number_pad.page_key = (
@@ -344,7 +344,7 @@ class JogPage(HeldKeysPage):
         self.manual_strip.setVisible(not entering)
         self.manual_panel.show_functions(snapshot)
         if self.model.is_mill:
-            self.mill_panel.show_mill(snapshot)
+            self.mill_panel.show_state(snapshot)
         else:
             self.tool_panel.show_tool(snapshot)
         self._show_question(snapshot)
@@ -358,20 +358,20 @@ class JogPage(HeldKeysPage):
             return
         foot = tool.make_note_text() or (
             tr("Enter: accept   Esc: cancel")
-            if self.model.is_asking
+            if self.model.is_entry_open
             else tr("T tool · X Z touch off · W wear · N nose radius · Q tip · K remark · M master · F4 undo")
         )
         if self.model.is_mill:
             foot = ""
         text = tool.touch_off.reason if tool.is_setter_result else tool.text
         self.entry_panel.entry_texts = EntryTexts(
-            "", tool.question_text(), text, tool.describe_change(), foot
+            "", tool.make_question_text(), text, tool.describe_change(), foot
         )
-        self.manual_strip.show_keys(snapshot, tool.history.last_change_text, foot)
+        self.manual_strip.show_keys(snapshot, tool.offset_history.last_change_text, foot)
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the pad on the left, and the tool above the entry line on the right."""
-        u, gap = self.theme.u, max(4, round(0.7 * self.theme.u))
+        u, gap = self.theme.unit_px, max(4, round(0.7 * self.theme.unit_px))
         left = round(WIDE * self.width())
         for part in (self.jog_cross, self.number_pad):
             part.setGeometry(0, 0, left, self.height())

@@ -41,20 +41,20 @@ SPEED_KEY = "9"  # The key that asks for the spindle speed.
 class Words(NamedTuple):
     """Codes of the functions in a programming language.
 
-    ``speed`` is a separate line for the speed in languages that do not permit S in the line with M3.
+    ``speed_line`` is a separate line for the speed in languages that do not permit S in the line with M3.
     """
 
-    forward: str
-    reverse: str
-    coolant: str
-    collet: tuple[str, str] = ("", "")  # Codes for close and open.
-    speed: str = ""
+    forward_line: str
+    reverse_line: str
+    coolant_line: str
+    collet_lines: tuple[str, str] = ("", "")  # Codes for close and open.
+    speed_line: str = ""
 
 
-LANGUAGE_CODES = {
+CODES_BY_LANGUAGE = {
     "omniturn": Words("G97M03S{rpm:g}", "G97M04S{rpm:g}", "M08", ("M12", "M13")),
     "sinumerik": Words("G97 S{rpm:g} M3", "G97 S{rpm:g} M4", "M8"),
-    "klartext": Words("M3", "M4", "M8", speed="TOOL CALL S{rpm:g}"),
+    "klartext": Words("M3", "M4", "M8", speed_line="TOOL CALL S{rpm:g}"),
 }
 
 
@@ -86,7 +86,7 @@ class ManualFunctions:
     @property
     def function_codes(self) -> Words:
         """Return the codes of the functions in the programming language of the machine."""
-        return LANGUAGE_CODES[self.machine.language]
+        return CODES_BY_LANGUAGE[self.machine.mdi_language]
 
     @property
     def available_functions(self) -> frozenset[str]:
@@ -94,7 +94,7 @@ class ManualFunctions:
         found = {FORWARD, REVERSE, STOP}
         if "coolant" in self.machine.outputs:
             found |= {COOLANT_ON, COOLANT_OFF}
-        if "collet" in self.machine.outputs and self.function_codes.collet[0]:
+        if "collet" in self.machine.outputs and self.function_codes.collet_lines[0]:
             found |= {CLOSE, OPEN}
         return frozenset(found)
 
@@ -137,7 +137,7 @@ class ManualFunctions:
 
     # --- keys and touches ----------------------------------------------------------------------------
 
-    def toggle_shown(self) -> None:
+    def toggle_panel(self) -> None:
         """Show the manual functions instead of tool setting, or show tool setting again."""
         self.cancel_selection()
         self.desk.clear_prompt_line()
@@ -165,7 +165,7 @@ class ManualFunctions:
         The speed is the active S. If the line of the function contains S, an entered speed is used first.
         """
         modal = self.desk.read_snapshot().modal
-        typed = 0.0 if self.function_codes.speed else self.entered_rpm
+        typed = 0.0 if self.function_codes.speed_line else self.entered_rpm
         return typed or (0.0 if modal.css else modal.rpm)
 
     def _choose(self, name: str) -> None:
@@ -180,18 +180,20 @@ class ManualFunctions:
         self.selected_function = name
         self.prepared_line.prove_line(self.make_line(name), snapshot, self._failed)
 
-    def make_line(self, name: str) -> str:
+    def make_line(self, function: str) -> str:
         """Return the MDI line of a function."""
         words = self.function_codes
         lines = {
-            FORWARD: words.forward,
-            REVERSE: words.reverse,
-            COOLANT_ON: words.coolant,
-            CLOSE: words.collet[0],
-            OPEN: words.collet[1],
-            SPEED_KEY: words.speed,
+            FORWARD: words.forward_line,
+            REVERSE: words.reverse_line,
+            COOLANT_ON: words.coolant_line,
+            CLOSE: words.collet_lines[0],
+            OPEN: words.collet_lines[1],
+            SPEED_KEY: words.speed_line,
         }
-        return tr(Message(lines[name], rpm=self.entered_rpm if name == SPEED_KEY else self.start_speed_rpm))
+        return tr(
+            Message(lines[function], rpm=self.entered_rpm if function == SPEED_KEY else self.start_speed_rpm)
+        )
 
     def _find_refusal(self, snapshot: Snapshot) -> str:
         """Return the reason why no function can be selected now, or an empty string.
@@ -205,7 +207,7 @@ class ManualFunctions:
             MachineState.ESTOP: tr("E-STOP IS PRESSED. NO AXIS CAN MOVE"),
             MachineState.FAULT: tr("ALARM ACTIVE. CORRECT ITS CAUSE, THEN PRESS R"),
             MachineState.JOG: tr("AXES ARE STILL MOVING"),
-            MachineState.HOME: tr("HOMING. PRESS H TO STOP"),
+            MachineState.HOMING: tr("HOMING. PRESS H TO STOP"),
         }
         return words.get(snapshot.state) or tr("MACHINE IS BUSY. LET IT FINISH, OR PRESS R TO CANCEL")
 
@@ -251,7 +253,7 @@ class ManualFunctions:
         elif self.is_shown and key == SPEED_KEY:
             self.ask_speed()
         elif key in {"b", "B"}:
-            self.toggle_shown()
+            self.toggle_panel()
         else:
             return False
         return True
@@ -282,7 +284,7 @@ class ManualFunctions:
             return
         self.entered_rpm, self.is_asking_speed, self.text = rpm, False, ""
         wanted, self._wanted = self._wanted, ""
-        if self.function_codes.speed:
+        if self.function_codes.speed_line:
             self._choose(SPEED_KEY)
         elif wanted:
             self._choose(wanted)
@@ -386,7 +388,7 @@ class ManualFunctions:
         if self.prepared_line.ready_job is not None:
             words = tr("RUN {line}: {start}   ESC: CANCEL")
             line = self.prepared_line.ready_job.source.text
-            if self.function_codes.speed and self.selected_function in {FORWARD, REVERSE}:
+            if self.function_codes.speed_line and self.selected_function in {FORWARD, REVERSE}:
                 line = f"{line} (S{self.start_speed_rpm:g})"  # The line itself does not contain the active S.
             return tr(Message(words, line=line, start=tr(self.desk.start_instruction)))
         if self._moved:

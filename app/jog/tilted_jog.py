@@ -9,7 +9,7 @@ from app.desk.translation import tr
 from core.executor.hand_motion.jog_line import Direction
 from core.executor.snapshot import MANUAL_STATES, Snapshot
 from core.geometry.rotary_axes import Kinematics, RotaryAxis
-from core.geometry.rotation_frames import Matrix, multiply_matrices, rotation_about
+from core.geometry.rotation_frames import Matrix, make_rotation, multiply_matrices
 from core.interpreter.shared.working_plane import PlaneSystem
 from core.message import Message
 
@@ -23,12 +23,12 @@ _UPRIGHT_TOLERANCE = 1e-6  # Tolerance of a unit vector within which a tool coun
 class JogFrame:
     """Frame with the jog directions X, Y and Z.
 
-    The columns of ``axes`` are the directions in machine coordinates. ``frame_text`` is the name of the
+    The columns of ``axes`` are the directions in machine coordinates. ``frame_name`` is the name of the
     frame.
     """
 
-    axes: Matrix
-    frame_text: str
+    axis_matrix: Matrix
+    frame_name: str
 
     def find_direction(self, axis: str) -> Direction | None:
         """Return the direction of a linear axis in machine coordinates.
@@ -37,11 +37,11 @@ class JogFrame:
         """
         if axis not in LINEAR_AXES:
             return None
-        x, y, z = (row[LINEAR_AXES.index(axis)] for row in self.axes)
+        x, y, z = (row[LINEAR_AXES.index(axis)] for row in self.axis_matrix)
         return x, y, z
 
 
-def make_jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
+def make_jog_frame(kinematics: Kinematics | None, snapshot: Snapshot) -> JogFrame | str:
     """Return the frame for jogging, or the reason as text if there is no such frame.
 
     If a plane is active, its frame is used, but only if the rotary axes are at the angles of the plane. If
@@ -61,10 +61,12 @@ def make_jog_frame(machine: Kinematics | None, snapshot: Snapshot) -> JogFrame |
             system.transform.rotation,
             tr(Message("TILTED PLANE FROM LINE {line}", line=system.plane_block_line)),
         )
-    if machine is None or abs(machine.tool_direction(angles)[2] - 1.0) <= _UPRIGHT_TOLERANCE:
+    if kinematics is None or abs(kinematics.compute_tool_direction(angles)[2] - 1.0) <= _UPRIGHT_TOLERANCE:
         return tr("NO TILT ACTIVE. RUN PLANE IN MDI (F4) OR TILT THE HEAD")
     heads = [
-        rotation_about(each.direction, angles[each.name]) for each in machine.rotary_axes if not each.is_table
+        make_rotation(each.direction, angles[each.name])
+        for each in kinematics.rotary_axes
+        if not each.is_table
     ]
     return JogFrame(multiply_matrices(*heads), tr("TOOL AXIS"))
 
@@ -73,7 +75,8 @@ def _is_angle_different(system: PlaneSystem, axis: RotaryAxis, angle: float) -> 
     """Return whether a rotary axis is not at the angle of the plane."""
     target = system.target_angles[_ROTARY.index(axis.name)]
     return (
-        abs(axis.find_travel(target, system.kinematics.displayed_angle(axis, angle))) > _ANGLE_TOLERANCE_DEG
+        abs(axis.find_travel(target, system.kinematics.get_displayed_angle(axis, angle)))
+        > _ANGLE_TOLERANCE_DEG
     )
 
 
@@ -84,7 +87,7 @@ class TiltedJog:
     ``release_keys`` stops the jog, and ``show_message`` shows the reason.
     """
 
-    machine: Kinematics | None
+    kinematics: Kinematics | None
     release_keys: Callable[[str], None]
     show_message: Callable[[str], None]
     is_on: bool = False
@@ -106,7 +109,7 @@ class TiltedJog:
         """Return whether the 3D-ROT key has a function now."""
         return self.is_on or (self.jog_frame is not None and snapshot.state in MANUAL_STATES)
 
-    def switch_off(self) -> None:
+    def turn_off(self) -> None:
         """Turn 3D-ROT off because the page closes."""
         self.is_on = False
 
@@ -115,7 +118,7 @@ class TiltedJog:
 
         This method is called once per frame of the screen.
         """
-        found = make_jog_frame(self.machine, snapshot)
+        found = make_jog_frame(self.kinematics, snapshot)
         self.jog_frame, self.refusal_reason = (None, found) if isinstance(found, str) else (found, "")
         if self.is_on and self.jog_frame is None:
             self.is_on = False

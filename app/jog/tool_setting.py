@@ -11,7 +11,12 @@ from app.desk.translation import tr
 from app.jog.tool_touch_off import TOUCH_FIELDS, TOUCH_X, TOUCH_Z, TouchOff, find_touch_refusal
 from app.offsets.change_rules import CORRECTION_FIELDS
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal, format_followers
+from app.offsets.offset_changes import (
+    ConfirmedOffsetChanges,
+    OffsetHistory,
+    find_change_refusal,
+    format_followers,
+)
 from app.offsets.offset_table import ToolFieldEditor
 from app.offsets.offset_values import (
     TOOL_FIELDS,
@@ -19,7 +24,7 @@ from app.offsets.offset_values import (
     describe_unset,
     format_signed,
     format_value,
-    make_heading,
+    make_field_heading,
     parse_value,
     translate_field,
 )
@@ -39,7 +44,7 @@ class ToolSetting:
 
     desk: Desk
     offset_book: OffsetBook
-    history: OffsetHistory = field(init=False)
+    offset_history: OffsetHistory = field(init=False)
     tool_fields: ToolFieldEditor = field(init=False)
     touch_off: TouchOff = field(default_factory=TouchOff)
     tool_number: int = 0
@@ -48,15 +53,15 @@ class ToolSetting:
     _active: int = -1  # The active tool at the last update.
 
     def __post_init__(self) -> None:
-        self.history = OffsetHistory(self.desk, OffsetKind.TOOL, key_hint="F8, F5")
-        self.tool_fields = ToolFieldEditor(self.history)
+        self.offset_history = OffsetHistory(self.desk, OffsetKind.TOOL, key_hint="F8, F5")
+        self.tool_fields = ToolFieldEditor(self.offset_history)
 
     # --- display -------------------------------------------------------------------------------------
 
     @property
     def tool_row(self) -> ToolRow | None:
         """Return the offset of the selected tool, or None if the tool was never set."""
-        return self.offset_book.tools.get(self.tool_number)
+        return self.offset_book.tool_offsets.get(self.tool_number)
 
     @property
     def is_master_touched(self) -> bool:
@@ -66,41 +71,43 @@ class ToolSetting:
     @property
     def is_setter_result(self) -> bool:
         """Return whether the question is about a measurement of the tool setter."""
-        return self.question_name in TOUCH_FIELDS and self.touch_off.measured_value is not None
+        return self.question_name in TOUCH_FIELDS and self.touch_off.measured_position_mm is not None
 
-    def ask_setter_result(self, quantity: str, value: float, reason: str) -> None:
+    def ask_setter_result(self, quantity: str, position_mm: float, reason: str) -> None:
         """Ask whether to save a measurement of the tool setter.
 
-        ``value`` is the machine position in mm with the tool tip at part zero. If the value is suspicious,
-        only the question about suspicious changes is asked.
+        ``position_mm`` is the machine position in mm with the tool tip at part zero. If the value is
+        suspicious, only the question about suspicious changes is asked.
         """
         self.question_name, self.text = quantity, ""
-        self.touch_off.set_measurement(quantity, value, reason)
-        if self.tool_row is not None and OffsetQuestions(self.history).find_touch_suspicions(
-            self.tool_number, self.touch_off.make_touch(value)
+        self.touch_off.set_measurement(quantity, position_mm, reason)
+        if self.tool_row is not None and ConfirmedOffsetChanges(self.offset_history).find_touch_suspicions(
+            self.tool_number, self.touch_off.make_touch_position(position_mm)
         ):
             self._enter()
 
-    def ask_cut_size(self, quantity: str, position: float) -> None:
+    def ask_cut_size(self, quantity: str, position_mm: float) -> None:
         """Ask for the size of a skim cut.
 
-        ``position`` is the machine position in mm during the cut.
+        ``position_mm`` is the machine position in mm during the cut.
         """
         self.desk.clear_prompt_line()
         self.question_name, self.text = quantity, ""
-        self.touch_off.set_cut(quantity, position)
+        self.touch_off.set_cut(quantity, position_mm)
 
     @property
-    def offset_change(self) -> float | None:
+    def offset_change_mm(self) -> float | None:
         """Return the measured position minus the present offset including wear, in mm.
 
         Returns None if there is no measurement of the tool setter or no present offset.
         """
-        if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_value is None:
+        if not self.is_setter_result or self.tool_row is None or self.touch_off.measured_position_mm is None:
             return None
-        return self.touch_off.measured_value - self.tool_row.offset["xz".index(self.touch_off.field_name)]
+        return (
+            self.touch_off.measured_position_mm - self.tool_row.offset["xz".index(self.touch_off.field_name)]
+        )
 
-    def question_text(self) -> str:
+    def make_question_text(self) -> str:
         """Return the text of the open question, or an empty string."""
         name = format_edge_name(self.tool_number)
         if self.question_name == TOOL_QUESTION:
@@ -134,7 +141,7 @@ class ToolSetting:
                 Message(
                     "T{number} IS THE MASTER. ALSO ADJUSTED: {others}. L: THIS TOOL ONLY",
                     number=format_edge_suffix(number),
-                    others=format_followers(self.offset_book.tools, number) or tr("no tools"),
+                    others=format_followers(self.offset_book.tool_offsets, number) or tr("no tools"),
                 )
             )
         if new.tool_number and new.tool_number == number:
@@ -145,17 +152,17 @@ class ToolSetting:
     def describe_change(self) -> str:
         """Return a description of the change that the entry would make, or else of the last change."""
         if not self.question_name or self.question_name == TOOL_QUESTION:
-            return self.history.last_change_text
+            return self.offset_history.last_change_text
         mode, name, row = (
-            self.history.value_mode,
+            self.offset_history.value_mode,
             TOUCH_FIELDS.get(self.question_name, self.question_name),
             self.tool_row,
         )
-        touched, title = self.question_name in TOUCH_FIELDS, make_heading(name, mode)
+        touched, title = self.question_name in TOUCH_FIELDS, make_field_heading(name, mode)
         was = (
             format_value(name, getattr(row, name), mode)
             if row
-            else describe_unset(is_unread=self.offset_book.has_read_failed)
+            else describe_unset(is_unreadable=self.offset_book.has_read_failed)
         )
         try:
             value = (
@@ -171,9 +178,9 @@ class ToolSetting:
 
     def _format_difference(self, name: str, mode: ValueMode) -> str:
         """Return the difference between the measured offset and the present offset as text."""
-        if self.offset_change is None:
+        if self.offset_change_mm is None:
             return ""
-        shown = 2 * self.offset_change if name == "x" and mode.is_diameter else self.offset_change
+        shown = 2 * self.offset_change_mm if name == "x" and mode.is_diameter else self.offset_change_mm
         return f"   {tr('DIFFERENCE')} {format_signed(shown, mode.is_metric)}"
 
     def find_tip_position(self, snapshot: Snapshot) -> Pair | None:
@@ -188,7 +195,7 @@ class ToolSetting:
 
         Returns None unless both tools are set.
         """
-        master = self.offset_book.tools.get(self.offset_book.master_number)
+        master = self.offset_book.tool_offsets.get(self.offset_book.master_number)
         if self.tool_row is None or master is None:
             return None
         (x, z), (mx, mz) = self.tool_row.offset, master.offset
@@ -201,9 +208,9 @@ class ToolSetting:
 
         A change of the unit discards the entry. This method is called once per frame.
         """
-        before = self.history.value_mode
-        self.history.update(snapshot)
-        if self.history.value_mode != before and self.question_name:
+        before = self.offset_history.value_mode
+        self.offset_history.update(snapshot)
+        if self.offset_history.value_mode != before and self.question_name:
             self.close_question()
             self.desk.say(tr("UNITS OR DIAMETER/RADIUS CHANGED. NOT SAVED. RE-ENTER VALUE"))
         if snapshot.modal.tool != self._active:
@@ -214,7 +221,7 @@ class ToolSetting:
     def _choose(self, number: int) -> None:
         if number != self.tool_number:
             self.tool_number = number
-            self.tool_fields.incomplete_tool.discard()
+            self.tool_fields.incomplete_tool.discard_values()
 
     # --- questions -----------------------------------------------------------------------------------
 
@@ -257,7 +264,7 @@ class ToolSetting:
     def cancel_new_tool(self) -> None:
         """Close the question and discard an incomplete new tool."""
         self.close_question()
-        self.tool_fields.incomplete_tool.discard()
+        self.tool_fields.incomplete_tool.discard_values()
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered in the open question."""
@@ -313,7 +320,7 @@ class ToolSetting:
         if self.touch_off.has_moved(snapshot):
             return tr("AXIS MOVED AFTER TOUCH-OFF. PRESS ESC, THEN TOUCH OFF AGAIN")
         why = self.touch_off.save_touch(
-            self.tool_number, self.text, self.history, self.tool_fields.incomplete_tool
+            self.tool_number, self.text, self.offset_history, self.tool_fields.incomplete_tool
         )
         if not why:
             self.close_question()
@@ -335,14 +342,14 @@ class ToolSetting:
         """
         why = self.find_refusal("master", self.desk.read_snapshot())
         self.close_question()
-        self.history.show_refusal(why or self.tool_fields.ask_master(self.tool_number))
+        self.offset_history.show_refusal(why or self.tool_fields.ask_master(self.tool_number))
 
     def ask_undo(self) -> None:
         """Ask whether to undo the last change of the selected tool."""
         self.close_question()
-        self.history.show_refusal(
+        self.offset_history.show_refusal(
             self.find_undo_refusal()
-            or OffsetQuestions(self.history).ask_undo(OffsetKind.TOOL, self.tool_number)
+            or ConfirmedOffsetChanges(self.offset_history).ask_undo(OffsetKind.TOOL, self.tool_number)
         )
 
     def find_undo_refusal(self) -> str:

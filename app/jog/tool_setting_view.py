@@ -17,7 +17,7 @@ from app.jog.tool_touch_off import TOUCH_X, TOUCH_Z
 from app.offsets.offset_values import (
     ValueMode,
     describe_unset,
-    find_diameter_mark,
+    find_x_symbol,
     format_signed,
     format_value,
     translate_field,
@@ -31,7 +31,7 @@ from core.message import Message, join_messages
 from core.tool_edges import format_edge_name
 
 # Field, and the key that asks for its value.
-TOOL_FIELDS_SHOWN = (
+DISPLAYED_TOOL_FIELDS = (
     ("x", "X"),
     ("z", "Z"),
     ("wear_x", "W"),
@@ -41,7 +41,7 @@ TOOL_FIELDS_SHOWN = (
     ("remark", "K"),
     ("master", "M"),
 )
-ROWS = len(TOOL_FIELDS_SHOWN) // 2
+ROW_COUNT = len(DISPLAYED_TOOL_FIELDS) // 2
 _FIELD_QUESTIONS = {"x": TOUCH_X, "z": TOUCH_Z}
 
 
@@ -59,7 +59,7 @@ class ToolSettingPanel(Panel):
     def show_tool(self, snapshot: Snapshot) -> None:
         """Show the selected tool and the position of its tip."""
         tool = self._model.tool_setting
-        self._mode = tool.history.value_mode
+        self._mode = tool.offset_history.value_mode
         self._tip = tool.find_tip_position(snapshot)
         self._shown = (
             tool.tool_number,
@@ -94,9 +94,9 @@ class ToolSettingPanel(Panel):
         """Draw the tool setting panel in mm or inches, and make each field a touch target."""
         unit = tr("MM") if self._mode.is_metric else tr("INCH")
         self.frame(painter, join_messages("  ·  ", (tr("TOOL SETTING"), unit)))
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.inside().adjusted(-0.3 * u, 0, 0.3 * u, 0.3 * u)
-        cells = ROWS * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
+        cells = ROW_COUNT * (FINGERTIP_PX + 0.5 * u)  # Each cell is a touch target.
         high = min(10.5 * u, 0.36 * room.height(), max(room.height() - cells, 7.0 * u))
         head = QRectF(room.x(), room.y(), room.width(), high)
         self._draw_head(painter, head)
@@ -107,7 +107,7 @@ class ToolSettingPanel(Panel):
 
     def _draw_head(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the tool number, the tip quadrant and the tip position."""
-        u, tool = self.theme.u, self._model.tool_setting
+        u, tool = self.theme.unit_px, self._model.tool_setting
         box = QRectF(area.x(), area.y(), 13 * u, area.height())
         self._target(
             painter,
@@ -127,7 +127,7 @@ class ToolSettingPanel(Panel):
         self._stands(painter, area.adjusted(tip.right() + 1.2 * u - area.x(), 0, 0, 0))
 
     def _stands(self, painter: ThemedPainter, room: QRectF) -> None:
-        u, mode = self.theme.u, self.displayed_mode
+        u, mode = self.theme.unit_px, self.displayed_mode
         painter.draw_text_line(
             QRectF(room.x(), room.y(), room.width(), 2.0 * u), self.tip_heading, 1.5, "soft"
         )
@@ -135,7 +135,7 @@ class ToolSettingPanel(Panel):
         if self._tip is None:
             painter.draw_text_line(
                 room.adjusted(0, 2 * u, 0, 0),
-                describe_unset(is_unread=self._model.tool_setting.offset_book.has_read_failed),
+                describe_unset(is_unreadable=self._model.tool_setting.offset_book.has_read_failed),
                 2.8,
                 "soft",
             )
@@ -154,22 +154,22 @@ class ToolSettingPanel(Panel):
             painter.draw_text_line(row.adjusted(5 * u, 0, 0, 0), figure, 3.4, "text", at=ALIGN_RIGHT)
 
     def _cells(self, painter: ThemedPainter, room: QRectF) -> None:
-        u = self.theme.u
-        high, wide = (room.height() + 0.5 * u) / ROWS, (room.width() + 0.6 * u) / 2
-        for number, (name, key) in enumerate(TOOL_FIELDS_SHOWN):
+        u = self.theme.unit_px
+        high, wide = (room.height() + 0.5 * u) / ROW_COUNT, (room.width() + 0.6 * u) / 2
+        for number, (name, key) in enumerate(DISPLAYED_TOOL_FIELDS):
             row, column = divmod(number, 2)
             box = QRectF(room.x() + column * wide, room.y() + row * high, wide - 0.6 * u, high - 0.5 * u)
             self._cell(painter, box, name, key)
 
     def _cell(self, painter: ThemedPainter, box: QRectF, name: str, key: str) -> None:
-        u, mode = self.theme.u, self._mode
+        u, mode = self.theme.unit_px, self._mode
         model, tool = self._model, self._model.tool_setting
         asks = _FIELD_QUESTIONS.get(name, name)
         press: Callable[[], None] = (
             model.ask_master if name == "master" else partial(model.ask_tool_value, asks)
         )
         self._target(painter, box, press, lit=tool.question_name == asks)
-        mark = find_diameter_mark(name, mode)
+        mark = find_x_symbol(name, mode)
         label = {"x": tr("TOUCH OFF X"), "z": tr("TOUCH OFF Z")}.get(name, translate_field(name)) + (
             f" {mark}" if mark else ""
         )
@@ -208,7 +208,7 @@ class ToolSettingPanel(Panel):
         self.add_target(box, press, name)
 
     def _key(self, painter: ThemedPainter, box: QRectF, key: str) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.draw_text_line(
             QRectF(box.x() + 0.9 * u, box.y() + 0.3 * u, 2.4 * u, 2.2 * u), key, 1.7, "accent"
         )
@@ -229,17 +229,19 @@ class MillJogPanel(Panel):
         theme: ScreenTheme,
         model: JogModel,
         open_tools: Callable[[], None],
-        presets: Callable[[], None],
+        open_presets: Callable[[], None],
         parent: QWidget,
     ) -> None:
         super().__init__(theme, parent)
-        self._model, self._tools, self._presets = model, open_tools, presets
+        self._model, self._tools, self._presets = model, open_tools, open_presets
 
-    def show_mill(self, snapshot: Snapshot) -> None:
+    def show_state(self, snapshot: Snapshot) -> None:
         """Show the active tool, the active preset, the tip position and the tilted frame."""
         book, tilt, tool = self._model.desk.offset_book, self._model.tilted_jog, snapshot.modal.tool
         swivel = snapshot.swivel
-        self._tip = swivel.system.transform.to_frame_point(_slides(snapshot)) if swivel is not None else None
+        self._tip = (
+            swivel.system.transform.convert_to_frame_point(_slides(snapshot)) if swivel is not None else None
+        )
         self._shown = (
             tool,
             book.mill_tools.get(tool),
@@ -252,7 +254,7 @@ class MillJogPanel(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the tool, the preset, the tilted plane and the axes of the mill, in mm."""
         self.frame(painter, tr("TOOL, PRESET, TILTED PLANE  ·  MM"))
-        u, room = self.theme.u, self.inside()
+        u, room = self.theme.unit_px, self.inside()
         row = QRectF(room.x(), room.y(), room.width(), _ROW_HEIGHT * u - 0.6 * u)
         self._tool(painter, row)
         row.translate(0, _ROW_HEIGHT * u)
@@ -301,7 +303,7 @@ class MillJogPanel(Panel):
             if tilted is None or not tilted.system.is_tilted
             else tr("rotary axes are not at the angles of the tilted plane")
         )
-        words = tilt.jog_frame.frame_text if tilt.jog_frame is not None else words
+        words = tilt.jog_frame.frame_name if tilt.jog_frame is not None else words
         self._key(
             painter,
             row,
@@ -323,7 +325,7 @@ class MillJogPanel(Panel):
         *,
         lit: bool = False,
     ) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.draw_box(row, "lit" if lit else "frame", 0.24 if lit else 0.12, "here" if lit else "key")
         painter.draw_text_line(QRectF(row.x() + 0.8 * u, row.y() + 0.2 * u, 4 * u, 2 * u), key, 1.6, "accent")
         left = QRectF(row.x() + 4 * u, row.y(), 13.5 * u, row.height())
@@ -333,7 +335,7 @@ class MillJogPanel(Panel):
 
     def _draw_axes(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the tip position in the active coordinate system and the machine direction of each jog key."""
-        u, tilt = self.theme.u, self._model.tilted_jog
+        u, tilt = self.theme.unit_px, self._model.tilted_jog
         head = QRectF(area.x(), area.y(), area.width(), 2.2 * u)
         painter.draw_text_line(head, tr("TIP POSITION"), 1.5, "soft")
         if tilt.jog_frame is not None:
@@ -348,7 +350,7 @@ class MillJogPanel(Panel):
             if self._tip is not None:
                 at = QRectF(row.x() + 4 * u, row.y(), 13 * u, high)
                 painter.draw_text_line(
-                    at, format_length(self._tip[place], metric=True), 2.8, "text", at=ALIGN_RIGHT
+                    at, format_length(self._tip[place], is_metric=True), 2.8, "text", at=ALIGN_RIGHT
                 )
             direction = (
                 tilt.find_direction(name)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.desk.arithmetic import EntryError, evaluate_expression
 from app.desk.translation import tr
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
+from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory
 from app.offsets.offset_table import IncompleteTool
 from app.offsets.offset_values import TOOL_FIELDS, ValueMode, convert_to_mm, translate_field
 from core.executor.snapshot import MachineState, Snapshot
@@ -39,16 +39,16 @@ def find_axis_position(quantity: str, snapshot: Snapshot) -> float:
 class TouchOff:
     """Touch-off of one axis.
 
-    ``touch_position`` is the machine position in mm at the touch. ``measured_value`` is the machine
+    ``touch_position_mm`` is the machine position in mm at the touch. ``measured_position_mm`` is the machine
     position in mm with the tool tip at part zero, as measured with the tool setter, and ``reason``
     describes the measurement. A measured value requires no entry, and the axis may move after the
     measurement.
     """
 
     quantity: str = ""
-    touch_position: float = 0.0
+    touch_position_mm: float = 0.0
     skips_followers: bool = False  # Only this tool changes, although it is the master.
-    measured_value: float | None = None
+    measured_position_mm: float | None = None
     reason: str = ""
     is_skim_cut: bool = False  # The entered size was measured on a skim cut.
 
@@ -59,43 +59,43 @@ class TouchOff:
 
     def begin_touch(self, quantity: str, snapshot: Snapshot) -> None:
         """Store the present position of the axis as the touch position."""
-        self.quantity, self.touch_position, self.skips_followers = (
+        self.quantity, self.touch_position_mm, self.skips_followers = (
             quantity,
             find_axis_position(quantity, snapshot),
             False,
         )
-        self.measured_value, self.reason, self.is_skim_cut = None, "", False
+        self.measured_position_mm, self.reason, self.is_skim_cut = None, "", False
 
-    def set_cut(self, quantity: str, position: float) -> None:
+    def set_cut(self, quantity: str, position_mm: float) -> None:
         """Store the machine position of a skim cut in mm as the touch position."""
-        self.quantity, self.touch_position, self.skips_followers = quantity, position, False
-        self.measured_value, self.reason, self.is_skim_cut = None, "", True
+        self.quantity, self.touch_position_mm, self.skips_followers = quantity, position_mm, False
+        self.measured_position_mm, self.reason, self.is_skim_cut = None, "", True
 
-    def set_measurement(self, quantity: str, value: float, reason: str) -> None:
+    def set_measurement(self, quantity: str, position_mm: float, reason: str) -> None:
         """Store a measurement of the tool setter.
 
         Other tools do not follow the master tool after such a measurement.
         """
-        self.quantity, self.measured_value, self.reason, self.skips_followers, self.is_skim_cut = (
+        self.quantity, self.measured_position_mm, self.reason, self.skips_followers, self.is_skim_cut = (
             quantity,
-            value,
+            position_mm,
             reason,
             True,
             False,
         )
 
-    def find_zero_position(self, text: str, mode: ValueMode) -> float:
+    def find_zero_position(self, text: str, value_mode: ValueMode) -> float:
         """Return the machine position in mm with the tool tip at part zero, with X as a radius.
 
         Raises EntryError.
         """
-        if self.measured_value is not None:
-            return self._within(self.measured_value)
+        if self.measured_position_mm is not None:
+            return self._within(self.measured_position_mm)
         typed = evaluate_expression(text) * (0.5 if self.quantity == TOUCH_X else 1.0)
-        return self._within(self.touch_position - convert_to_mm(typed, mode.is_metric))
+        return self._within(self.touch_position_mm - convert_to_mm(typed, value_mode.is_metric))
 
     def _within(self, place: float) -> float:
-        if not TOOL_FIELDS[self.field_name].accepts(place):
+        if not TOOL_FIELDS[self.field_name].is_valid_value(place):
             raise EntryError(
                 tr(
                     Message(
@@ -106,7 +106,9 @@ class TouchOff:
             )
         return place
 
-    def save_touch(self, number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool) -> str:
+    def save_touch(
+        self, tool_number: int, text: str, history: OffsetHistory, new_tool: IncompleteTool
+    ) -> str:
         """Save the touch-off, and return the reason if it is rejected, or an empty string.
 
         X and Z of a new tool are saved together. Raises EntryError for an invalid entry.
@@ -114,41 +116,45 @@ class TouchOff:
         place, book, ask = (
             self.find_zero_position(text, history.value_mode),
             history.offset_book,
-            OffsetQuestions(history),
+            ConfirmedOffsetChanges(history),
         )
-        if number in book.tools:
+        if tool_number in book.tool_offsets:
             return ask.touch_off(
-                number,
-                self.make_touch(place),
+                tool_number,
+                self.make_touch_position(place),
                 self._make_reason(text, history.value_mode),
                 self._find_tip_x(place),
             )
-        values = new_tool.add_value(number, self.field_name, place)
+        values = new_tool.add_value(tool_number, self.field_name, place)
         new_tool.tip_x_mm = self._find_tip_x(place) if self.field_name == "x" else new_tool.tip_x_mm
         if len(values) < 2:
             return ""
         x, z = (float(values[name]) for name in ("x", "z"))
         why = ask.touch_off(
-            number, TouchPosition(x, z), self.reason or tr("touch-off of a new tool"), new_tool.tip_x_mm
+            tool_number, TouchPosition(x, z), self.reason or tr("touch-off of a new tool"), new_tool.tip_x_mm
         )
         if not why:
-            new_tool.discard()
+            new_tool.discard_values()
         return why
 
-    def make_touch(self, place: float) -> TouchPosition:
+    def make_touch_position(self, zero_position_mm: float) -> TouchPosition:
         """Return the touch position of this axis for the offset table.
 
         ``place`` is the machine position in mm with the tool tip at part zero.
         """
         return (
-            TouchPosition(place, None, self.skips_followers)
+            TouchPosition(zero_position_mm, None, self.skips_followers)
             if self.field_name == "x"
-            else TouchPosition(None, place, self.skips_followers)
+            else TouchPosition(None, zero_position_mm, self.skips_followers)
         )
 
     def _find_tip_x(self, place: float) -> float | None:
         """Return X of the tool tip relative to part zero at the touch in mm, or None if X was not touched."""
-        return self.touch_position - place if self.field_name == "x" and self.measured_value is None else None
+        return (
+            self.touch_position_mm - place
+            if self.field_name == "x" and self.measured_position_mm is None
+            else None
+        )
 
     def has_moved(self, snapshot: Snapshot) -> bool:
         """Return whether the axis has moved since the touch.
@@ -157,9 +163,9 @@ class TouchOff:
         because ``SkimCut`` makes its own check.
         """
         return (
-            self.measured_value is None
+            self.measured_position_mm is None
             and not self.is_skim_cut
-            and abs(find_axis_position(self.quantity, snapshot) - self.touch_position) > MOVE_TOLERANCE_MM
+            and abs(find_axis_position(self.quantity, snapshot) - self.touch_position_mm) > MOVE_TOLERANCE_MM
         )
 
     def _make_reason(self, text: str, mode: ValueMode) -> str:

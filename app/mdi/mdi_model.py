@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from core.language.code_book import CodeBook, CodeBookEntry
 
 HISTORY_SETTING = "mdi"
-MAX_LENGTH = 120  # Maximum characters of a line.
-MAX_HISTORY = 100  # Number of lines.
+MAX_LINE_LENGTH = 120  # Maximum characters of a line.
+MAX_HISTORY_LINES = 100  # Number of lines.
 
 
 @dataclass(slots=True)
@@ -36,8 +36,8 @@ class MdiInput:
 
     persistence: Persistence = field(default_factory=Persistence)
     text: str = ""
-    cursor: int = 0  # The cursor is before this character.
-    history: list[str] = field(default_factory=list)  # Oldest line first.
+    cursor_index: int = 0  # The cursor is before this character.
+    history_lines: list[str] = field(default_factory=list)  # Oldest line first.
     error_columns: dict[str, int] = field(
         default_factory=dict
     )  # Rejected lines with the column of the error, counted from 1; 0: the whole line.
@@ -46,51 +46,56 @@ class MdiInput:
     _draft: str = ""
 
     def __post_init__(self) -> None:
-        self.reload()
+        self.reload_history()
 
-    def reload(self) -> None:
+    def reload_history(self) -> None:
         """Read the stored history and ignore invalid entries."""
         try:
             kept = self.persistence.read_setting(HISTORY_SETTING)
         except StoreError:
             kept = None
         lines = kept if isinstance(kept, list) else []
-        self.history = [line for line in lines if isinstance(line, str)][-MAX_HISTORY:]
+        self.history_lines = [line for line in lines if isinstance(line, str)][-MAX_HISTORY_LINES:]
 
     def handle_key(self, key: str) -> bool:
         """Handle a character or an editing key, and return False if the key has no function here."""
         match key:
             case "Back":
-                self._cut(self.cursor - 1)
+                self._cut(self.cursor_index - 1)
             case "Delete":
-                self._cut(self.cursor)
+                self._cut(self.cursor_index)
             case "Left" | "Right":
-                self.cursor = max(0, min(len(self.text), self.cursor + (1 if key == "Right" else -1)))
+                self.cursor_index = max(
+                    0, min(len(self.text), self.cursor_index + (1 if key == "Right" else -1))
+                )
             case "Up" | "Down":
                 self.recall_line(self.recall_index + (1 if key == "Up" else -1))
             case _ if len(key) == 1 and key.isprintable():
-                if len(self.text) < MAX_LENGTH:
-                    self.set_text(self.text[: self.cursor] + key + self.text[self.cursor :], self.cursor + 1)
+                if len(self.text) < MAX_LINE_LENGTH:
+                    self.set_text(
+                        self.text[: self.cursor_index] + key + self.text[self.cursor_index :],
+                        self.cursor_index + 1,
+                    )
             case _:
                 return False
         return True
 
-    def set_text(self, text: str, cursor: int | None = None) -> None:
-        """Set the text, and move the cursor to the index ``cursor`` or to the end of the text."""
+    def set_text(self, text: str, cursor_index: int | None = None) -> None:
+        """Set the text, and move the cursor to the index ``cursor_index`` or to the end of the text."""
         self.text = text
-        self.cursor = len(text) if cursor is None else cursor
+        self.cursor_index = len(text) if cursor_index is None else cursor_index
 
     def recall_line(self, index: int) -> None:
         """Recall a line of the history.
 
         ``index`` counts from 1 for the newest line. An index of 0 restores the typed text.
         """
-        if not 0 <= index <= len(self.history):
+        if not 0 <= index <= len(self.history_lines):
             return
         if not self.recall_index:
             self._draft = self.text
         self.recall_index = index
-        self.set_text(self.history[-index] if index else self._draft)
+        self.set_text(self.history_lines[-index] if index else self._draft)
 
     def finish_line(self) -> None:
         """Add the line that was started to the history, and begin an empty line."""
@@ -99,21 +104,23 @@ class MdiInput:
         self.set_text("")
         self.recall_index, self._draft = 0, ""
 
-    def add_rejected(self, column: int) -> None:
+    def add_rejected_line(self, column: int) -> None:
         """Add a rejected line to the history with the column of its error.
 
         The text remains in the input line.
         """
         self._remember()
         self.error_columns[self.text] = column
-        self.error_columns = {line: at for line, at in self.error_columns.items() if line in self.history}
+        self.error_columns = {
+            line: at for line, at in self.error_columns.items() if line in self.history_lines
+        }
         self.recall_index = 0
 
     def _remember(self) -> None:
-        if self.text.strip() and (not self.history or self.history[-1] != self.text):
-            self.history = [*self.history, self.text][-MAX_HISTORY:]
+        if self.text.strip() and (not self.history_lines or self.history_lines[-1] != self.text):
+            self.history_lines = [*self.history_lines, self.text][-MAX_HISTORY_LINES:]
             with suppress(StoreError):  # TurnDesk shows the storage error elsewhere.
-                self.persistence.save_setting(HISTORY_SETTING, self.history)
+                self.persistence.save_setting(HISTORY_SETTING, self.history_lines)
 
     def _cut(self, index: int) -> None:
         if 0 <= index < len(self.text):
@@ -140,7 +147,7 @@ class LineCompletion:
         self.is_open = not self.is_open
         if self.is_open:
             self.code_help.update_for_cursor(
-                self.read_code_book(), self.mdi_input.text, self.mdi_input.cursor + 1
+                self.read_code_book(), self.mdi_input.text, self.mdi_input.cursor_index + 1
             )
             self.code_help.open_choices()
 
@@ -170,9 +177,9 @@ class LineCompletion:
         self.is_open, chosen = False, self.code_help.selected_entry
         if chosen is None:
             return
-        text, at = self.mdi_input.text, self.mdi_input.cursor
+        text, at = self.mdi_input.text, self.mdi_input.cursor_index
         begin = self.code_help.start_column - 1 if self.code_help.start_column else at
-        written = _fit_entry(chosen, MAX_LENGTH - len(text) + at - begin)
+        written = _fit_entry(chosen, MAX_LINE_LENGTH - len(text) + at - begin)
         if written:
             self.mdi_input.set_text(text[:begin] + written + text[at:], begin + len(written))
 
@@ -226,7 +233,7 @@ class MdiModel:
         Cycle Start then runs entered lines and no program.
         """
         self.is_open = True
-        self.mdi_input.reload()
+        self.mdi_input.reload_history()
         self.completion.is_open = False
         self.prepared_line.cancel_line()
 
@@ -253,10 +260,10 @@ class MdiModel:
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered now."""
-        return len(key) == 1 and self.has_keyboard
+        return len(key) == 1 and self.accepts_input
 
     @property
-    def has_keyboard(self) -> bool:
+    def accepts_input(self) -> bool:
         """Return whether the input line accepts keys.
 
         The input line accepts keys while the drives are off, but not while a line is running.
@@ -270,7 +277,7 @@ class MdiModel:
 
     def handle_key(self, key: str) -> bool:
         """Handle a key, and return False if the window must handle it."""
-        if not self.has_keyboard:
+        if not self.accepts_input:
             return False
         before = self.mdi_input.text
         taken = self.completion.handle_key(key)
@@ -297,7 +304,7 @@ class MdiModel:
 
     def toggle_choices(self) -> None:
         """Open or close the choices for the typed text or the code at the cursor."""
-        if self.has_keyboard:
+        if self.accepts_input:
             self.clear_message()
             self.completion.toggle_choices()
 
@@ -386,4 +393,4 @@ class MdiModel:
         self.show_message(tr(Message("THE LINE CANNOT BE CHECKED: {why}", why=why)))
 
     def _refused(self, error: Diagnostic) -> None:
-        self.mdi_input.add_rejected(error.column)
+        self.mdi_input.add_rejected_line(error.column)

@@ -62,7 +62,7 @@ class MdiLinePanel(Panel):
 
         The frame is highlighted if the line is ready for Cycle Start.
         """
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         title = tr("LINE  ·  READY FOR CYCLE START") if self.is_ready else tr("LINE")
         self.frame(painter, title, "lit" if self.is_ready else "frame", 0.3 if self.is_ready else 0.16)
         room = self.inside()
@@ -79,7 +79,7 @@ class MdiLinePanel(Panel):
     def _finding(
         self, painter: ThemedPainter, room: QRectF, metrics: QFontMetricsF, found: Diagnostic
     ) -> None:
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         ink = "alarm" if found.severity is Severity.ERROR else "accent"
         if found.column > 0:
             at = room.x() + metrics.horizontalAdvance(self.text[: found.column - 1]) + 0.9 * u
@@ -87,8 +87,8 @@ class MdiLinePanel(Panel):
             tip = QPolygonF(
                 [QPointF(at, top), QPointF(at - u, top + 1.6 * u), QPointF(at + u, top + 1.6 * u)]
             )
-            painter.setPen(look.color(ink))
-            painter.setBrush(look.color(ink))
+            painter.setPen(look.get_color(ink))
+            painter.setBrush(look.get_color(ink))
             painter.drawPolygon(tip)
         box = QRectF(room.x(), room.y() + 7.2 * u, room.width(), 2.9 * u)
         painter.draw_text_line(box, found.message, 2.3, ink)
@@ -113,16 +113,16 @@ class MdiHistoryPanel(RowPanel):
         ()
     )  # Rejected lines with the column of the error.
 
-    def __init__(self, theme: ScreenTheme, on_select: Callable[[int], None], parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, select_cell: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
-        self._choose = on_select
+        self._choose = select_cell
         # What was shown when the list last scrolled to its end or to the selection.
         self._placed: object = None
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the history of lines, highlight the recalled line and mark rejected lines."""
         self.frame(painter, tr("HISTORY  ·  UP AND DOWN ARROWS"))
-        u, room, count = self.theme.u, self.inside(), len(self.history_lines)
+        u, room, count = self.theme.unit_px, self.inside(), len(self.history_lines)
         fits, refused = self.count_fitting_rows(room, ROW_HEIGHT * u, count), dict(self.error_columns)
         if (shown := (self.history_lines, self.recall_index, fits)) != self._placed:
             self.first_row, self._placed = count - max(fits, self.recall_index), shown
@@ -144,7 +144,7 @@ class MdiHistoryPanel(RowPanel):
 
     def _draw_rejected(self, painter: ThemedPainter, row: QRectF, text: str, column: int) -> None:
         """Underline the rejected word of a line and write REJECTED on the right."""
-        u = self.theme.u
+        u = self.theme.unit_px
         metrics = QFontMetricsF(self.theme.make_font(2.2))
         start = max(0, column - 1)
         left = row.x() + metrics.horizontalAdvance(text[:start])
@@ -157,7 +157,7 @@ class MdiHistoryPanel(RowPanel):
 # --- modal state --------------------------------------------------------------------------------------
 
 
-LABEL_SHARE = 0.4  # Fraction of a row for its label.
+LABEL_WIDTH_RATIO = 0.4  # Fraction of a row for its label.
 
 
 class ModalPanel(Panel):
@@ -168,10 +168,10 @@ class ModalPanel(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw a label and a value for each row of the modal state."""
         self.frame(painter, tr("MODAL STATE"))
-        u, room = self.theme.u, self.inside()
+        u, room = self.theme.unit_px, self.inside()
         high = min(2.7 * u, room.height() / max(1, len(self.rows)))
         size = min(1.9, high / u * 0.78)
-        left = LABEL_SHARE * room.width()
+        left = LABEL_WIDTH_RATIO * room.width()
         for number, row in enumerate(self.rows):
             box = QRectF(room.x(), room.y() + number * high, room.width(), high)
             painter.draw_text_line(
@@ -206,7 +206,7 @@ class MdiPage(ModelPage):
         self.path_view.hide()
         self.modal_panel = ModalPanel(self.theme, self)
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of this page."""
         return {
             "F2": partial(self.host.open_page, page_table.AUTOMATIC),
@@ -220,14 +220,14 @@ class MdiPage(ModelPage):
             "F10": partial(self.host.press_key, "Scope"),
         }
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the DRIVES and RESET keys if they have no function in the present state."""
         state = self.desk.read_snapshot().state
         found = {"F5": state in {MachineState.ESTOP, MachineState.FAULT}, "F6": state in MOVING_STATES}
         return frozenset(key for key, refused in found.items() if refused)
 
     def _recall(self, back: int) -> None:
-        if self.model.has_keyboard:
+        if self.model.accepts_input:
             self.model.recall_line(back)
 
     def _toggle_letter_pad(self) -> None:
@@ -237,7 +237,7 @@ class MdiPage(ModelPage):
 
     def has_text_field(self) -> bool:
         """Return whether the input line accepts text, which is the case while no line is running."""
-        return self.model.has_keyboard
+        return self.model.accepts_input
 
     def prompt_text(self) -> str:
         """Return the prompt of the model."""
@@ -264,26 +264,26 @@ class MdiPage(ModelPage):
         running = snapshot.state in CYCLE_STATES and snapshot.starts is StartAction.MDI_LINE
         text = snapshot.block_text if running and not typing.text else typing.text
         line, history = self.line_panel, self.history_panel
-        line.text, line.at = text, len(text) if running else typing.cursor
+        line.text, line.at = text, len(text) if running else typing.cursor_index
         line.diagnostics, line.is_ready = (
             model.prepared_line.diagnostics,
             model.prepared_line.ready_job is not None,
         )
-        history.history_lines, history.recall_index = tuple(typing.history), typing.recall_index
+        history.history_lines, history.recall_index = tuple(typing.history_lines), typing.recall_index
         history.error_columns = tuple(typing.error_columns.items())
         self._show_first_move(snapshot, loaded)
         self.code_list.setVisible(model.completion.is_open)
         self.code_list.refresh()
         angle = snapshot.demand[2] - snapshot.modal.offset_c
         point = Checkpoint(snapshot.modal, c=angle, kept=snapshot.kept)
-        self.modal_panel.rows = make_modal_rows(point, self.desk.machine.language)
+        self.modal_panel.rows = make_modal_rows(point, self.desk.machine.program_language)
 
     def _show_first_move(self, snapshot: Snapshot, loaded: LoadedProgram) -> None:
         """Draw the first move of a prepared line over the path of the program, instead of the history."""
         legs = make_drawn_legs(self.model.prepared_line.first_move_result)
         if legs:
             self.path_view.show_picture(loaded.picture)
-            self.path_view.show_tip(find_tip_position(snapshot, loaded.job)._replace(block=0))
+            self.path_view.show_tip(find_tip_position(snapshot, loaded.job)._replace(active_block=0))
             self.path_view.show_approach(legs)
             self.path_view.draw_slice()
         self.path_view.setVisible(bool(legs))
@@ -294,7 +294,7 @@ class MdiPage(ModelPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the line above the history on the left, and the modal state on the right."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, high, state = max(4, round(0.7 * u)), round(LINE * u), round(STATE * u)
         wide = self.width() - state - gap
         self.line_panel.setGeometry(0, 0, wide, high)

@@ -58,7 +58,7 @@ class MillOffsets:
 
     tools: Mapping[int, MillRow] = field(default_factory=dict)
     presets: Mapping[int, PresetRow] = field(default_factory=dict)
-    preset: int = 0
+    active_preset: int = 0
 
 
 def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
@@ -74,7 +74,7 @@ def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
 
     presets = {0: DatumPreset(machine.origin, machine.basic_rotation_deg)}
     presets |= {number: make_datum_preset(row) for number, row in offsets.presets.items()}
-    active = offsets.preset if offsets.preset in presets else 0
+    active = offsets.active_preset if offsets.active_preset in presets else 0
     return replace(
         job_setup,
         tools={number: _make_tool_offset(row) for number, row in offsets.tools.items()},
@@ -82,7 +82,7 @@ def add_mill_offsets(job_setup: Setup, offsets: MillOffsets) -> Setup:
         mill_tools={number: _row(row) for number, row in offsets.tools.items()},
         presets=presets,
         preset=active,
-        kinematics=machine.with_preset(presets[active]),
+        kinematics=machine.apply_preset(presets[active]),
     )
 
 

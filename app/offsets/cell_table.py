@@ -152,7 +152,7 @@ class CellTable(OffsetTable):
         A change moves a zero point or a tool tip. Changes are therefore allowed only between cycles.
         """
         if (
-            snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOME}
+            snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOMING}
             and not self.offset_book.lock_reason
         ):
             return tr("PROGRAM RUNNING. CHANGE THIS TABLE ONLY BETWEEN CYCLES")
@@ -200,13 +200,15 @@ class CellTable(OffsetTable):
             self.edit_entry(key)
         return True
 
-    def move_selection(self, rows: int, columns: int) -> None:
+    def move_selection(self, row_steps: int, column_steps: int) -> None:
         """Move the selection by a number of rows and columns.
 
         An entry that was not saved is discarded.
         """
         wide = len(self.columns)
-        at = (self.row_index * wide + self.column_index + rows * wide + columns) % (len(self.numbers) * wide)
+        at = (self.row_index * wide + self.column_index + row_steps * wide + column_steps) % (
+            len(self.numbers) * wide
+        )
         self.choose(at // wide, at % wide)
 
     def choose(self, row: int, column: int) -> None:
@@ -271,7 +273,7 @@ class CellTable(OffsetTable):
         Raise EntryError otherwise.
         """
         field = self.selected_field
-        if field.accepts(value):
+        if field.is_valid_value(value):
             return round(value, 10)
         unit = {
             FieldType.ANGLE: tr("degrees"),
@@ -286,7 +288,7 @@ class CellTable(OffsetTable):
 
     def save_cell(
         self,
-        value: Callable[[], FieldValue],
+        parse_value: Callable[[], FieldValue],
         entered_text: str,
         find_dependent_values: Callable[[FieldValue], Mapping[str, FieldValue]] = lambda _new: {},
     ) -> bool:
@@ -299,7 +301,7 @@ class CellTable(OffsetTable):
             self.desk.say(why)
             return False
         try:
-            new = value()
+            new = parse_value()
         except EntryError as error:
             self.text = refused(self.text)
             self.desk.say(tr(Message("REJECTED: {why}", why=error)))

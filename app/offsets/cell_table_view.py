@@ -39,7 +39,7 @@ class CellPanel(RowPanel):
     the columns that fit are shown, including the selected column.
     """
 
-    stored: RedrawingAttribute[Mapping[int, OffsetRow]] = RedrawingAttribute({})
+    stored_rows: RedrawingAttribute[Mapping[int, OffsetRow]] = RedrawingAttribute({})
     tool_lives: RedrawingAttribute[Mapping[int, ToolLife]] = RedrawingAttribute(
         {}
     )  # Tool life of a mill's tools.
@@ -56,7 +56,7 @@ class CellPanel(RowPanel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the heading, the column heads and the visible rows of the table."""
         self.frame(painter, self._heading)
-        room, u, count = self.inside(), self.theme.u, len(self._numbers)
+        room, u, count = self.inside(), self.theme.unit_px, len(self._numbers)
         least = self.theme.find_row_height(HIGH, 10.0, is_touchable=True) + 0.5 * u
         head = min(HEAD * u, least)
         body = room.adjusted(0, head, 0, 0)
@@ -69,7 +69,7 @@ class CellPanel(RowPanel):
 
     def _find_cells(self, row: QRectF) -> Iterator[tuple[int, QRectF]]:
         """Yield the index and rectangle of each visible column in this row."""
-        room, gap = row.width() * (1.0 - _NUMBER_SHARE), 0.5 * self.theme.u
+        room, gap = row.width() * (1.0 - _NUMBER_SHARE), 0.5 * self.theme.unit_px
         shown = self._find_visible_columns(room * min(self._wide) / (FINGERTIP_PX + gap))
         one = room / sum(self._wide[column] for column in shown)
         left = row.x() + row.width() * _NUMBER_SHARE
@@ -98,13 +98,13 @@ class CellPanel(RowPanel):
             painter.draw_text_line(cell, self._words[column], 2.2, "soft", at=ALIGN_CENTER)
 
     def _row(self, painter: ThemedPainter, box: QRectF, row: int) -> None:
-        u, number = self.theme.u, self._numbers[row]
+        u, number = self.theme.unit_px, self._numbers[row]
         if number == self.active_row:
             painter.fill_rect(QRectF(box.x(), box.y(), 0.6 * u, box.height()), "lit")
         painter.draw_text_line(
             box.adjusted(1.6 * u, 0, 0, 0), f"{_ROW_LETTERS[self._kind]}{number}", 2.4, "accent"
         )
-        offset, size = self.stored.get(number), min(3.0, 0.5 * box.height() / u)
+        offset, size = self.stored_rows.get(number), min(3.0, 0.5 * box.height() / u)
         for nth, (column, cell) in enumerate(self._find_cells(box)):
             name = self._columns[column]
             here = (row, column) == self.selected_cell
@@ -153,15 +153,15 @@ class CellTablePage(OffsetPage):
             # Selects the next cell, even if the pad leaves no room for its column.
             self.number_pad.page_key = ("Tab", "→")
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the page's keys, which do not include F6 and F10."""
-        return {key: act for key, act in super().key_actions().items() if key not in {"F6", "F10"}}
+        return {key: act for key, act in super().make_key_actions().items() if key not in {"F6", "F10"}}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table from the model."""
         super().refresh(snapshot, status, loaded)
         model = self.model
-        self.table_panel.stored, self.table_panel.selected_cell = (
+        self.table_panel.stored_rows, self.table_panel.selected_cell = (
             model.offset_book.get_rows(model.kind),
             (model.row_index, model.column_index),
         )
@@ -178,17 +178,19 @@ class ZeroOffsetsPage(CellTablePage):
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, ZeroOffsetTable(host.desk))
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels, without secondary offsets on a SINUMERIK lathe."""
-        return (*self.LABELS[:8], "", "") if self.desk.machine.language == "sinumerik" else self.LABELS
+        return (
+            (*self.LABELS[:8], "", "") if self.desk.machine.program_language == "sinumerik" else self.LABELS
+        )
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why keys are disabled, including F2, which sets the position."""
-        return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
+        return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2, which sets the position."""
-        return {**super().key_actions(), "F2": self.model.set_from_position}
+        return {**super().make_key_actions(), "F2": self.model.set_from_position}
 
 
 class MillToolsPage(CellTablePage):
@@ -201,13 +203,13 @@ class MillToolsPage(CellTablePage):
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, MillToolTable(host.desk))
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why keys are disabled, including F2, which touches off the length."""
-        return {**super().key_refusals(), "F2": self.model.find_position_refusal()}
+        return {**super().find_key_refusals(), "F2": self.model.find_position_refusal()}
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2, which touches off the length."""
-        rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
+        rest = {key: act for key, act in super().make_key_actions().items() if key not in {"F8", "F9"}}
         return {**rest, "F2": self.model.set_from_position, "F9": partial(self._go, page_table.PRESETS)}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
@@ -226,17 +228,17 @@ class PresetsPage(CellTablePage):
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent, PresetTable(host.desk))
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why keys are disabled, including F2 (touch off) and F3 (activate)."""
         model = self.model
         return {
-            **super().key_refusals(),
+            **super().find_key_refusals(),
             "F2": model.find_position_refusal(),
             "F3": model.find_activate_refusal(),
         }
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2 (touch off) and F3 (activate a preset)."""
-        rest = {key: act for key, act in super().key_actions().items() if key not in {"F8", "F9"}}
+        rest = {key: act for key, act in super().make_key_actions().items() if key not in {"F8", "F9"}}
         own = {"F2": self.model.set_from_position, "F3": self.model.activate_preset}
         return {**rest, **own, "F8": partial(self._go, page_table.MILL_TOOLS)}

@@ -51,13 +51,13 @@ class Suspicion(NamedTuple):
     """
 
     kind: SuspicionKind
-    number: int
+    row_number: int
     name: str
     old_value: FieldValue | None
     new_value: FieldValue
 
 
-def find_travel(machine: Machine | None) -> TravelLimits:
+def find_travel_limits(machine: Machine | None) -> TravelLimits:
     """Return the travel limits of X and Z of a lathe in mm.
 
     Return an empty mapping for a mill or without a machine. The tool length of a mill is not a machine
@@ -100,7 +100,7 @@ def _make_changed_row(
     Return None if rows of this kind are not checked or a value is out of range.
     """
     fields = FIELDS_BY_KIND[kind]
-    if not all(name in fields and fields[name].accepts(value) for name, value in values.items()):
+    if not all(name in fields and fields[name].is_valid_value(value) for name, value in values.items()):
         return None
     if kind is OffsetKind.TOOL:
         return replace_fields(old if isinstance(old, ToolRow) else ToolRow(), values)
@@ -194,11 +194,11 @@ def _check_new_master(table: Mapping[int, OffsetRow], new: Mapping[int, OffsetRo
 # --- several tools ---------------------------------------------------------------------------------------
 
 
-def apply_touch(tools: Mapping[int, ToolRow], number: int, touch: TouchPosition) -> ToolRow:
+def apply_touch_off(tools: Mapping[int, ToolRow], tool_number: int, touch: TouchPosition) -> ToolRow:
     """Return the row of a tool after this touch-off, as the store will save it."""
     geometry = {name: value for name, value in (("x", touch.x), ("z", touch.z)) if value is not None}
     values: dict[str, FieldValue] = {**geometry, **{f"wear_{name}": 0.0 for name in geometry}}
-    return replace_fields(tools.get(number, ToolRow()), values)
+    return replace_fields(tools.get(tool_number, ToolRow()), values)
 
 
 def find_followers(tools: Iterable[int], master: int) -> tuple[int, ...]:
@@ -220,7 +220,9 @@ def find_follower_suspicions(
 
 
 def describe_suspicions(
-    suspicions: tuple[Suspicion, ...], name: Callable[[Suspicion], str], reason: Callable[[Suspicion], str]
+    suspicions: tuple[Suspicion, ...],
+    describe_field: Callable[[Suspicion], str],
+    describe_reason: Callable[[Suspicion], str],
 ) -> str:
     """Return one text that describes all suspicions.
 
@@ -228,8 +230,8 @@ def describe_suspicions(
     """
     fields: dict[tuple[int, str], Suspicion] = {}
     for each in suspicions:
-        fields.setdefault((each.number, each.name), each)
-    return ", ".join(f"{name(each)} ({reason(each)})" for each in fields.values())
+        fields.setdefault((each.row_number, each.name), each)
+    return ", ".join(f"{describe_field(each)} ({describe_reason(each)})" for each in fields.values())
 
 
 CORRECTION_FIELDS = {

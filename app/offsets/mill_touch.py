@@ -35,7 +35,7 @@ class MillTouchCalculator:
     @classmethod
     def find_for(cls, desk: Desk) -> MillTouchCalculator:
         """Return the calculator attached to TurnDesk, or a calculator without kinematics."""
-        found = desk.page_registry.find(cls)
+        found = desk.page_registry.find_model(cls)
         return found if found is not None else cls(desk, None)
 
     def find_tip_position(self, zero_positions: Mapping[str, float]) -> Vector | str:
@@ -52,9 +52,11 @@ class MillTouchCalculator:
         if row is None:
             return tr("SPINDLE HAS NO TOOL FROM THE TABLE. RUN TOOL CALL IN MDI")
         length = row.length + row.dl
-        bare = machine.with_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(zero_positions.items())))
+        bare = machine.apply_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(zero_positions.items())))
         return bare.move_to_table_zeros(
-            replace(bare, origin=_ORIGIN).make_transform(angles, tool_length=length).to_frame_point(slides)
+            replace(bare, origin=_ORIGIN)
+            .make_transform(angles, tool_length=length)
+            .convert_to_frame_point(slides)
         )
 
     def find_moved_point(
@@ -68,7 +70,7 @@ class MillTouchCalculator:
         if self.machine is None:
             return workpiece_point
         first, last = (
-            self.machine.with_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(each.items())))
+            self.machine.apply_preset(DatumPreset(_ORIGIN, axis_zeros=tuple(each.items())))
             for each in (angles_before, angles_after)
         )
         return last.move_to_table_zeros(first.move_from_table_zeros(workpiece_point))
@@ -93,9 +95,9 @@ class MillTouchCalculator:
         if isinstance(stationary_state, str):
             return stationary_state
         machine, angles, slides = stationary_state
-        if abs(machine.tool_frame(angles)[2][2] - 1.0) > _UPRIGHT_TOLERANCE:
+        if abs(machine.compute_tool_frame(angles)[2][2] - 1.0) > _UPRIGHT_TOLERANCE:
             return tr("TOOL TILTED. TURN ROTARY AXES TO SET IT SQUARE TO WORKPIECE")
-        return machine.make_transform(angles).to_frame_point(slides)[2]
+        return machine.make_transform(angles).convert_to_frame_point(slides)[2]
 
     def _find_stationary_state(self) -> tuple[Kinematics, dict[str, float], Vector] | str:
         """Return the kinematics with the active preset, the rotary angles and the linear axis positions.
@@ -117,7 +119,7 @@ class MillTouchCalculator:
 
 
 def _unknown(snapshot: Snapshot) -> str:
-    if snapshot.state in {MachineState.JOG, MachineState.HOME}:
+    if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     for axis, homed in zip(snapshot.axes, snapshot.homed, strict=True):
         if not homed:
@@ -146,5 +148,5 @@ class MillToolLives:
     @classmethod
     def find_for(cls, desk: Desk) -> MillToolLives:
         """Return the object attached to TurnDesk, or an object without tools."""
-        found = desk.page_registry.find(cls)
+        found = desk.page_registry.find_model(cls)
         return found if found is not None else cls()

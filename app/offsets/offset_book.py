@@ -37,13 +37,13 @@ SAVE_IN_PROGRESS = "STILL SAVING THE PREVIOUS CHANGE. PRESS ENTER AGAIN"
 class OffsetRows(NamedTuple):
     """All offsets of a store at one moment."""
 
-    tools: dict[int, ToolRow]
-    secondary: dict[int, SecondaryRow]
-    zero: dict[int, ZeroRow]
-    shapes: dict[int, ShapeRow]
+    tool_offsets: dict[int, ToolRow]
+    secondary_offsets: dict[int, SecondaryRow]
+    zero_offsets: dict[int, ZeroRow]
+    tool_shapes: dict[int, ShapeRow]
     mill_tools: dict[int, MillRow]
     presets: dict[int, PresetRow]
-    preset: int
+    active_preset: int
 
 
 def read_store_rows(store: Store) -> OffsetRows:
@@ -75,14 +75,16 @@ class OffsetBook:
 
     store: Store | None = None
     lock_reason: str = ""
-    tools: dict[int, ToolRow] = field(default_factory=dict)
-    secondary: dict[int, SecondaryRow] = field(default_factory=dict)
-    zero: dict[int, ZeroRow] = field(default_factory=dict)  # By the number of the G code.
-    shapes: dict[int, ShapeRow] = field(default_factory=dict)
+    tool_offsets: dict[int, ToolRow] = field(default_factory=dict)
+    secondary_offsets: dict[int, SecondaryRow] = field(default_factory=dict)
+    zero_offsets: dict[int, ZeroRow] = field(default_factory=dict)  # By the number of the G code.
+    tool_shapes: dict[int, ShapeRow] = field(default_factory=dict)
     mill_tools: dict[int, MillRow] = field(default_factory=dict)
     presets: dict[int, PresetRow] = field(default_factory=dict)
     active_preset: int = 0  # The preset in force on a mill; 0: the preset of the machine file.
-    access: UserAccess = field(default_factory=UserAccess)  # The signed-in user and the permitted changes.
+    user_access: UserAccess = field(
+        default_factory=UserAccess
+    )  # The signed-in user and the permitted changes.
     has_read_failed: bool = False  # True if offsets cannot be read.
     at: int = 1  # The tool that the tool pages have selected.
     changes: int = 0  # Number of saved changes.
@@ -98,10 +100,10 @@ class OffsetBook:
     def get_rows(self, kind: OffsetKind) -> Mapping[int, OffsetRow]:
         """Return the offsets of one kind, by number."""
         tables: dict[OffsetKind, Mapping[int, OffsetRow]] = {
-            OffsetKind.TOOL: self.tools,
-            OffsetKind.SECONDARY: self.secondary,
-            OffsetKind.ZERO: self.zero,
-            OffsetKind.SHAPE: self.shapes,
+            OffsetKind.TOOL: self.tool_offsets,
+            OffsetKind.SECONDARY: self.secondary_offsets,
+            OffsetKind.ZERO: self.zero_offsets,
+            OffsetKind.SHAPE: self.tool_shapes,
             OffsetKind.MILL_TOOL: self.mill_tools,
             OffsetKind.PRESET: self.presets,
         }
@@ -110,7 +112,7 @@ class OffsetBook:
     @property
     def master_number(self) -> int:
         """Return the number of the master tool, or 0 without a master."""
-        return next((number for number, row in self.tools.items() if row.master), 0)
+        return next((number for number, row in self.tool_offsets.items() if row.master), 0)
 
     def read_history(self, kind: OffsetKind, limit: int = 200) -> tuple[OffsetChange, ...]:
         """Return the last changes, newest first, or an empty tuple without a store."""
@@ -129,20 +131,24 @@ class OffsetBook:
 
         Without a store, the values can be shown but not changed.
         """
-        self.tools, self.secondary, self.zero = dict(rows.tools), dict(rows.secondary), dict(rows.zero)
-        self.shapes, self.mill_tools, self.presets = (
-            dict(rows.shapes),
+        self.tool_offsets, self.secondary_offsets, self.zero_offsets = (
+            dict(rows.tool_offsets),
+            dict(rows.secondary_offsets),
+            dict(rows.zero_offsets),
+        )
+        self.tool_shapes, self.mill_tools, self.presets = (
+            dict(rows.tool_shapes),
             dict(rows.mill_tools),
             dict(rows.presets),
         )
-        self.active_preset = rows.preset
+        self.active_preset = rows.active_preset
 
     def _shown(self) -> OffsetRows:
         return OffsetRows(
-            self.tools,
-            self.secondary,
-            self.zero,
-            self.shapes,
+            self.tool_offsets,
+            self.secondary_offsets,
+            self.zero_offsets,
+            self.tool_shapes,
             self.mill_tools,
             self.presets,
             self.active_preset,
@@ -159,7 +165,7 @@ class OffsetBook:
             lambda store, who: store.offsets.get_table(kind).change_row(number, reason, values, who=who),
         )
 
-    def touch_off(self, number: int, touch: TouchPosition, reason: str) -> str:
+    def touch_off(self, tool_number: int, touch: TouchPosition, reason: str) -> str:
         """Set a tool by a touch-off.
 
         If the tool is the master, all other tools follow.
@@ -167,21 +173,21 @@ class OffsetBook:
         return self._post(
             ProtectedChange.TOOLS,
             lambda store, who: store.offsets.tool_offsets.set_touched_offset(
-                number, touch, reason, author=who
+                tool_number, touch, reason, author=who
             ),
         )
 
-    def choose_master(self, number: int, reason: str) -> str:
+    def choose_master(self, tool_number: int, reason: str) -> str:
         """Make this tool the master.
 
         With 0, no tool is the master.
         """
         return self._post(
             ProtectedChange.TOOLS,
-            lambda store, who: store.offsets.tool_offsets.set_master_tool(number, reason, author=who),
+            lambda store, who: store.offsets.tool_offsets.set_master_tool(tool_number, reason, author=who),
         )
 
-    def activate_preset(self, number: int) -> str:
+    def activate_preset(self, preset_number: int) -> str:
         """Activate another preset.
 
         Preset 0 is the preset of the machine file.
@@ -189,18 +195,18 @@ class OffsetBook:
         before = self.active_preset
 
         def choose(store: Store, _who: str) -> Future[None]:
-            self.access.persistence.log_change(
-                Message("active preset: {before} → {number}", before=before, number=number)
+            self.user_access.persistence.log_change(
+                Message("active preset: {before} → {number}", before=before, number=preset_number)
             )
-            return store.settings.save_setting(PRESET_SETTING, number)
+            return store.settings.save_setting(PRESET_SETTING, preset_number)
 
         return self._post(ProtectedChange.PRESETS, choose)
 
-    def remove_shape(self, number: int, reason: str) -> str:
+    def remove_shape(self, tool_number: int, reason: str) -> str:
         """Delete the shape of a tool."""
         return self._post(
             ProtectedChange.SHAPES,
-            lambda store, who: store.offsets.tool_shapes.remove_row(number, reason, author=who),
+            lambda store, who: store.offsets.tool_shapes.remove_row(tool_number, reason, author=who),
         )
 
     def clear_table(self, kind: OffsetKind, reason: str) -> str:
@@ -210,31 +216,31 @@ class OffsetBook:
             lambda store, who: store.offsets.get_table(kind).remove_all_rows(reason, author=who),
         )
 
-    def find_undoable(self, kind: OffsetKind, number: int | None) -> tuple[OffsetChange, ...]:
+    def find_undoable_changes(self, kind: OffsetKind, number: int | None) -> tuple[OffsetChange, ...]:
         """Return the changes of the last step that undo would reverse.
 
         ``number`` is a row, or None for the last step of the whole table. Raise StoreError on failure.
         """
         return () if self.store is None else self.store.offsets.get_table(kind).find_undoable_changes(number)
 
-    def undo_step(self, kind: OffsetKind, number: int | None, step: int) -> str:
+    def undo_step(self, kind: OffsetKind, number: int | None, step_number: int) -> str:
         """Undo this step, and no other step."""
         return self._post(
             find_required_right(kind),
-            lambda store, who: store.offsets.get_table(kind).undo_step(number, step, author=who),
+            lambda store, who: store.offsets.get_table(kind).undo_step(number, step_number, author=who),
         )
 
-    def barred(self, act: ProtectedChange) -> str:
+    def barred(self, change: ProtectedChange) -> str:
         """Return why this change cannot be posted now, or an empty string if it can."""
         if self.store is None or self.is_saving:
             return self.lock_reason or SAVE_IN_PROGRESS
-        return self.access.find_refusal(act)
+        return self.user_access.find_refusal(change)
 
     def _post(self, act: ProtectedChange, write: Callable[[Store, str], Future[Any]]) -> str:
         if (why := self.barred(act)) or self.store is None:
             return why
         try:
-            self._saving = write(self.store, self.access.recorded_user)
+            self._saving = write(self.store, self.user_access.recorded_user)
         except StoreError as error:
             return str(error)
         return ""

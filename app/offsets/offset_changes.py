@@ -19,14 +19,14 @@ from app.offsets.change_rules import (
     LARGE_CHANGE_MM,
     Suspicion,
     SuspicionKind,
-    apply_touch,
+    apply_touch_off,
     describe_suspicions,
     find_follower_suspicions,
     find_followers,
     find_required_right,
     find_suspicions,
     find_table_suspicions,
-    find_travel,
+    find_travel_limits,
 )
 from app.offsets.offset_book import OffsetBook
 from app.offsets.offset_values import (
@@ -36,7 +36,7 @@ from app.offsets.offset_values import (
     format_change,
     format_signed,
     format_value,
-    make_heading,
+    make_field_heading,
 )
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import MachineState, Snapshot
@@ -62,14 +62,14 @@ def find_change_refusal(snapshot: Snapshot, *, is_correction: bool) -> str:
     A correction (wear, secondary offset) may be entered while parts run, because the part being cut uses
     the offsets with which it was proved. A change of a tip position must wait until no program is running.
     """
-    if snapshot.state in {MachineState.JOG, MachineState.HOME}:
+    if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
         return tr("AXES ARE MOVING. WAIT UNTIL THEY STOP TO CHANGE OFFSETS")
     if snapshot.state in ACTIVE_STATES and not is_correction:
         return tr("PROGRAM RUNNING. CHANGE ONLY WEAR OR SECONDARY OFFSETS (F9)")
     return ""
 
 
-def describe_start(snapshot: Snapshot) -> str:
+def describe_effective_time(snapshot: Snapshot) -> str:
     """Return when a change entered now takes effect, or an empty string between cycles."""
     if snapshot.state not in ACTIVE_STATES:
         return ""
@@ -183,7 +183,7 @@ class OffsetHistory:
             else ""
         )
 
-    def toggle_shown(self) -> None:
+    def toggle_list(self) -> None:
         """Switch between the history and the table."""
         self.listed_changes = None if self.listed_changes is not None else self._read()
 
@@ -196,7 +196,7 @@ class OffsetHistory:
         if self._asked_of != key:
             self._asked_of, self._undoable = key, True
             with suppress(StoreError):  # ``undo`` itself reports the error.
-                self._undoable = bool(self.offset_book.find_undoable(self.kind, number))
+                self._undoable = bool(self.offset_book.find_undoable_changes(self.kind, number))
         return self._undoable
 
     def show_refusal(self, reason: str) -> None:
@@ -216,7 +216,7 @@ _MAX_NAMES = 6  # Followers that a question lists by name.
 
 
 @dataclass(frozen=True, slots=True)
-class OffsetQuestions:
+class ConfirmedOffsetChanges:
     """Changes of offsets that the operator confirms if they are suspicious.
 
     Each method returns why the change was rejected, or an empty string.
@@ -240,34 +240,39 @@ class OffsetQuestions:
             lambda: book.get_rows(kind).get(number) == table.get(number),
         )
 
-    def touch_off(self, number: int, touch: TouchPosition, reason: str, tip_x_mm: float | None = None) -> str:
+    def touch_off(
+        self, tool_number: int, touch: TouchPosition, reason: str, tip_x_mm: float | None = None
+    ) -> str:
         """Set a tool by a touch-off, and ask first if the result is suspicious.
 
         ``tip_x_mm`` is X of the tip relative to part zero as a radius in mm, or None if X was not touched
         off.
         """
         book = self.offset_history.offset_book
-        tools = book.tools
+        tools = book.tool_offsets
         return self._ask_if_intended(
             OffsetKind.TOOL,
-            self.find_touch_suspicions(number, touch, tip_x_mm),
+            self.find_touch_suspicions(tool_number, touch, tip_x_mm),
             ProtectedChange.TOOLS,
-            lambda: book.touch_off(number, touch, reason),
-            lambda: book.tools == tools,
-            self._describe_followers(number, touch),
+            lambda: book.touch_off(tool_number, touch, reason),
+            lambda: book.tool_offsets == tools,
+            self._describe_followers(tool_number, touch),
         )
 
     def find_touch_suspicions(
-        self, number: int, touch: TouchPosition, tip_x_mm: float | None = None
+        self, tool_number: int, touch: TouchPosition, tip_x_mm: float | None = None
     ) -> tuple[Suspicion, ...]:
         """Return the suspicious fields of this touch-off."""
-        tools, travel = self.offset_history.offset_book.tools, self._travel()
-        old, new = tools.get(number), apply_touch(tools, number, touch)
-        found = find_suspicions(number, old, new, travel)
+        tools, travel = self.offset_history.offset_book.tool_offsets, self._travel()
+        old, new = tools.get(tool_number), apply_touch_off(tools, tool_number, touch)
+        found = find_suspicions(tool_number, old, new, travel)
         if old is not None and old.master and not touch.moves_only_this_tool:
-            found += find_follower_suspicions(tools, number, new, travel)
-        if tip_x_mm is not None and self._is_other_side(number, tip_x_mm, new.x):
-            found = (Suspicion(SuspicionKind.WRONG_SIDE, number, "x", old.x if old else None, new.x), *found)
+            found += find_follower_suspicions(tools, tool_number, new, travel)
+        if tip_x_mm is not None and self._is_other_side(tool_number, tip_x_mm, new.x):
+            found = (
+                Suspicion(SuspicionKind.WRONG_SIDE, tool_number, "x", old.x if old else None, new.x),
+                *found,
+            )
         return found
 
     def _describe_followers(self, number: int, touch: TouchPosition) -> str:
@@ -275,20 +280,20 @@ class OffsetQuestions:
 
         Return an empty string if no other tool moves.
         """
-        tools = self.offset_history.offset_book.tools
+        tools = self.offset_history.offset_book.tool_offsets
         moves_all = number in tools and tools[number].master and not touch.moves_only_this_tool
         return format_followers(tools, number) if moves_all else ""
 
     def _is_other_side(self, number: int, tip: float, new_x: float) -> bool:
         """Return whether the tool would now cut on the opposite side of the part."""
         book = self.offset_history.offset_book
-        old, shape = book.tools.get(number), book.shapes.get(number)
+        old, shape = book.tool_offsets.get(number), book.tool_shapes.get(number)
         if old is not None:
             return tip * (tip + new_x - old.offset[0]) < 0.0
         return tip > 0.0 if shape is not None and shape.rear else tip < 0.0
 
     def _travel(self) -> Mapping[str, tuple[float, float]]:
-        return find_travel(self.offset_history.desk.machine.machine)
+        return find_travel_limits(self.offset_history.desk.machine.machine)
 
     def _ask_if_intended(
         self,
@@ -322,13 +327,13 @@ class OffsetQuestions:
         """Return the text of a change, for example "T1 X Ø +0.50000 → −1.20000"."""
         title, shown = self._find_format(kind, each.name)
         old = describe_unset() if each.old_value is None else shown(each.old_value)
-        return f"{_row_name(kind, each.number)} {title} {old} → {shown(each.new_value)}"
+        return f"{_row_name(kind, each.row_number)} {title} {old} → {shown(each.new_value)}"
 
     def _find_format(self, kind: OffsetKind, name: str) -> tuple[str, Callable[[FieldValue], str]]:
         """Return the title of a field, and the function that formats its values."""
         mode = self.offset_history.value_mode
         if kind is OffsetKind.TOOL:
-            return make_heading(name, mode), lambda value: format_value(name, value, mode)
+            return make_field_heading(name, mode), lambda value: format_value(name, value, mode)
         if kind is OffsetKind.SECONDARY:
             return name.upper(), lambda value: format_signed(float(value), mode.is_metric)
         field = FIELDS_BY_KIND[kind][name]
@@ -336,21 +341,21 @@ class OffsetQuestions:
 
     # --- the master ----------------------------------------------------------------------------------
 
-    def ask_master(self, number: int) -> str:
+    def ask_master(self, tool_number: int) -> str:
         """Ask whether to make this tool the master, or to have no master if it is the master now.
 
         The question names the tools that follow.
         """
         book = self.offset_history.offset_book
-        tools, before = book.tools, book.master_number
+        tools, before = book.tool_offsets, book.master_number
         if why := book.barred(ProtectedChange.TOOLS):
             return why
-        chosen = 0 if before == number else number
+        chosen = 0 if before == tool_number else tool_number
         reason = tr("set as master") if chosen else tr("no master")
         self.offset_history.desk.ask_operator(
             self._master_question(before, chosen),
             lambda: self.offset_history.show_refusal(
-                book.choose_master(chosen, reason) if book.tools == tools else _changed_meanwhile()
+                book.choose_master(chosen, reason) if book.tool_offsets == tools else _changed_meanwhile()
             ),
         )
         return ""
@@ -369,7 +374,8 @@ class OffsetQuestions:
                 text,
                 before=format_edge_name(before) if before else tr("none"),
                 tool=format_edge_name(chosen),
-                others=format_followers(self.offset_history.offset_book.tools, chosen) or tr("no tools"),
+                others=format_followers(self.offset_history.offset_book.tool_offsets, chosen)
+                or tr("no tools"),
                 limit=f"{LARGE_CHANGE_MM / mode.unit_mm:.2g}",
                 unit=mode.name.upper(),
             )
@@ -386,7 +392,7 @@ class OffsetQuestions:
         if why := book.barred(find_required_right(kind)):
             return why
         try:
-            step = book.find_undoable(kind, number)
+            step = book.find_undoable_changes(kind, number)
         except StoreError as error:
             return str(error)
         if not step:

@@ -38,8 +38,8 @@ OffsetRowT = TypeVar("OffsetRowT", ToolRow, SecondaryRow)
 class OffsetTables:
     """Tool offsets and secondary offsets in the form that the interpreter uses."""
 
-    tools: Mapping[int, ToolOffset] = field(default_factory=dict)
-    secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
+    tool_offsets: Mapping[int, ToolOffset] = field(default_factory=dict)
+    secondary_offsets: Mapping[int, SecondaryOffset] = field(default_factory=dict)
 
 
 # Arguments: job, tools that define the frame of the drawing, and progress function.
@@ -53,12 +53,12 @@ class ComparedPaths:
     picture_before: ProgramPicture
     picture_after: ProgramPicture
     # Largest distance of corresponding points in mm; inf if the paths have different moves.
-    largest_distance: float = 0.0
+    largest_distance_mm: float = 0.0
 
     @property
-    def is_equal(self) -> bool:
+    def has_no_effect(self) -> bool:
         """Return whether the change has no effect on this program."""
-        return self.largest_distance <= EQUALITY_TOLERANCE_MM
+        return self.largest_distance_mm <= EQUALITY_TOLERANCE_MM
 
 
 def compare_pictures(before: ProgramPicture, after: ProgramPicture) -> ComparedPaths:
@@ -91,7 +91,7 @@ class OffsetEffect:
 
         After an error, ``error_text`` gives the reason.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         return self.worker.is_busy
 
     def request_paths(self, job: Job, before: OffsetTables, after: OffsetTables) -> None:
@@ -102,11 +102,11 @@ class OffsetEffect:
 
         def pair(watch: ProgressCallback) -> ComparedPaths:
             return compare_pictures(
-                *(self.draw_path(_with(job, each), before.tools, watch) for each in (before, after))
+                *(self.draw_path(_with(job, each), before.tool_offsets, watch) for each in (before, after))
             )
 
         self.compared_paths, self.compared_part, self.error_text = None, None, ""
-        self.worker.request(pair, self._drawn, self._failed)
+        self.worker.request_work(pair, self._drawn, self._failed)
 
     def request_part(
         self, compare_part: ComparePart, job: Job, before: OffsetTables, after: OffsetTables
@@ -117,7 +117,7 @@ class OffsetEffect:
         """
         self.compared_part, self.error_text = None, ""
         work = partial(compare_part, _with(job, before), _with(job, after))
-        self.worker.request(work, self._compared, self._failed)
+        self.worker.request_work(work, self._compared, self._failed)
 
     def _compared(self, part: ComparedPart | None) -> None:
         self.compared_part = part
@@ -129,9 +129,9 @@ class OffsetEffect:
     def _failed(self, why: str) -> None:
         self.error_text = why
 
-    def clear(self) -> None:
+    def clear_results(self) -> None:
         """Cancel the drawing in progress, and discard the results."""
-        self.worker.cancel()
+        self.worker.cancel_request()
         self.compared_paths, self.compared_part, self.error_text = None, None, ""
 
     def close(self) -> None:
@@ -140,7 +140,9 @@ class OffsetEffect:
 
 
 def _with(job: Job, tables: OffsetTables) -> Job:
-    return replace(job, setup=replace(job.setup, tools=tables.tools, secondary=tables.secondary))
+    return replace(
+        job, setup=replace(job.setup, tools=tables.tool_offsets, secondary=tables.secondary_offsets)
+    )
 
 
 # --- display on the page -----------------------------------------------------------------------------------
@@ -162,13 +164,13 @@ class EffectDisplay:
     @property
     def offset_effect(self) -> OffsetEffect | None:
         """Return the worker that draws, or None if effects cannot be drawn."""
-        return self.offset_table.desk.page_registry.find(OffsetEffect)
+        return self.offset_table.desk.page_registry.find_model(OffsetEffect)
 
     def show_next_view(self) -> None:
         """Handle F6: show the next view of the effect."""
         if not self.is_open:
             self._open()
-        elif self.is_part_shown or self.compared_paths is None or self.compared_paths.is_equal:
+        elif self.is_part_shown or self.compared_paths is None or self.compared_paths.has_no_effect:
             self.close_view()
         elif not self.is_close_up:
             self.is_close_up = True
@@ -219,21 +221,21 @@ class EffectDisplay:
         """
         book, last = self.offset_table.offset_book, self.offset_table.offset_history.last_changes
         tools, secondary = self.offset_table.make_proposed_offsets()
-        now = _tables(book.tools, book.secondary)
+        now = _tables(book.tool_offsets, book.secondary_offsets)
         typed = _tables(tools, secondary)
         if typed != now:
             return now, typed
         if not last:
             return None
         if self.offset_table.kind is OffsetKind.TOOL:
-            return _tables(_restore_rows(book.tools, last, ToolRow), book.secondary), now
-        return _tables(book.tools, _restore_rows(book.secondary, last, SecondaryRow)), now
+            return _tables(_restore_rows(book.tool_offsets, last, ToolRow), book.secondary_offsets), now
+        return _tables(book.tool_offsets, _restore_rows(book.secondary_offsets, last, SecondaryRow)), now
 
     def close_view(self) -> None:
         """Close the view of the effect, and show the table again."""
         self.is_open = self.is_close_up = self.is_part_shown = False
         if self.offset_effect is not None:
-            self.offset_effect.clear()
+            self.offset_effect.clear_results()
 
     @property
     def compared_paths(self) -> ComparedPaths | None:
@@ -284,12 +286,12 @@ class EffectDisplay:
             return tr(Message("THE EFFECT CANNOT BE DRAWN: {why}", why=effect.error_text))
         if pair is None:
             return tr("DRAWING THE OLD AND NEW PATHS")
-        if pair.is_equal:
+        if pair.has_no_effect:
             return tr("THE CHANGE DOES NOT AFFECT THE LOADED PROGRAM. F6: SHOW TABLE")
         mode = self.offset_table.value_mode
-        if pair.largest_distance == float("inf"):
+        if pair.largest_distance_mm == float("inf"):
             return tr("THE TWO PATHS HAVE DIFFERENT MOVES. F6: SHOW TABLE")
-        far = f"{format_length(pair.largest_distance, mode.is_metric)} {mode.name}"
+        far = f"{format_length(pair.largest_distance_mm, mode.is_metric)} {mode.name}"
         if not self.is_close_up:
             text = tr("PATHS DIFFER BY {far} (CIRCLED). F6: CLOSE-UP   ESC: TABLE")
             return tr(Message(text, far=far))

@@ -15,12 +15,12 @@ from app.desk.desk import Desk
 from app.desk.pages.table_content import edit_text, refused
 from app.desk.translation import tr
 from app.offsets.offset_book import OffsetBook
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal
+from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory, find_change_refusal
 from app.offsets.offset_values import (
     TOOL_FIELDS,
     ValueMode,
     format_value,
-    make_heading,
+    make_field_heading,
     parse_increment,
     parse_value,
     translate_field,
@@ -62,9 +62,9 @@ class OffsetTable(ABC):
         return self.offset_history.value_mode
 
     @property
-    def offset_questions(self) -> OffsetQuestions:
+    def offset_questions(self) -> ConfirmedOffsetChanges:
         """Return the changes that the operator confirms before they take effect."""
-        return OffsetQuestions(self.offset_history)
+        return ConfirmedOffsetChanges(self.offset_history)
 
     @property
     def selected_number(self) -> int | None:
@@ -131,7 +131,7 @@ class OffsetTable(ABC):
 
     def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the tool and secondary offsets as they would be with the present entry."""
-        return self.offset_book.tools, self.offset_book.secondary
+        return self.offset_book.tool_offsets, self.offset_book.secondary_offsets
 
     # --- conditions: each returns the reason for a refusal, or an empty text --------------------------
 
@@ -237,15 +237,15 @@ class IncompleteTool:
     known_values: dict[str, FieldValue] = field(default_factory=dict)
     tip_x_mm: float | None = None  # X of the tip relative to part zero at the touch-off in mm.
 
-    def add_value(self, number: int, name: str, value: FieldValue) -> dict[str, FieldValue]:
+    def add_value(self, tool_number: int, field_name: str, value: FieldValue) -> dict[str, FieldValue]:
         """Add X or Z, and return the values that are known."""
-        if number != self.tool_number:
-            self.discard()
-        self.known_values = {**self.known_values, name: value}
-        self.tool_number = number
+        if tool_number != self.tool_number:
+            self.discard_values()
+        self.known_values = {**self.known_values, field_name: value}
+        self.tool_number = tool_number
         return self.known_values
 
-    def discard(self) -> None:
+    def discard_values(self) -> None:
         """Discard the values that were entered."""
         self.tool_number, self.known_values, self.tip_x_mm = 0, {}, None
 
@@ -265,31 +265,42 @@ class ToolFieldEditor:
     offset_history: OffsetHistory
     incomplete_tool: IncompleteTool = field(default_factory=IncompleteTool)
 
-    def describe_unset_tool(self, number: int) -> str:
+    def describe_unset_tool(self, tool_number: int) -> str:
         """Return the message that this tool has not been set."""
         text = tr("T{number} IS NOT SET. TYPE X AND Z, OR TOUCH OFF ON THE JOG PAGE")
-        return tr(Message(text, number=format_edge_suffix(number)))
+        return tr(Message(text, number=format_edge_suffix(tool_number)))
 
-    def save_field(self, number: int, name: str, text: str, *, is_increment: bool = False) -> str:
+    def save_field(
+        self, tool_number: int, field_name: str, entered_text: str, *, is_increment: bool = False
+    ) -> str:
         """Set a field to the entered value, or add the entered value to the field.
 
         Raise EntryError for an invalid value.
         """
-        mode, row = self.offset_history.value_mode, self.offset_history.offset_book.tools.get(number)
+        mode, row = (
+            self.offset_history.value_mode,
+            self.offset_history.offset_book.tool_offsets.get(tool_number),
+        )
         if row is None:
-            return self._save_first_value(number, name, parse_value(name, text, mode))
-        value = parse_increment(name, row, text, mode) if is_increment else parse_value(name, text, mode)
-        if value == getattr(row, name):
+            return self._save_first_value(
+                tool_number, field_name, parse_value(field_name, entered_text, mode)
+            )
+        value = (
+            parse_increment(field_name, row, entered_text, mode)
+            if is_increment
+            else parse_value(field_name, entered_text, mode)
+        )
+        if value == getattr(row, field_name):
             self.offset_history.desk.say(
-                tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(number)))
+                tr(Message("T{number} NOT CHANGED", number=format_edge_suffix(tool_number)))
             )
             return ""
         typed = (
-            f"{'MM ' if mode.is_metric else ''}{translate_field(name)} "
-            f"{'+ ' if is_increment else ''}{text.strip()}"
+            f"{'MM ' if mode.is_metric else ''}{translate_field(field_name)} "
+            f"{'+ ' if is_increment else ''}{entered_text.strip()}"
         )
-        return OffsetQuestions(self.offset_history).change_fields(
-            OffsetKind.TOOL, number, {name: value}, typed
+        return ConfirmedOffsetChanges(self.offset_history).change_fields(
+            OffsetKind.TOOL, tool_number, {field_name: value}, typed
         )
 
     def _save_first_value(self, number: int, name: str, value: FieldValue) -> str:
@@ -309,18 +320,18 @@ class ToolFieldEditor:
                 )
             )
             return ""
-        why = OffsetQuestions(self.offset_history).change_fields(
+        why = ConfirmedOffsetChanges(self.offset_history).change_fields(
             OffsetKind.TOOL, number, values, tr("manual entry")
         )
         if not why:
-            self.incomplete_tool.discard()
+            self.incomplete_tool.discard_values()
         return why
 
-    def ask_master(self, number: int) -> str:
+    def ask_master(self, tool_number: int) -> str:
         """Ask whether to make this tool the master, or to have no master if it is the master now."""
-        if number not in self.offset_history.offset_book.tools:
-            return self.describe_unset_tool(number)
-        return OffsetQuestions(self.offset_history).ask_master(number)
+        if tool_number not in self.offset_history.offset_book.tool_offsets:
+            return self.describe_unset_tool(tool_number)
+        return ConfirmedOffsetChanges(self.offset_history).ask_master(tool_number)
 
 
 class ToolFieldTable(OffsetTable):
@@ -345,7 +356,7 @@ class ToolFieldTable(OffsetTable):
     @property
     def tool_row(self) -> ToolRow | None:
         """Return the offset of the selected tool, or None if the tool was never set."""
-        return self.offset_book.tools.get(self.tool_number)
+        return self.offset_book.tool_offsets.get(self.tool_number)
 
     @property
     @abstractmethod
@@ -370,7 +381,7 @@ class ToolFieldTable(OffsetTable):
     @property
     def question_text(self) -> str:
         """Return the prompt with the tool and the field under the cursor."""
-        return f"{format_edge_name(self.tool_number)}  {make_heading(self.name, self.value_mode)}?"
+        return f"{format_edge_name(self.tool_number)}  {make_field_heading(self.name, self.value_mode)}?"
 
     @property
     def change_text(self) -> str:

@@ -56,17 +56,17 @@ class ValueMode:
 UNKNOWN_VALUE = "?"  # Replaces a value that could not be read.
 
 
-def describe_unset(*, is_unread: bool = False) -> str:
+def describe_unset(*, is_unreadable: bool = False) -> str:
     """Return the text for an offset that was never entered, or that could not be read."""
-    return tr("unreadable") if is_unread else tr("not set")
+    return tr("unreadable") if is_unreadable else tr("not set")
 
 
-def format_signed(mm: float, metric: bool) -> str:
+def format_signed(mm: float, is_metric: bool) -> str:
     """Return a length in mm as text with a plus or minus sign.
 
     The plus sign distinguishes an offset from a dimension.
     """
-    figure = formats.format_length(mm, metric)
+    figure = formats.format_length(mm, is_metric)
     return figure if figure.startswith(MINUS_SIGN) else f"+{figure}"
 
 
@@ -76,20 +76,20 @@ def format_zero_offset(value: float) -> str:
     return figure if value < 0 and figure[:1] not in "0123456789" else f"+{figure}"
 
 
-def convert_to_mm(value: float, metric: bool) -> float:
+def convert_to_mm(value: float, is_metric: bool) -> float:
     """Return an entered length in mm.
 
     The length is first rounded in its own unit, so that it is displayed as it was entered.
     """
-    return round(value, 10) * (1.0 if metric else MM_PER_INCH)
+    return round(value, 10) * (1.0 if is_metric else MM_PER_INCH)
 
 
-def add_correction(mm: float, value: float, metric: bool) -> float:
+def add_correction(mm: float, value: float, is_metric: bool) -> float:
     """Return ``mm`` plus an entered correction, in mm.
 
     The sum is rounded in the unit of the entry, so that adding .0005 ten times gives .005.
     """
-    unit = 1.0 if metric else MM_PER_INCH
+    unit = 1.0 if is_metric else MM_PER_INCH
     return round(mm / unit + value, 10) * unit
 
 
@@ -243,7 +243,7 @@ def parse_increment(field_name: str, old_row: ToolRow, text: str, mode: ValueMod
 
 
 def _taken(field: RowField, value: FieldValue, mode: ValueMode) -> FieldValue:
-    if field.accepts(value):
+    if field.is_valid_value(value):
         return value
     if field.field_type is not FieldType.LENGTH:
         raise EntryError(tr(Message("{field} must be {range}", field=field.label, range=field.range_text)))
@@ -263,19 +263,19 @@ def _find_factor(name: str, mode: ValueMode) -> float:
     return 2.0 if name == "wear_x" or (name == "x" and mode.is_diameter) else 1.0
 
 
-def format_value(name: str, value: FieldValue, mode: ValueMode) -> str:
+def format_value(field_name: str, value: FieldValue, mode: ValueMode) -> str:
     """Return a field value as text for the operator."""
-    field = TOOL_FIELDS[name]
+    field = TOOL_FIELDS[field_name]
     if field.choices:
         return translate_choice(str(value))
     if field.field_type is FieldType.BOOLEAN:
-        words = (tr("MASTER"), "") if name == "master" else (tr("YES"), tr("NO"))
+        words = (tr("MASTER"), "") if field_name == "master" else (tr("YES"), tr("NO"))
         return words[0] if value else words[1]
     if isinstance(value, str) or field.field_type is FieldType.INTEGER:
         return str(value)
     if field.field_type is FieldType.ANGLE:
         return f"{value:g}°"
-    mm = value * _find_factor(name, mode)
+    mm = value * _find_factor(field_name, mode)
     return (
         format_signed(mm, mode.is_metric)
         if field.minimum < 0.0
@@ -283,14 +283,14 @@ def format_value(name: str, value: FieldValue, mode: ValueMode) -> str:
     )
 
 
-def find_diameter_mark(name: str, mode: ValueMode) -> str:
+def find_x_symbol(field_name: str, mode: ValueMode) -> str:
     """Return "Ø" or "R" for a field that is an X value, or an empty string for other fields."""
-    if name not in {"x", "wear_x"}:
+    if field_name not in {"x", "wear_x"}:
         return ""
-    return "Ø" if _find_factor(name, mode) > 1.0 else "R"
+    return "Ø" if _find_factor(field_name, mode) > 1.0 else "R"
 
 
-def translate_field(name: str) -> str:
+def translate_field(field_name: str) -> str:
     """Return the translated name of a field."""
     words = {
         "x": tr("X"),
@@ -316,7 +316,7 @@ def translate_field(name: str) -> str:
         "rear": tr("CUTS ON X− SIDE"),
         "profile": tr("PROFILE"),
     }
-    return words[name]
+    return words[field_name]
 
 
 def translate_choice(value: str) -> str:
@@ -340,7 +340,7 @@ def translate_choice(value: str) -> str:
     return words.get(value, value)
 
 
-def make_heading(name: str, mode: ValueMode) -> str:
+def make_field_heading(field_name: str, mode: ValueMode) -> str:
     """Return the translated name of a field, with Ø or R for an X value."""
-    mark = find_diameter_mark(name, mode)
-    return f"{translate_field(name)} {mark}" if mark else translate_field(name)
+    mark = find_x_symbol(field_name, mode)
+    return f"{translate_field(field_name)} {mark}" if mark else translate_field(field_name)

@@ -30,7 +30,7 @@ from core.store.store_rows import (
     ZeroRow,
     replace_fields,
 )
-from core.tool_edges import EDGE_NUMBERS, get_edge_number, get_tool_number, make_edge_key
+from core.tool_edges import EDGE_NUMBERS, get_edge_number, get_tool_number, make_row_number
 
 if TYPE_CHECKING:
     from core.part.tool_shape import ToolShape
@@ -241,7 +241,7 @@ def _table(
                     )
                     continue
                 yield (
-                    make_edge_key(numbers[name], int(key[1])),
+                    make_row_number(numbers[name], int(key[1])),
                     _values(values, kind, Message("{name}.{key}", name=name, key=key), mistakes),
                 )
 
@@ -321,7 +321,7 @@ def find_range_error(name: str, field: RowField, value: FieldValue, entered_valu
 
     Lengths are in mm. NaN is always out of range. ``entered_value`` is the value in the file.
     """
-    if field.accepts(value):
+    if field.is_valid_value(value):
         return ""
     return Message(
         "{name} = {value} is out of range; expected {range}",

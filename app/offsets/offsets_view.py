@@ -53,14 +53,14 @@ class EffectView(PathView):
         self.show_compared(pair.picture_before if pair else None, pair.picture_after if pair else None)
         if pair is not None and self._model.is_close_up != self._near:
             self._near = self._model.is_close_up
-            self._zoom_to_difference(pair.largest_distance) if self._near else self.fit_all()
+            self._zoom_to_difference(pair.largest_distance_mm) if self._near else self.fit_all_panes()
         self.draw_slice()
 
     def _zoom_to_difference(self, difference: float) -> None:
         """Zoom in on the largest change, so that both paths are visible side by side."""
         frame = self.first_projection
         if frame is not None and math.isfinite(difference) and difference > 0.0:
-            factor = CLOSE_UP_SEPARATION * self.width() / (difference * frame.scale)
+            factor = CLOSE_UP_SEPARATION * self.width() / (difference * frame.pixels_per_mm)
             self.zoom_view(max(0, math.ceil(math.log(factor, ZOOM_STEP))))
 
 
@@ -80,7 +80,7 @@ class ChangeHistoryList(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the visible changes, or a message that no offset has been changed."""
-        u, room = self.theme.u, self.inside()
+        u, room = self.theme.unit_px, self.inside()
         if not self.history_entries:
             head = QRectF(room.x(), room.y(), room.width(), 3 * u)
             painter.draw_text_line(head, "No offset has been changed yet.", 2.0, "soft", bold=False)
@@ -91,7 +91,7 @@ class ChangeHistoryList(RowPanel):
             self._entry(painter, box, self.history_entries[number])
 
     def _entry(self, painter: ThemedPainter, row: QRectF, entry: HistoryEntry) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         at, which, change, why = entry
         painter.draw_text_line(QRectF(row.x(), row.y(), 6 * u, 2.6 * u), which, 2.2, "accent")
         room = row.adjusted(6.4 * u, 0, 0, 0)
@@ -124,10 +124,10 @@ class OffsetPage(ModelPage):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Show the number pad on a touch of the table, and toggle it on a touch of the entry line."""
         if event.type() == QEvent.Type.MouseButtonPress:
-            self.set_pad_shown(watched is not self.entry_panel or self.number_pad.isHidden())
+            self.set_number_pad_visible(watched is not self.entry_panel or self.number_pad.isHidden())
         return super().eventFilter(watched, event)
 
-    def set_pad_shown(self, is_shown: bool) -> None:
+    def set_number_pad_visible(self, is_shown: bool) -> None:
         """Show or hide the number pad.
 
         Without the pad, the table uses the full width.
@@ -141,10 +141,10 @@ class OffsetPage(ModelPage):
         super().on_open()
         self.table_panel.installEventFilter(self)
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions for undo, history, effect and the other tables."""
         around = self.effect_view.make_view_key_actions() if self.effect_display.is_open else {}
-        zero = {"F10": partial(self._go, page_table.ZERO)} if self.key_labels()[9] else {}
+        zero = {"F10": partial(self._go, page_table.ZERO)} if self.make_key_labels()[9] else {}
         return {
             **around,
             **zero,
@@ -155,11 +155,11 @@ class OffsetPage(ModelPage):
             "F9": partial(self._go, page_table.SECCMP),
         }
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys of the page that are disabled now."""
-        return frozenset(key for key, why in self.key_refusals().items() if why)
+        return frozenset(key for key, why in self.find_key_refusals().items() if why)
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why each key is disabled.
 
         The reason is empty if the key is enabled.
@@ -167,12 +167,12 @@ class OffsetPage(ModelPage):
         nothing = not self.model.text and not self.model.offset_history.can_undo(self.model.selected_number)
         return {"F4": self.model.find_undo_refusal() or nothing, "F6": self.effect_display.find_refusal()}
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels.
 
         If two keys open the same table, only the first key has a label.
         """
-        shown = super().key_labels()
+        shown = super().make_key_labels()
         return shown if shown[8] != shown[9] else (*shown[:9], "")
 
     def _go(self, name: str) -> None:
@@ -180,7 +180,7 @@ class OffsetPage(ModelPage):
 
     def _toggle_history(self) -> None:
         self.effect_display.close_view()
-        self.model.offset_history.toggle_shown()
+        self.model.offset_history.toggle_list()
         self.history_list.first_row = 0
 
     def _turn_effect(self) -> None:
@@ -272,7 +272,7 @@ class OffsetPage(ModelPage):
             self._lay_out()
 
     def _lay_out(self) -> None:
-        u, texts = self.theme.u, not self.letter_pad.isHidden()
+        u, texts = self.theme.unit_px, not self.letter_pad.isHidden()
         pad, high, gap = round(PAD * u), round(ASKED * u), max(4, round(0.7 * u))
         low = self.letter_pad.min_height_px + gap if texts else 0
         wide = self.width() - (0 if self.number_pad.isHidden() or texts else pad + gap)

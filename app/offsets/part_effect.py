@@ -48,7 +48,7 @@ def _note(found: Diagnostic, *, gone: bool) -> str:
 def _row(pair: Pair, mode: ValueMode) -> TableRow:
     one = pair.this_feature or pair.other_feature
     assert one is not None
-    change = pair.difference
+    change = pair.difference_mm
     same = change is not None and abs(change) <= FEATURE_TOLERANCE_MM
     difference_text = _NO_VALUE if same else tr("ONLY IN THE OLD OR THE NEW PART")
     if change is not None and not same:
@@ -71,7 +71,7 @@ def _name_feature(feature: PartFeature, mode: ValueMode) -> str:
 
     The name of a shoulder contains its two diameters.
     """
-    a, b = feature.extent
+    a, b = feature.extent_mm
     if feature.kind in {FeatureKind.DIAMETER, FeatureKind.BORE}:
         word = tr("DIAMETER") if feature.kind is FeatureKind.DIAMETER else tr("BORE")
         return f"{word}  Z {_format_short(a, mode)} … {_format_short(b, mode)}"

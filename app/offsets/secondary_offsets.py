@@ -13,7 +13,7 @@ from app.desk.desk import Desk
 from app.desk.pages.table_content import refused
 from app.desk.status.formats import format_length
 from app.desk.translation import tr
-from app.offsets.offset_changes import describe_start
+from app.offsets.offset_changes import describe_effective_time
 from app.offsets.offset_table import OffsetTable, ProposedOffsets
 from app.offsets.offset_values import (
     ValueMode,
@@ -44,7 +44,7 @@ class SecondaryOffsetStep(IntEnum):
     R = 3
 
 
-def correct_value(
+def apply_correction(
     step: SecondaryOffsetStep, old_value: float, entered_value: float, mode: ValueMode
 ) -> float:
     """Return the new value in mm for an entry.
@@ -92,7 +92,7 @@ class SecondaryOffsetEntry(OffsetTable):
     @property
     def present_row(self) -> SecondaryRow | None:
         """Return the saved values of the offset that is being changed, or None if it is not set."""
-        return self.offset_book.secondary.get(self.offset_number) if self.offset_number else None
+        return self.offset_book.secondary_offsets.get(self.offset_number) if self.offset_number else None
 
     @property
     def selected_number(self) -> int | None:
@@ -112,7 +112,7 @@ class SecondaryOffsetEntry(OffsetTable):
         if self.text.strip() and self.entry_step is not SecondaryOffsetStep.NUMBER:
             try:
                 at = self.entry_step - 1
-                new[at] = correct_value(
+                new[at] = apply_correction(
                     self.entry_step, old[at], evaluate_expression(self.text), self.value_mode
                 )
             except EntryError:
@@ -135,9 +135,11 @@ class SecondaryOffsetEntry(OffsetTable):
 
     def make_hint(self, snapshot: Snapshot) -> str:
         """Return how to answer the question, or when a correction takes effect."""
-        if self.entry_step is SecondaryOffsetStep.NUMBER and not describe_start(snapshot):
+        if self.entry_step is SecondaryOffsetStep.NUMBER and not describe_effective_time(snapshot):
             return tr("TYPE AN OFFSET NUMBER AND PRESS ENTER")
-        return describe_start(snapshot) or tr("TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE")
+        return describe_effective_time(snapshot) or tr(
+            "TYPE A VALUE OR EXPRESSION (.5-.002). ENTER ALONE: NO CHANGE"
+        )
 
     def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the offsets as they would be with the present entry."""
@@ -247,7 +249,7 @@ class SecondaryOffsetEntry(OffsetTable):
         at, text = self.entry_step - 1, self.text.strip()
         new = old = (self.present_row or SecondaryRow())[at]
         if text:
-            new = correct_value(self.entry_step, old, evaluate_expression(text), self.value_mode)
+            new = apply_correction(self.entry_step, old, evaluate_expression(text), self.value_mode)
             self._check_range(new)
         typed = f"{self.entry_step.name} {text}" if text else ""
         if self.entry_step is not SecondaryOffsetStep.R:

@@ -42,15 +42,17 @@ class SecondaryOffsetTable(Panel):
     """
 
     offsets: RedrawingAttribute[Mapping[int, SecondaryRow]] = RedrawingAttribute({})
-    first_enlarged = RedrawingAttribute(0)  # First number of the enlarged offsets; 0: all offsets are shown.
+    first_enlarged_number = RedrawingAttribute(
+        0
+    )  # First number of the enlarged offsets; 0: all offsets are shown.
     _number = RedrawingAttribute(0)
     _marked: RedrawingAttribute[frozenset[int]] = RedrawingAttribute(frozenset())
     _mode = RedrawingAttribute(ValueMode())
-    is_unread = RedrawingAttribute(False)  # True if offsets cannot be read.
+    is_unreadable = RedrawingAttribute(False)  # True if offsets cannot be read.
 
-    def __init__(self, theme: ScreenTheme, on_select: Callable[[int], None], parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, select_cell: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
-        self._choose = on_select
+        self._choose = select_cell
 
     def show_offsets(
         self,
@@ -76,28 +78,32 @@ class SecondaryOffsetTable(Panel):
         """
         unit = tr("MM") if self._mode.is_metric else tr("INCH")
         self.frame(painter, join_messages("  ·  ", (tr("SECONDARY OFFSETS  ·  X STORED AS A RADIUS"), unit)))
-        room = self.inside().adjusted(-0.6 * self.theme.u, 0, 0.6 * self.theme.u, 0.4 * self.theme.u)
-        if self.first_enlarged:
+        room = self.inside().adjusted(
+            -0.6 * self.theme.unit_px, 0, 0.6 * self.theme.unit_px, 0.4 * self.theme.unit_px
+        )
+        if self.first_enlarged_number:
             self._draw_near(painter, room)
         else:
             self._draw_all(painter, room)
 
     def enlarge_rows(self, first: int) -> None:
         """Enlarge the eight offsets that start at this number, or show all offsets if it is 0."""
-        self.first_enlarged = first
+        self.first_enlarged_number = first
 
     def _draw_all(self, painter: ThemedPainter, room: QRectF) -> None:
-        for number, box in enumerate(_make_boxes(room, ROWS_PER_COLUMN, 2.0 * self.theme.u), start=1):
+        for number, box in enumerate(_make_boxes(room, ROWS_PER_COLUMN, 2.0 * self.theme.unit_px), start=1):
             self._draw_row(painter, box, number, 1.0)
-        for at, box in enumerate(_make_boxes(room, ROWS_PER_COLUMN // ENLARGED_ROWS, 2.0 * self.theme.u)):
+        for at, box in enumerate(
+            _make_boxes(room, ROWS_PER_COLUMN // ENLARGED_ROWS, 2.0 * self.theme.unit_px)
+        ):
             self.add_target(box, partial(self.enlarge_rows, at * ENLARGED_ROWS + 1))
 
     def _draw_near(self, painter: ThemedPainter, room: QRectF) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         bar = QRectF(room.x(), room.bottom() - TOUCH_HEIGHT * u, room.width(), TOUCH_HEIGHT * u)
         rows = room.adjusted(0, 0, 0, -(TOUCH_HEIGHT + 0.6) * u)
         for number, box in enumerate(
-            _make_boxes(rows, ENLARGED_ROWS // 2, 0.8 * u), start=self.first_enlarged
+            _make_boxes(rows, ENLARGED_ROWS // 2, 0.8 * u), start=self.first_enlarged_number
         ):
             spot = box.adjusted(0, 0, 0, -0.6 * u)
             painter.fill_rect(spot, "key")
@@ -114,7 +120,7 @@ class SecondaryOffsetTable(Panel):
 
         ``size`` scales the letters. It is 1 in the full table.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         here = number == self._number
         if here:
             painter.fill_rect(box, "here")
@@ -135,16 +141,16 @@ class SecondaryOffsetTable(Panel):
             ("Z:", format_signed(z, metric), _X, _Z),
             ("R:", format_length(r, metric), _Z, 1.0),
         )
-        u = self.theme.u
+        u = self.theme.unit_px
         for letter, value, left, right in cells:
-            figure = UNKNOWN_VALUE if self.is_unread else value
+            figure = UNKNOWN_VALUE if self.is_unreadable else value
             at = QRectF(box.x() + left * wide, box.y(), (right - left) * wide - 1.2 * u, box.height())
             self._cell(painter, at, letter, figure, size, bold)
 
     def _cell(
         self, painter: ThemedPainter, at: QRectF, letter: str, figure: str, size: float, bold: bool
     ) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.draw_text_line(
             QRectF(at.x(), at.y(), 2.4 * size * u, at.height()), letter, 1.8 * size, "soft"
         )
@@ -178,7 +184,7 @@ class SecondaryOffsetsPage(OffsetPage):
 
     def handle_escape(self) -> bool:
         """Show all offsets again, or go back one step."""
-        if self.table_panel.first_enlarged:
+        if self.table_panel.first_enlarged_number:
             self.table_panel.enlarge_rows(0)
             return True
         return super().handle_escape()
@@ -193,7 +199,7 @@ class SecondaryOffsetsPage(OffsetPage):
         super().refresh(snapshot, status, loaded)
         model = self.model
         marked = {change.number for change in model.offset_history.last_changes}
-        self.table_panel.is_unread = model.offset_book.has_read_failed
+        self.table_panel.is_unreadable = model.offset_book.has_read_failed
         self.table_panel.show_offsets(
-            model.offset_book.secondary, model.offset_number, marked, model.value_mode
+            model.offset_book.secondary_offsets, model.offset_number, marked, model.value_mode
         )

@@ -6,7 +6,7 @@ from app.desk.arithmetic import EntryError
 from app.desk.desk import Desk
 from app.desk.translation import tr
 from app.offsets.change_rules import CORRECTION_FIELDS
-from app.offsets.offset_changes import describe_start
+from app.offsets.offset_changes import describe_effective_time
 from app.offsets.offset_table import ProposedOffsets, ToolFieldEditor, ToolFieldTable
 from app.offsets.offset_values import (
     describe_unset,
@@ -16,10 +16,10 @@ from app.offsets.offset_values import (
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.store.store_rows import OFFSET_NUMBERS, OffsetKind, replace_fields
-from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_edge_key
+from core.tool_edges import EDGE_NUMBERS, format_edge_suffix, get_tool_number, make_row_number
 
 TABLE_COLUMNS = ("x", "z", "nose_radius", "quadrant", "wear_x", "wear_z", "master", "remark")
-PAGE_ROWS = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
+ROWS_PER_PAGE = 5  # Rows that fit on the smallest screen, each as high as a fingertip.
 CUTTING_EDGE_KEY = "D"  # Adds a cutting edge to the tool, in a language with cutting edges.
 _CURSOR_MOVES = {"Up": (-1, 0), "Down": (1, 0), "Left": (0, -1), "Right": (0, 1), "Tab": (0, 1)}
 
@@ -35,10 +35,10 @@ class ToolOffsetTable(ToolFieldTable):
 
     def __init__(self, desk: Desk) -> None:
         super().__init__(desk)
-        self.page_key = CUTTING_EDGE_KEY if desk.machine.language == "sinumerik" else ""
+        self.page_key = CUTTING_EDGE_KEY if desk.machine.program_language == "sinumerik" else ""
         self.tool_fields = ToolFieldEditor(self.offset_history)
         self.column_index = 0
-        self.page_rows = PAGE_ROWS  # Rows that fit now, by which Page up and Page down move.
+        self.page_rows = ROWS_PER_PAGE  # Rows that fit now, by which Page up and Page down move.
         self.is_relative = False  # X and Z are shown relative to the master.
         self.new_edge = 0  # A new cutting edge whose values are not entered yet.
 
@@ -48,7 +48,11 @@ class ToolOffsetTable(ToolFieldTable):
     def tool_numbers(self) -> tuple[int, ...]:
         """Return the row numbers of the table: every tool, followed by its additional cutting edges."""
         edges = sorted(
-            {key for key in (*self.offset_book.tools, self.new_edge) if key not in OFFSET_NUMBERS and key}
+            {
+                key
+                for key in (*self.offset_book.tool_offsets, self.new_edge)
+                if key not in OFFSET_NUMBERS and key
+            }
         )
         return tuple(
             key
@@ -73,11 +77,11 @@ class ToolOffsetTable(ToolFieldTable):
         X and Z are relative to the master if the operator has selected this display.
         """
         book, mode, new = self.offset_book, self.value_mode, self.tool_fields.incomplete_tool
-        row = book.tools.get(number)
+        row = book.tool_offsets.get(number)
         if row is None:
             known = number == new.tool_number and name in new.known_values
             return format_value(name, new.known_values[name], mode) if known else ""
-        master = book.tools.get(book.master_number)
+        master = book.tool_offsets.get(book.master_number)
         if self.is_relative and master is not None and name in {"x", "z"} and number != book.master_number:
             at = "xz".index(name)
             return format_value(name, row.offset[at] - master.offset[at], mode)
@@ -92,7 +96,7 @@ class ToolOffsetTable(ToolFieldTable):
     def stored_value_text(self) -> str:
         """Return the saved value of the cell as text."""
         return self.format_cell(self.tool_number, self.name) or (
-            describe_unset(is_unread=self.offset_book.has_read_failed) if self.tool_row is None else ""
+            describe_unset(is_unreadable=self.offset_book.has_read_failed) if self.tool_row is None else ""
         )
 
     @property
@@ -108,7 +112,7 @@ class ToolOffsetTable(ToolFieldTable):
         """Return how to enter a remark or a value, or when a change takes effect."""
         if self.is_text_open:
             return tr("TYPE A REMARK. ENTER: SAVE   ESC: CANCEL   F-KEYS STILL WORK")
-        return describe_start(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
+        return describe_effective_time(snapshot) or tr("TYPE A NUMBER OR EXPRESSION   ENTER: SET   F2: ADD")
 
     def make_proposed_offsets(self) -> ProposedOffsets:
         """Return the offsets as they would be with the entered text."""
@@ -173,7 +177,7 @@ class ToolOffsetTable(ToolFieldTable):
         if again and self.name in {"remark", "master"} and not self.is_text_open:
             self.handle_enter()
 
-    def add_entered(self) -> None:
+    def add_entered_value(self) -> None:
         """Handle F2: add the entered value to the saved value."""
         if why := self.find_add_refusal():
             self.desk.say(why)
@@ -192,7 +196,7 @@ class ToolOffsetTable(ToolFieldTable):
             return tr("NO MASTER TOOL. PRESS ENTER IN MASTER COLUMN TO CHOOSE ONE")
         return ""
 
-    def toggle_relative(self) -> None:
+    def toggle_relative_display(self) -> None:
         """Handle F3: switch X and Z between distances from home and distances from the master."""
         if why := self.find_relative_refusal():
             self.desk.say(why)
@@ -210,14 +214,14 @@ class ToolOffsetTable(ToolFieldTable):
         """
         tool = get_tool_number(self.tool_number)
         free = (
-            make_edge_key(tool, edge)
+            make_row_number(tool, edge)
             for edge in EDGE_NUMBERS
-            if make_edge_key(tool, edge) not in self.offset_book.tools
+            if make_row_number(tool, edge) not in self.offset_book.tool_offsets
         )
         key = next(free, 0)
         if self.is_entry_unfinished():
             return
-        if tool not in self.offset_book.tools:
+        if tool not in self.offset_book.tool_offsets:
             self.desk.say(self.tool_fields.describe_unset_tool(tool))
         elif not key:
             self.desk.say(tr(Message("T{number} ALREADY HAS ALL CUTTING EDGES, D1 TO D9", number=tool)))
@@ -289,4 +293,4 @@ class ToolOffsetTable(ToolFieldTable):
     def discard_entry(self) -> None:
         """Discard the entry, an open remark and an incomplete new tool."""
         super().discard_entry()
-        self.tool_fields.incomplete_tool.discard()
+        self.tool_fields.incomplete_tool.discard_values()

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import mark_untranslated, tr
-from app.offsets.offset_values import describe_unset, make_heading, translate_field
+from app.offsets.offset_values import describe_unset, make_field_heading, translate_field
 from app.offsets.offsets_view import OffsetPage
 from app.offsets.tool_offsets import TABLE_COLUMNS, ToolOffsetTable
 from app.offsets.tool_shapes import ToolShapeTable
@@ -26,9 +26,9 @@ from core.message import Message, join_messages
 from core.tool_edges import format_edge_suffix, get_edge_number, get_tool_number
 
 NUMBER_WIDTH = 5.4  # Units: width of the number column.
-HEAD_HEIGHT = 3.2  # Units: height of the column heads.
+HEADING_HEIGHT = 3.2  # Units: height of the column heads.
 # Relative widths of the other columns.
-COLUMN_SHARES = {
+COLUMN_WIDTHS = {
     "x": 15.0,
     "z": 14.0,
     "nose_radius": 11.5,
@@ -56,7 +56,7 @@ class ToolOffsetPanel(RowPanel):
         """Update the rows from the model."""
         model = self._model
         self._shown = (
-            model.offset_book.tools,
+            model.offset_book.tool_offsets,
             (model.tool_number, model.column_index, model.is_relative, model.value_mode, model.new_edge),
             dict(model.tool_fields.incomplete_tool.known_values),
             tuple(change.number for change in model.offset_history.last_changes),
@@ -73,7 +73,7 @@ class ToolOffsetPanel(RowPanel):
         The title shows the unit, whether X is a diameter or a radius, and the master tool of relative
         values.
         """
-        u, model = self.theme.u, self._model
+        u, model = self.theme.unit_px, self._model
         mode = model.value_mode
         x = tr("X IS A DIAMETER") if mode.is_diameter else tr("X IS A RADIUS")
         title: str = join_messages(
@@ -85,14 +85,14 @@ class ToolOffsetPanel(RowPanel):
             )
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, -0.2 * u, 0.7 * u, 0.5 * u)
-        body = room.adjusted(0, HEAD_HEIGHT * u, 0, 0)
+        body = room.adjusted(0, HEADING_HEIGHT * u, 0, 0)
         count = len(model.tool_numbers)
         model.page_rows = min(
             count,
             self.count_fitting_rows(body, self.theme.find_row_height(7.0, 9.0, is_touchable=True), count),
         )
         body = self.draw_scroll_keys(painter, body, model.page_rows, count, model.row_index)
-        head = QRectF(body.x(), room.y(), body.width(), HEAD_HEIGHT * u)
+        head = QRectF(body.x(), room.y(), body.width(), HEADING_HEIGHT * u)
         columns = self._make_columns(head)
         self._head(painter, head, columns)
         high = body.height() / model.page_rows
@@ -100,26 +100,26 @@ class ToolOffsetPanel(RowPanel):
             self._row(painter, row, model.tool_numbers[place], columns)
 
     def _head(self, painter: ThemedPainter, head: QRectF, columns: dict[str, tuple[float, float]]) -> None:
-        u, mode = self.theme.u, self._model.value_mode
+        u, mode = self.theme.unit_px, self._model.value_mode
         for name, (left, wide) in columns.items():
             cell = QRectF(left, head.y(), wide - 0.4 * u, head.height())
-            self._heads[name] = make_heading(name, mode)
+            self._heads[name] = make_field_heading(name, mode)
             painter.draw_text_line(cell, self._heads[name], 1.5, "soft", at=ALIGN_CENTER, margin=0.2)
 
     def _make_columns(self, area: QRectF) -> dict[str, tuple[float, float]]:
         """Return the left edge and width of each column in pixels."""
-        left = area.x() + NUMBER_WIDTH * self.theme.u
-        part = (area.right() - left) / sum(COLUMN_SHARES.values())
+        left = area.x() + NUMBER_WIDTH * self.theme.unit_px
+        part = (area.right() - left) / sum(COLUMN_WIDTHS.values())
         columns = {}
         for name in TABLE_COLUMNS:
-            columns[name] = (left, COLUMN_SHARES[name] * part)
-            left += COLUMN_SHARES[name] * part
+            columns[name] = (left, COLUMN_WIDTHS[name] * part)
+            left += COLUMN_WIDTHS[name] * part
         return columns
 
     def _row(
         self, painter: ThemedPainter, row: QRectF, number: int, columns: dict[str, tuple[float, float]]
     ) -> None:
-        u, model = self.theme.u, self._model
+        u, model = self.theme.unit_px, self._model
         here = number == model.tool_number
         if here:
             painter.fill_rect(row, "here")
@@ -128,7 +128,7 @@ class ToolOffsetPanel(RowPanel):
         margin = QRectF(row.x(), row.y(), (NUMBER_WIDTH - 0.8) * u, row.height())
         name = f"T{number}" if number == get_tool_number(number) else f"D{get_edge_number(number)}"
         painter.draw_text_line(margin, name, 2.2 * self._find_scale(row), "accent", at=ALIGN_RIGHT)
-        unset = number not in model.offset_book.tools
+        unset = number not in model.offset_book.tool_offsets
         for at, (field, (left, wide)) in enumerate(columns.items()):
             cell = QRectF(left, row.y(), wide, row.height())
             self._cell(painter, cell, number, field)
@@ -147,7 +147,7 @@ class ToolOffsetPanel(RowPanel):
             empty = QRectF(columns["x"][0] + u, row.y(), 14 * u, row.height())
             painter.draw_text_line(
                 empty,
-                describe_unset(is_unread=model.offset_book.has_read_failed),
+                describe_unset(is_unreadable=model.offset_book.has_read_failed),
                 1.9 * self._find_scale(row),
                 "soft",
                 bold=False,
@@ -155,10 +155,10 @@ class ToolOffsetPanel(RowPanel):
 
     def _find_scale(self, row: QRectF) -> float:
         """Return the scale of the letters for the height of the row."""
-        return min(1.0, row.height() / (4.2 * self.theme.u))
+        return min(1.0, row.height() / (4.2 * self.theme.unit_px))
 
     def _cell(self, painter: ThemedPainter, cell: QRectF, number: int, name: str) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         text = self._model.format_cell(number, name)
         room = cell.adjusted(0.8 * u, 0, -0.9 * u, 0)
         if name == "quadrant" and text:
@@ -190,19 +190,23 @@ class ToolOffsetsPage(OffsetPage):
         super().__init__(host, parent, ToolOffsetTable(host.desk))
         self.table_panel = ToolOffsetPanel(self.theme, self.model, self)
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why keys are disabled, including F2 (add) and F3 (relative to master)."""
         model = self.model
-        return {**super().key_refusals(), "F2": model.find_add_refusal(), "F3": model.find_relative_refusal()}
+        return {
+            **super().find_key_refusals(),
+            "F2": model.find_add_refusal(),
+            "F3": model.find_relative_refusal(),
+        }
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F2 (add), F3 (relative to master) and F8 (tool shape)."""
         own: KeyActions = {
-            "F2": self.model.add_entered,
-            "F3": self.model.toggle_relative,
+            "F2": self.model.add_entered_value,
+            "F3": self.model.toggle_relative_display,
             "F8": partial(self._go, page_table.SHAPE),
         }
-        return {**super().key_actions(), **own}
+        return {**super().make_key_actions(), **own}
 
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Update the table from the model."""
@@ -211,7 +215,7 @@ class ToolOffsetsPage(OffsetPage):
 
 
 FIELD_ROWS = 6  # Fields in each of the two columns.
-FIELDS_SHARE = 0.6  # Fraction of the width for both columns.
+FIELDS_WIDTH_FRACTION = 0.6  # Fraction of the width for both columns.
 
 
 class ToolShapePanel(Panel):
@@ -231,7 +235,7 @@ class ToolShapePanel(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the fields of the tool shape in two columns, and the drawing of the tool on the right."""
-        u, model = self.theme.u, self._model
+        u, model = self.theme.unit_px, self._model
         unit = tr("MM") if model.value_mode.is_metric else tr("INCH")
         title: str = join_messages(
             "  ·  ", (tr(Message("SHAPE OF T{number}", number=format_edge_suffix(model.tool_number))), unit)
@@ -240,7 +244,7 @@ class ToolShapePanel(Panel):
             title += f"  ·  {mark_untranslated(model.tool_row.remark)}"
         self.frame(painter, title)
         room = self.inside().adjusted(-0.7 * u, 0, 0.7 * u, 0.5 * u)
-        fields = QRectF(room.x(), room.y(), FIELDS_SHARE * room.width(), room.height())
+        fields = QRectF(room.x(), room.y(), FIELDS_WIDTH_FRACTION * room.width(), room.height())
         wide, high = fields.width() / 2, fields.height() / FIELD_ROWS
         for place, name in enumerate(model.field_names):
             column, row = divmod(place, FIELD_ROWS)
@@ -256,12 +260,12 @@ class ToolShapePanel(Panel):
 
     def _draw_field(self, painter: ThemedPainter, cell: QRectF, name: str) -> None:
         """Draw the name of a field above its value."""
-        u, model = self.theme.u, self._model
+        u, model = self.theme.unit_px, self._model
         here = name == model.name
         painter.fill_rect(cell, "here" if here else "key")
         head = cell.adjusted(0.8 * u, 0.3 * u, -0.8 * u, 0)
         head.setHeight(1.8 * u)
-        painter.draw_text_line(head, make_heading(name, model.value_mode), 1.5, "soft")
+        painter.draw_text_line(head, make_field_heading(name, model.value_mode), 1.5, "soft")
         wrong = name in {
             "quadrant" if each.field_name == "tip" else each.field_name for each in model.shape_mistakes
         }
@@ -279,7 +283,7 @@ class ToolShapePanel(Panel):
 
     def _draw_picture(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the outline with X down, as in the path view, and the assumed values below it."""
-        u, model = self.theme.u, self._model
+        u, model = self.theme.unit_px, self._model
         words = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.4 * u)
         painter.fill_rect(area, "panel")
         outline = model.tool_outline
@@ -312,16 +316,16 @@ class ToolShapePage(OffsetPage):
         super().__init__(host, parent, ToolShapeTable(host.desk))
         self.table_panel = ToolShapePanel(self.theme, self.model, self)
 
-    def key_refusals(self) -> dict[str, object]:
+    def find_key_refusals(self) -> dict[str, object]:
         """Return why keys are disabled, including F3, which deletes the shape."""
-        return {**super().key_refusals(), "F3": self.model.find_delete_refusal()}
+        return {**super().find_key_refusals(), "F3": self.model.find_delete_refusal()}
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including F3, which deletes the shape.
 
         This page does not show the effect on the path.
         """
-        shared = {key: act for key, act in super().key_actions().items() if key != "F6"}
+        shared = {key: act for key, act in super().make_key_actions().items() if key != "F6"}
         return {**shared, "F3": self.model.delete_shape}
 
     def on_open(self) -> None:

@@ -54,7 +54,7 @@ class ToolShapeTable(ToolFieldTable):
     @property
     def shape_row(self) -> ShapeRow | None:
         """Return the shape of the selected tool, or None if the tool has no shape."""
-        return self.offset_book.shapes.get(self.tool_number)
+        return self.offset_book.tool_shapes.get(self.tool_number)
 
     @property
     def field_names(self) -> tuple[str, ...]:

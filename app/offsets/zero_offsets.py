@@ -255,7 +255,7 @@ class ZeroOffsetTable(CellTable):
         Changes are allowed only between cycles.
         """
         if (
-            snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOME}
+            snapshot.state in ACTIVE_STATES - {MachineState.JOG, MachineState.HOMING}
             and not self.offset_book.lock_reason
         ):
             return tr("PROGRAM RUNNING. CHANGE G54 TO G59 ONLY BETWEEN CYCLES")

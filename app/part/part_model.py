@@ -42,23 +42,23 @@ class PartSection(StrEnum):
 class PartModel:
     """Model of the PART page.
 
-    ``check_codes`` are the checks that can be turned off. ``machine_silenced`` are the checks that the
+    ``check_codes`` are the checks that can be turned off. ``machine_disabled_checks`` are the checks that the
     machine file turns off. ``show_location`` is called with a finding whose location the page must show.
     """
 
     desk: Desk
     persistence: Persistence
     check_codes: frozenset[str] = frozenset()
-    machine_silenced: frozenset[str] = frozenset()
-    stick_out: float = 0.0  # mm, from the machine file; 0 if not specified
+    machine_disabled_checks: frozenset[str] = frozenset()
+    assumed_stick_out_mm: float = 0.0  # mm, from the machine file; 0 if not specified
     has_workholding: bool = (
         False  # whether the machine file has a chuck or collet to which a stick-out applies
     )
     shown_section: PartSection = PartSection.FINDINGS
     selected_rows: dict[PartSection, int] = field(default_factory=dict)
     entry_text: str = ""  # typed text
-    code_to_silence: str = ""  # check whose reason is being typed
-    is_writing: bool = False  # a file name is being typed: every character is part of the name
+    check_to_disable: str = ""  # check whose reason is being typed
+    is_entering_file_name: bool = False  # a file name is being typed: every character is part of the name
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("editing-part"))
     show_location: Callable[[Diagnostic], None] = field(default=lambda _found: None)
     stored_part: StoredPart = EMPTY_STORED_PART
@@ -126,11 +126,11 @@ class PartModel:
 
         This is called once a frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         seen = self.program_name, self.desk.program_loader.load_count
         if seen != self._seen:
             if seen[0] != self._seen[0]:
-                self.cancel()
+                self.cancel_entry()
                 self.selected_rows.clear()
             self._seen = seen
             self._read()
@@ -145,7 +145,7 @@ class PartModel:
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
         if self.shown_section is PartSection.STOCK:
             return {
@@ -162,7 +162,7 @@ class PartModel:
 
     def toggle_section(self) -> None:
         """Switch between the tables of findings and stock."""
-        self.cancel()
+        self.cancel_entry()
         self.desk.clear_prompt_line()
         self.shown_section = following(PartSection, self.shown_section)
 
@@ -171,13 +171,13 @@ class PartModel:
         self.shown_section = PartSection.STOCK
 
     @property
-    def has_keyboard(self) -> bool:
+    def is_entering_text(self) -> bool:
         """Return whether every typed character is added to a text."""
-        return bool(self.code_to_silence) or self.is_writing
+        return bool(self.check_to_disable) or self.is_entering_file_name
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character is part of an entry."""
-        if self.has_keyboard:
+        if self.is_entering_text:
             return len(key) == 1 and key.isprintable()
         return self.shown_section is PartSection.STOCK and self._figures and key in EXPRESSION_CHARACTERS
 
@@ -200,7 +200,7 @@ class PartModel:
             and self.selected_field is StockField.KIND
         ):
             self.select_next_kind(_CHOICE_STEPS[key])
-        elif key in ROW_STEPS and not self.has_keyboard:
+        elif key in ROW_STEPS and not self.is_entering_text:
             self.select_row(self.selected_index + ROW_STEPS[key])
         else:
             return False
@@ -209,11 +209,11 @@ class PartModel:
     @property
     def has_entry(self) -> bool:
         """Return whether a reason, a file name or a value of the stock can be entered now."""
-        return self.has_keyboard or (self.shown_section is PartSection.STOCK and self._figures)
+        return self.is_entering_text or (self.shown_section is PartSection.STOCK and self._figures)
 
     def select_row(self, row: int) -> None:
         """Select a row, and show the location of its finding."""
-        self.cancel()
+        self.cancel_entry()
         self.desk.clear_prompt_line()
         self.selected_rows[self.shown_section] = max(0, min(row, self._count - 1))
         found = self.selected_finding
@@ -227,19 +227,19 @@ class PartModel:
         """
         if row != self.selected_index or self.shown_section is PartSection.FINDINGS:
             self.select_row(row)
-        elif self.selected_field in {StockField.KIND, StockField.FILE} and not self.is_writing:
+        elif self.selected_field in {StockField.KIND, StockField.FILE} and not self.is_entering_file_name:
             self._enter()
 
     def _enter(self) -> None:
-        if self.code_to_silence:
-            self._silence(self.code_to_silence, self.entry_text.strip())
+        if self.check_to_disable:
+            self._silence(self.check_to_disable, self.entry_text.strip())
         elif self.shown_section is PartSection.FINDINGS:
             if self.selected_finding is not None:
                 self.show_location(self.selected_finding)
         elif self.selected_field is StockField.KIND:
             self.select_next_kind()
-        elif self.selected_field is StockField.FILE and not self.is_writing:
-            self.is_writing = not self._is_refused()
+        elif self.selected_field is StockField.FILE and not self.is_entering_file_name:
+            self.is_entering_file_name = not self._is_refused()
         else:
             self._accept_entry()
 
@@ -248,8 +248,8 @@ class PartModel:
 
         Return False if there was nothing to cancel.
         """
-        if self.entry_text or self.has_keyboard:
-            self.cancel()
+        if self.entry_text or self.is_entering_text:
+            self.cancel_entry()
         elif self.desk.prompt_notice:
             self.desk.clear_prompt_line()
         elif self.stock_entry != StockEntry.of(self.stored_part):
@@ -258,9 +258,9 @@ class PartModel:
             return False
         return True
 
-    def cancel(self) -> None:
+    def cancel_entry(self) -> None:
         """Cancel the entry of a reason, a file name or a value."""
-        self.entry_text, self.code_to_silence, self.is_writing = "", "", False
+        self.entry_text, self.check_to_disable, self.is_entering_file_name = "", "", False
 
     def on_open(self) -> None:
         """Reload the data when the page opens."""
@@ -269,18 +269,18 @@ class PartModel:
 
     def on_close(self) -> None:
         """Cancel the entry and reset the selection when the page closes."""
-        self.cancel()
+        self.cancel_entry()
         self.shown_section = PartSection.FINDINGS
         self.selected_rows.clear()
 
     def prompt_text(self) -> str:
         """Return the prompt for the keys that are available now."""
-        if self.code_to_silence:
+        if self.check_to_disable:
             return tr("TYPE THE REASON   ENTER: TURN CHECK OFF   ESC: LEAVE IT ON")
-        if self.is_writing:
+        if self.is_entering_file_name:
             return tr("TYPE THE FILE NAME   ENTER: ACCEPT   ESC: CANCEL")
         if self.shown_section is PartSection.FINDINGS:
-            if self.function_keys()["F4"].barred:
+            if self.make_function_keys()["F4"].barred:
                 return tr("UP/DOWN: SHOW WHERE EACH FINDING IS   F2: STOCK")
             return tr("UP/DOWN: SHOW EACH FINDING   F2: STOCK   F4: TURN CHECK OFF")
         if self.selected_field is StockField.KIND:
@@ -312,7 +312,7 @@ class PartModel:
 
         An incomplete stock takes effect only when its missing value is entered.
         """
-        self.cancel()
+        self.cancel_entry()
         if self._is_refused():
             return
         self.desk.clear_prompt_line()
@@ -323,21 +323,21 @@ class PartModel:
 
     def delete_stock(self) -> None:
         """Delete the stock and the stick-out of the program."""
-        self.cancel()
+        self.cancel_entry()
         if self._is_refused():
             return
-        if not (self.stored_part.stock or self.stored_part.stick_out):
+        if not (self.stored_part.stock or self.stored_part.stick_out_mm):
             self.desk.say(tr("NO STOCK IS SPECIFIED FOR THIS PROGRAM"))
             return
         self.stock_entry = StockEntry()
-        self._save_part(replace(self.stored_part, stock="", stick_out=None), tr("STOCK DATA DELETED"))
+        self._save_part(replace(self.stored_part, stock="", stick_out_mm=None), tr("STOCK DATA DELETED"))
 
     def _accept_entry(self) -> None:
         """Accept the typed text for the selected field."""
         if self._is_refused():
             return
         try:
-            if self.is_writing:
+            if self.is_entering_file_name:
                 entry = replace(self.stock_entry, file=self._find_file_path(self.entry_text.strip()))
             else:
                 entry = self.stock_entry.typed(self.selected_field, self.entry_text, self.is_metric)
@@ -345,7 +345,7 @@ class PartModel:
             self.entry_text = refused(self.entry_text)
             self.desk.show_refusal(str(error))
             return
-        self.cancel()
+        self.cancel_entry()
         self.desk.clear_prompt_line()
         self._store_entry(entry)
 
@@ -375,7 +375,7 @@ class PartModel:
         except StockError as error:
             self.desk.show_refusal(str(error))
             return
-        kept = replace(self.stored_part, stock=stock, stick_out=entry.stick_out or None)
+        kept = replace(self.stored_part, stock=stock, stick_out_mm=entry.stick_out or None)
         if kept != self.stored_part:
             self._save_part(kept, tr(Message("STOCK DATA SAVED WITH {name}", name=self.program_name)))
 
@@ -388,7 +388,7 @@ class PartModel:
             return tr("SELECT THE FINDING WHOSE CHECK YOU WANT TO TURN OFF")
         if found.check_name not in self.check_codes:
             return tr("PROGRAM CHECKS CANNOT BE TURNED OFF, ONLY PART CHECKS")
-        if found.check_name in self.machine_silenced:
+        if found.check_name in self.machine_disabled_checks:
             return tr(
                 Message(
                     "{check} CHECK IS TURNED OFF IN THE MACHINE FILE, SECTION [checks]",
@@ -400,7 +400,7 @@ class PartModel:
     def toggle_check(self) -> None:
         """Handle F4: ask for the reason to turn the check off, or turn the check on again."""
         found = self.selected_finding
-        self.cancel()
+        self.cancel_entry()
         why = self._find_silence_refusal()
         if found is None or why:
             self.desk.say(why)
@@ -416,14 +416,14 @@ class PartModel:
             self._save_part(replace(self.stored_part, silenced_checks=rest), said)
         else:
             self.desk.clear_prompt_line()
-            self.code_to_silence = found.check_name
+            self.check_to_disable = found.check_name
 
     def _silence(self, check: str, why: str) -> None:
         if not why:
             self.desk.show_refusal(tr("enter a reason to turn a check off"))
         elif not self._is_refused():
             silenced = {**self.stored_part.silenced_checks, check: why}
-            self.cancel()
+            self.cancel_entry()
             self._save_part(
                 replace(self.stored_part, silenced_checks=silenced),
                 tr(Message("{check} CHECK TURNED OFF", check=check)),
@@ -448,7 +448,7 @@ class PartModel:
             self.persistence.log_change(change_text)
             self._is_kept(name, on_done)
 
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             partial(self.persistence.save_settings, stored.make_settings(name)),
             done,
             lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),

@@ -49,31 +49,33 @@ class PartPage(ListPage):
         self._shown: Diagnostic | None = None  # finding whose location the part view shows
         model.show_location = self._show
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.function_keys()
+        return self.model.make_function_keys()
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the displayed table and of the page."""
-        return self.make_labels({"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.function_keys())
+        return self.make_function_key_labels(
+            {"F3": "EDIT", "F5": "FIT", "F8": "TOOLS"}, self.make_function_keys()
+        )
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of the table, and F3 while the editor cannot be opened."""
         named = self.desk.program_loader.loaded.path is not None
         closed = find_editor_refusal(self.desk.read_snapshot(), has_name=named)
-        return super().disabled_keys() | ({"F3"} if closed else set())
+        return super().find_disabled_keys() | ({"F3"} if closed else set())
 
     def is_animating(self) -> bool:
         """Return whether the part view is playing."""
         return self.path_view.part_player is not None and self.path_view.part_player.is_playing
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of the table, the timeline and the view."""
         path = self.path_view
         return {
-            **{name: key.action for name, key in self.function_keys().items()},
+            **{name: key.action for name, key in self.make_function_keys().items()},
             "F3": partial(self.host.open_page, page_table.EDITOR),
-            "F5": path.fit_all,
+            "F5": path.fit_all_panes,
             "F8": partial(self.host.open_page, page_table.TOOLS),
             "View": path.select_next_view,
             **path.make_view_key_actions(),
@@ -106,11 +108,14 @@ class PartPage(ListPage):
         self.table_panel.show_table(sheet)
         self._show_part(loaded)
         has_pad = (
-            model.shown_section is PartSection.STOCK and model.accepts_key("1") and not model.has_keyboard
+            model.shown_section is PartSection.STOCK and model.accepts_key("1") and not model.is_entering_text
         )
-        if (has_pad, model.has_keyboard) != (not self.number_pad.isHidden(), not self.letter_pad.isHidden()):
+        if (has_pad, model.is_entering_text) != (
+            not self.number_pad.isHidden(),
+            not self.letter_pad.isHidden(),
+        ):
             self.number_pad.setVisible(has_pad)
-            self.letter_pad.setVisible(model.has_keyboard)
+            self.letter_pad.setVisible(model.is_entering_text)
             self._lay_out()
 
     def _show_part(self, loaded: LoadedProgram) -> None:
@@ -131,7 +136,7 @@ class PartPage(ListPage):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(SHARE * self.width())
         right, pad = self.width() - left - gap, 0 if self.number_pad.isHidden() else round(PAD * u) + gap
         low = 0 if self.letter_pad.isHidden() else round(LETTERS * u) + gap

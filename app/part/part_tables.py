@@ -31,8 +31,8 @@ def _findings_table(page: PartModel) -> TableContent:
     rows = tuple(_finding_row(each) for each in found)
     title = tr(Message("FINDINGS  ·  {name}", name=page.loaded_program.name or tr("NO PROGRAM")))
     question = (
-        tr(Message("REASON FOR TURNING OFF THE {check} CHECK?", check=page.code_to_silence))
-        if page.code_to_silence
+        tr(Message("REASON FOR TURNING OFF THE {check} CHECK?", check=page.check_to_disable))
+        if page.check_to_disable
         else ""
     )
     notes = _notes(page)
@@ -70,7 +70,7 @@ def _nothing(page: PartModel) -> str:
 
 def _at(page: PartModel, found: Diagnostic) -> str:
     if found.downgrade_reason:
-        of_machine = found.check_name in page.machine_silenced
+        of_machine = found.check_name in page.machine_disabled_checks
         return tr("TURNED OFF IN THE MACHINE FILE") if of_machine else tr("F4: UNDO")
     if not found.block_number:
         return ""
@@ -110,7 +110,7 @@ def _said(page: PartModel, name: StockField) -> str:
 def _format_assumed(page: PartModel, name: StockField) -> str:
     """Return the text of the value that is assumed if no value is specified."""
     if name is StockField.STICK_OUT:
-        return format_length(page.stick_out, page.is_metric) if page.stick_out else ""
+        return format_length(page.assumed_stick_out_mm, page.is_metric) if page.assumed_stick_out_mm else ""
     part = page.loaded_program.part_proof
     stock = part.report.stock if part is not None and part.report is not None else None
     if stock is None or page.stored_part.stock:

@@ -82,7 +82,7 @@ class StockEntry:
 
         An invalid stock text is ignored, but the stick-out is used.
         """
-        out = stored.stick_out or 0.0
+        out = stored.stick_out_mm or 0.0
         try:
             spec = parse_specification(stored.stock) if stored.stock else StockSpec("")
         except StockError:
@@ -96,22 +96,22 @@ class StockEntry:
         """Return the fields that apply to this kind of stock."""
         return (StockField.KIND, *_FIELDS[self.kind], StockField.STICK_OUT)
 
-    def format_field(self, field: StockField, metric: bool) -> str:
+    def format_field(self, field: StockField, is_metric: bool) -> str:
         """Return the text of a field, or an empty string if the field is not specified."""
         if field is StockField.FILE:
             return Path(self.file).name
         if field is StockField.KIND:
             return _KINDS[self.kind]
         value = float(getattr(self, field))
-        return format_length(value, metric) if value else ""
+        return format_length(value, is_metric) if value else ""
 
-    def typed(self, field: StockField, text: str, metric: bool) -> StockEntry:
+    def typed(self, field: StockField, text: str, is_metric: bool) -> StockEntry:
         """Return a copy of the entry with a typed length.
 
-        The length is in mm if ``metric`` is set, and otherwise in inches. Raise EntryError if the length is
-        not valid for the field.
+        The length is in mm if ``is_metric`` is set, and otherwise in inches. Raise EntryError if the length
+        is not valid for the field.
         """
-        value = evaluate_expression(text) * (1.0 if metric else MM_PER_INCH)
+        value = evaluate_expression(text) * (1.0 if is_metric else MM_PER_INCH)
         if value < 0.0:
             raise EntryError("a stock length cannot be negative; enter 0 to clear the length")
         low, high = _STICK_LIMITS_MM

@@ -110,7 +110,7 @@ class SnapPoints:
                     best = float(cost[at]), SnapPoint(float(table[there, 0]), float(table[there, 1]), kind)
         return best[1] if best else None
 
-    def find_following(self, z: float, x: float, steps: int) -> SnapPoint | None:
+    def find_next_along_path(self, z: float, x: float, steps: int) -> SnapPoint | None:
         """Return the end point that is ``steps`` points further along the path.
 
         After the last end point, the search continues with the first. Return None if the path has no
@@ -165,15 +165,15 @@ def find_crossings(polyline: Polyline, box: Bounds) -> FloatArray:
     return np.column_stack((z0[a] + s * az, x0[a] + s * ax))[met]
 
 
-def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance: float) -> int | None:
+def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance_mm: float) -> int | None:
     """Return the index of the end point of the chord nearest to a position.
 
-    Return None if no chord is within ``max_distance`` millimeters.
+    Return None if no chord is within ``max_distance_mm`` millimeters.
     """
     z0, x0, z1, x1 = polyline.z[:-1], polyline.x[:-1], polyline.z[1:], polyline.x[1:]
     near = polyline.stroke[1:] != Stroke.JUMP
-    near &= (np.maximum(z0, z1) >= z - max_distance) & (np.minimum(z0, z1) <= z + max_distance)
-    near &= (np.maximum(x0, x1) >= x - max_distance) & (np.minimum(x0, x1) <= x + max_distance)
+    near &= (np.maximum(z0, z1) >= z - max_distance_mm) & (np.minimum(z0, z1) <= z + max_distance_mm)
+    near &= (np.maximum(x0, x1) >= x - max_distance_mm) & (np.minimum(x0, x1) <= x + max_distance_mm)
     index = np.flatnonzero(near)
     if not len(index):
         return None
@@ -182,7 +182,7 @@ def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance: flo
     share = np.clip(((z - z0) * dz + (x - x0) * dx) / size, 0.0, 1.0)
     off = np.hypot(z0 + share * dz - z, x0 + share * dx - x)
     at = int(np.argmin(off))
-    return int(index[at]) + 1 if off[at] <= max_distance else None
+    return int(index[at]) + 1 if off[at] <= max_distance_mm else None
 
 
 # --- between two points -------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ def find_nearest_chord(polyline: Polyline, z: float, x: float, max_distance: flo
 MeasurementRow = tuple[str, str]
 
 
-def measure_on_path(start: SnapPoint, end: SnapPoint, metric: bool) -> list[MeasurementRow]:
+def measure_on_path(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the path seen from above.
 
     The rows are X as a diameter and as a radius, Z, the distance, and the angle to the axis (0 to 90
@@ -199,66 +199,68 @@ def measure_on_path(start: SnapPoint, end: SnapPoint, metric: bool) -> list[Meas
     """
     dz, dx = end.z - start.z, end.x - start.x
     return [
-        ("ΔX Ø", formats.format_length(2 * dx, metric)),
-        ("ΔX R", formats.format_length(dx, metric)),
-        ("ΔZ", formats.format_length(dz, metric)),
-        *_straight(dz, dx, metric, tr("TO Z")),
+        ("ΔX Ø", formats.format_length(2 * dx, is_metric)),
+        ("ΔX R", formats.format_length(dx, is_metric)),
+        ("ΔZ", formats.format_length(dz, is_metric)),
+        *_straight(dz, dx, is_metric, tr("TO Z")),
     ]
 
 
-def measure_on_face(start: SnapPoint, end: SnapPoint, metric: bool) -> list[MeasurementRow]:
+def measure_on_face(start: SnapPoint, end: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the face of the part.
 
     The rows are in face X and Y, with Y up.
     """
     dx, dy = end.z - start.z, start.x - end.x
     return [
-        ("ΔX", formats.format_length(dx, metric)),
-        ("ΔY", formats.format_length(dy, metric)),
-        *_straight(dx, dy, metric, tr("TO X")),
+        ("ΔX", formats.format_length(dx, is_metric)),
+        ("ΔY", formats.format_length(dy, is_metric)),
+        *_straight(dx, dy, is_metric, tr("TO X")),
     ]
 
 
-def measure_on_side(start: SnapPoint, end: SnapPoint, metric: bool, scale: float) -> list[MeasurementRow]:
+def measure_on_side(
+    start: SnapPoint, end: SnapPoint, is_metric: bool, mm_per_degree: float
+) -> list[MeasurementRow]:
     """Return the table rows for the distance between two points on the unrolled side.
 
-    ``scale`` is the circumferential length per degree of C, in millimeters.
+    ``mm_per_degree`` is the circumferential length per degree of C, in millimeters.
     """
     dz, arc_length_mm = end.z - start.z, start.x - end.x
     return [
-        ("ΔZ", formats.format_length(dz, metric)),
-        ("ΔC", f"{formats.format_angle(arc_length_mm / scale)}°"),
-        (tr("ARC LENGTH"), formats.format_length(arc_length_mm, metric)),
-        *_straight(dz, arc_length_mm, metric, tr("TO Z")),
+        ("ΔZ", formats.format_length(dz, is_metric)),
+        ("ΔC", f"{formats.format_angle(arc_length_mm / mm_per_degree)}°"),
+        (tr("ARC LENGTH"), formats.format_length(arc_length_mm, is_metric)),
+        *_straight(dz, arc_length_mm, is_metric, tr("TO Z")),
     ]
 
 
-def locate_on_path(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
+def locate_on_path(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the position of a point, with X as a diameter and Z."""
     return [
-        ("X Ø", formats.format_length(2 * point.x, metric)),
-        ("Z", formats.format_length(point.z, metric)),
+        ("X Ø", formats.format_length(2 * point.x, is_metric)),
+        ("Z", formats.format_length(point.z, is_metric)),
     ]
 
 
-def locate_on_face(point: SnapPoint, metric: bool) -> list[MeasurementRow]:
+def locate_on_face(point: SnapPoint, is_metric: bool) -> list[MeasurementRow]:
     """Return the table rows for the position of a point on the face.
 
     The rows are X, Y and the distance from the axis.
     """
     radius = math.hypot(point.z, point.x)
     return [
-        ("X", formats.format_length(point.z, metric)),
-        ("Y", formats.format_length(-point.x, metric)),
-        ("R", formats.format_length(radius, metric)),
+        ("X", formats.format_length(point.z, is_metric)),
+        ("Y", formats.format_length(-point.x, is_metric)),
+        ("R", formats.format_length(radius, is_metric)),
     ]
 
 
-def locate_on_side(point: SnapPoint, metric: bool, scale: float) -> list[MeasurementRow]:
+def locate_on_side(point: SnapPoint, is_metric: bool, mm_per_degree: float) -> list[MeasurementRow]:
     """Return the table rows for the position of a point on the unrolled side, with Z, and C in degrees."""
     return [
-        ("Z", formats.format_length(point.z, metric)),
-        ("C", f"{formats.format_angle(-point.x / scale)}°"),
+        ("Z", formats.format_length(point.z, is_metric)),
+        ("C", f"{formats.format_angle(-point.x / mm_per_degree)}°"),
     ]
 
 
@@ -276,7 +278,7 @@ def _straight(right: float, across: float, metric: bool, to: str) -> list[Measur
 class LargestDistance(NamedTuple):
     """Largest distance between corresponding cutting points of two pictures, with its position, in mm."""
 
-    distance: float
+    distance_mm: float
     z: float
     x: float
 

@@ -68,7 +68,10 @@ class Measurement:
         z, x = self.pane.map_to_plane(position)
         self._features.update_intersections(self.pane.find_visible_area())
         near = self._features.find_nearest(z, x)
-        if near is not None and _find_distance(self.pane, near, z, x) <= SNAP_DISTANCE * self.pane.theme.u:
+        if (
+            near is not None
+            and _find_distance(self.pane, near, z, x) <= SNAP_DISTANCE * self.pane.theme.unit_px
+        ):
             self.cursor = near
         else:
             self.cursor = SnapPoint(z, x)
@@ -105,7 +108,7 @@ class Measurement:
         self._go(SnapPoint(self.cursor.z + direction[0] * step, self.cursor.x + direction[1] * step))
 
     def _step(self, steps: int) -> None:
-        self._go(self._features.find_following(self.cursor.z, self.cursor.x, steps))
+        self._go(self._features.find_next_along_path(self.cursor.z, self.cursor.x, steps))
 
     def _go(self, spot: SnapPoint | None) -> None:
         if spot is not None:
@@ -114,18 +117,18 @@ class Measurement:
 
     # --- displayed values ----------------------------------------------------------------------------
 
-    def make_rows(self, metric: bool) -> list[measuring.MeasurementRow]:
+    def make_rows(self, is_metric: bool) -> list[measuring.MeasurementRow]:
         """Return the rows to display, with the cursor position and the differences from the first point."""
         start, end = self.first_point, self.second_point or self.cursor
         aspect, scale = self.pane.aspect, self.pane.polyline.mm_per_degree
         if aspect in {PathAspect.PATH, PathAspect.SECTION}:
-            place = measuring.locate_on_path(end, metric)
-            return place + (measuring.measure_on_path(start, end, metric) if start else [])
+            place = measuring.locate_on_path(end, is_metric)
+            return place + (measuring.measure_on_path(start, end, is_metric) if start else [])
         if aspect is PathAspect.FACE:
-            place = measuring.locate_on_face(end, metric)
-            return place + (measuring.measure_on_face(start, end, metric) if start else [])
-        place = measuring.locate_on_side(end, metric, scale)
-        return place + (measuring.measure_on_side(start, end, metric, scale) if start else [])
+            place = measuring.locate_on_face(end, is_metric)
+            return place + (measuring.measure_on_face(start, end, is_metric) if start else [])
+        place = measuring.locate_on_side(end, is_metric, scale)
+        return place + (measuring.measure_on_side(start, end, is_metric, scale) if start else [])
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -143,12 +146,12 @@ class Measurement:
             painter.setPen(look.make_pen("lit", 0.3))
             painter.drawLine(start, end)
             for held in (start, end):
-                painter.setBrush(look.color("lit"))
-                painter.drawEllipse(held, 0.6 * look.u, 0.6 * look.u)
+                painter.setBrush(look.get_color("lit"))
+                painter.drawEllipse(held, 0.6 * look.unit_px, 0.6 * look.unit_px)
         self._cross(painter, pane.map_to_pane(*self.cursor[:2]))
 
     def _cross(self, painter: QPainter, at: QPointF) -> None:
-        look, u = self.pane.theme, self.pane.theme.u
+        look, u = self.pane.theme, self.pane.theme.unit_px
         painter.setPen(look.make_pen("text", 0.16))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawLine(QPointF(at.x(), 0), QPointF(at.x(), self.pane.area.height()))
@@ -157,34 +160,34 @@ class Measurement:
             painter.setPen(look.make_pen("tip", 0.3))
             painter.drawRect(QRectF(at.x() - u, at.y() - u, 2 * u, 2 * u))
 
-    def draw_values(self, painter: QPainter, area: QRectF, metric: bool) -> None:
+    def draw_values(self, painter: QPainter, area: QRectF, is_metric: bool) -> None:
         """Draw the table of values in the corner of ``area`` that is farthest from the cursor.
 
         ``area`` is in widget coordinates.
         """
-        look, u, rows = self.pane.theme, self.pane.theme.u, self.make_rows(metric)
+        look, u, rows = self.pane.theme, self.pane.theme.unit_px, self.make_rows(is_metric)
         wide, high = min(TABLE_SIZE[0] * u, area.width() - 2 * u), TABLE_SIZE[1] * u
         tall = (len(rows) + 1) * high + 0.6 * u
         cross = self.pane.area.topLeft() + self.pane.map_to_pane(*self.cursor[:2])
         x = area.x() + u if cross.x() > area.center().x() else area.right() - wide - u
         y = area.bottom() - tall - 2.8 * u if cross.y() < area.center().y() else area.y() + 2.6 * u
         box = QRectF(x, y, wide, tall)
-        painter.fillRect(box, look.color("ground"))
+        painter.fillRect(box, look.get_color("ground"))
         painter.setPen(look.make_pen("lit", 0.2))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawRect(box)
         row = QRectF(box.x() + 0.8 * u, box.y() + 0.3 * u, box.width() - 1.6 * u, high)
-        self._row(painter, row, (describe_point_kind(self.cursor.kind), "mm" if metric else "in"), "soft")
+        self._row(painter, row, (describe_point_kind(self.cursor.kind), "mm" if is_metric else "in"), "soft")
         for pair in rows:
             row.translate(0, high)
             self._row(painter, row, pair, "text")
 
     def _row(self, painter: QPainter, row: QRectF, pair: measuring.MeasurementRow, ink: str) -> None:
         look = self.pane.theme
-        painter.setPen(look.color("soft"))
+        painter.setPen(look.get_color("soft"))
         painter.setFont(look.fit_font(pair[0], 1.6, 0.5 * row.width(), is_bold=True))
         draw_text(painter, row, ALIGN_LEFT, pair[0])
-        painter.setPen(look.color(ink))
+        painter.setPen(look.get_color(ink))
         painter.setFont(look.make_font(1.9, is_bold=True))
         draw_text(painter, row, ALIGN_RIGHT, pair[1])
 

@@ -9,7 +9,7 @@ from PySide6.QtGui import QPainter
 
 from app.path import path_marks_view as marks
 from app.path.measuring_view import Measurement
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect
 from app.path.path_pane_view import PathPane
 from app.screen.screen_theme import ALIGN_LEFT, ScreenTheme, draw_text
 
@@ -18,7 +18,7 @@ def draw_pane(
     painter: QPainter,
     theme: ScreenTheme,
     pane: PathPane,
-    drawn_legs: Sequence[DrawnLeg],
+    drawn_legs: Sequence[ApproachLeg],
     measurement: Measurement | None,
     *,
     is_metric: bool,
@@ -43,8 +43,8 @@ def draw_pane(
 
 def draw_view_title(painter: QPainter, theme: ScreenTheme, width_px: int, title: str) -> None:
     """Draw the title of the view above its panes."""
-    u = theme.u
+    u = theme.unit_px
     wide = width_px - 4 * u
     painter.setFont(theme.fit_font(title, 1.7, wide, is_bold=True))
-    painter.setPen(theme.color("soft"))
+    painter.setPen(theme.get_color("soft"))
     draw_text(painter, QRectF(2.2 * u, 0, wide, 2.0 * u), ALIGN_LEFT, title)

@@ -42,7 +42,7 @@ class PartTimeline:
 
         Return False while the player follows the run.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         if self.part_player.follows_run or not self._track.adjusted(-u, -3 * u, u, 3 * u).contains(position):
             return False
         self.part_player.is_playing = False
@@ -59,27 +59,27 @@ class PartTimeline:
         share = (self._at - self._track.x()) / max(self._track.width(), 1.0)
         self.part_player.seek_time(min(max(share, 0.0), 1.0) * self.part_player.duration_s)
 
-    def draw(self, painter: QPainter, area: QRectF, place: AddTouchTarget) -> None:
+    def draw(self, painter: QPainter, area: QRectF, add_touch_target: AddTouchTarget) -> None:
         """Draw the buttons and the timeline within ``area``.
 
-        ``place`` registers the touch targets.
+        ``add_touch_target`` registers the touch targets.
         """
-        look, u, player = self.theme, self.theme.u, self.part_player
+        look, u, player = self.theme, self.theme.unit_px, self.part_player
         box = QRectF(area.x() + 0.6 * u, area.y() + 0.5 * u, _KEY_WIDTH * u, area.height() - u)
         self._sign(painter, box, Tone.PAUSE if player.is_playing else Tone.RUN)
-        place(box, player.toggle_playback)
+        add_touch_target(box, player.toggle_playback)
         for word, press, lit in (
-            ("×10", player.toggle_fast, player.is_fast),
+            ("×10", player.toggle_fast_playback, player.is_fast),
             ("◀|", lambda: player.step_blocks(-1), False),
             ("|▶", lambda: player.step_blocks(1), False),
         ):
             box = box.translated((_KEY_WIDTH + 0.5) * u, 0)
             self._key(painter, box, word, lit=lit)
-            place(box, press)
+            add_touch_target(box, press)
         if self._stock is not None:
             box = QRectF(box.right() + 0.5 * u, box.y(), _STOCK_KEY_WIDTH * u, box.height())
             self._key(painter, box, tr("STOCK"), lit=False, size=1.7)
-            place(box, self._stock)
+            add_touch_target(box, self._stock)
         left, right = box.right() + 2.2 * u, area.right() - (_TEXT_WIDTH + 1.0) * u
         self._track = QRectF()
         if right - left < _MIN_TRACK_WIDTH * u:
@@ -87,47 +87,51 @@ class PartTimeline:
         self._track = QRectF(left, area.center().y() - 0.5 * u, right - left, u)
         self._draw_line(painter)
         painter.setFont(look.make_font(1.7, is_bold=True))
-        painter.setPen(look.color("soft" if player.follows_run else "text"))
+        painter.setPen(look.get_color("soft" if player.follows_run else "text"))
         words = QRectF(right + 1.6 * u, area.y(), _TEXT_WIDTH * u, area.height() / 2)
         draw_text(
             painter, words, ALIGN_LEFT, _format_time(player.time_s) + " / " + _format_time(player.duration_s)
         )
         shown = player.result
-        if shown is not None and shown.part_instant.line:
+        if shown is not None and shown.part_instant.line_number:
             painter.setFont(look.make_font(1.6))
-            text = tr(Message("LINE {line}", line=shown.part_instant.line))
+            text = tr(Message("LINE {line}", line=shown.part_instant.line_number))
             draw_text(painter, words.translated(0, area.height() / 2 - 0.4 * u), ALIGN_LEFT, text)
 
     def _draw_line(self, painter: QPainter) -> None:
         """Draw the track, the elapsed time, the error marks and the current position."""
-        look, u, track, player = self.theme, self.theme.u, self._track, self.part_player
+        look, u, track, player = self.theme, self.theme.unit_px, self._track, self.part_player
         length = max(player.duration_s, 1e-9)
         at = track.x() + track.width() * min(player.time_s / length, 1.0)
-        painter.fillRect(track, look.color("key"))
+        painter.fillRect(track, look.get_color("key"))
         painter.fillRect(
             QRectF(track.x(), track.y(), at - track.x(), track.height()),
-            look.color("off" if player.follows_run else "lit"),
+            look.get_color("off" if player.follows_run else "lit"),
         )
         for t in player.find_error_times().tolist():
             mark = track.x() + track.width() * t / length
-            painter.fillRect(QRectF(mark - 0.2 * u, track.y() - 1.0 * u, 0.4 * u, 3 * u), look.color("alarm"))
+            painter.fillRect(
+                QRectF(mark - 0.2 * u, track.y() - 1.0 * u, 0.4 * u, 3 * u), look.get_color("alarm")
+            )
         painter.setPen(look.make_pen("panel", 0.2))
-        painter.setBrush(look.color("text"))
+        painter.setBrush(look.get_color("text"))
         painter.drawEllipse(QPointF(at, track.center().y()), 1.3 * u, 1.3 * u)
 
     def _key(self, painter: QPainter, box: QRectF, word: str, *, lit: bool, size: float = 2.0) -> None:
         look = self.theme
-        painter.fillRect(box, look.color("lit" if lit else "key"))
+        painter.fillRect(box, look.get_color("lit" if lit else "key"))
         dim = "soft" if self.part_player.follows_run else "text"
-        painter.setPen(look.color("on_lit" if lit else dim))
+        painter.setPen(look.get_color("on_lit" if lit else dim))
         painter.setFont(look.make_font(size, is_bold=True))
         draw_text(painter, box, ALIGN_CENTER, word)
 
     def _sign(self, painter: QPainter, box: QRectF, tone: Tone) -> None:
-        look, u = self.theme, self.theme.u
-        painter.fillRect(box, look.color("key"))
+        look, u = self.theme, self.theme.unit_px
+        painter.fillRect(box, look.get_color("key"))
         sign = QRectF(box.center().x() - 1.1 * u, box.center().y() - 1.1 * u, 2.2 * u, 2.2 * u)
-        draw_state_symbol(painter, sign, tone, look.color("soft" if self.part_player.follows_run else "text"))
+        draw_state_symbol(
+            painter, sign, tone, look.get_color("soft" if self.part_player.follows_run else "text")
+        )
         painter.setBrush(Qt.BrushStyle.NoBrush)
 
 

@@ -13,7 +13,7 @@ from PySide6.QtGui import QBrush, QImage, QPainter, QPolygonF
 from app.path.part_player import PartPlayer, PlayedInstant, SolidRequest
 from app.path.path_aspects import PathAspect, TipPosition
 from app.path.path_layers_view import make_polygon
-from app.path.path_pane_view import FIT_MARGIN, PathPane, Position
+from app.path.path_pane_view import FIT_MARGIN, PathPane, PlanePosition
 from app.path.path_picture import ProgramPicture
 from app.path.path_projection import (
     FloatArray,
@@ -26,7 +26,7 @@ from app.path.path_projection import (
     project_section,
     project_stock,
 )
-from app.path.path_stock_view import BESIDE, Blank
+from app.path.path_stock_view import SIDE_MARGIN_RATIO, Blank
 from app.path.polyline import Polyline
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, draw_text
 from core.part.solid_view import SolidView
@@ -89,9 +89,9 @@ class PartPane(PathPane):
         shown = self.part_player.result
         if shown is not None and (stock := shown.part_instant.stock) is not None:
             left = self._left_of(shown, stock)
-            margin_mm = BESIDE * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
+            margin_mm = SIDE_MARGIN_RATIO * (stock.front_z_mm - left + 2.0 * stock.max_radius_mm)
             z0, z1, x0, x1 = left, stock.front_z_mm + margin_mm, 0.0, stock.max_radius_mm + 0.5 * margin_mm
-        u = self.theme.u
+        u = self.theme.unit_px
         left_band, low_band = _X_BAND * u, _Z_BAND * u
         wide, high = self.area.width() - left_band, self.area.height() - low_band
         inner = fit_mirrored((z0, z1, x0, x1), int(wide), int(high), FIT_MARGIN * u)
@@ -104,7 +104,7 @@ class PartPane(PathPane):
 
         Most of the stock inside a chuck is not shown.
         """
-        chuck = Blank(stock, stock, shown.part_instant.clamping).chuck_from
+        chuck = Blank(stock, stock, shown.part_instant.clamping).chuck_left_z_mm
         return stock.back_z_mm if chuck is None else max(stock.back_z_mm, chuck)
 
     def set_projection(self, projection: Projection) -> None:
@@ -113,7 +113,10 @@ class PartPane(PathPane):
         self.part_player.set_solid_request(None)
 
     def set_run_state(
-        self, active_block: int, tip_position: Position | None, stop_position: Position | None = None
+        self,
+        active_block: int,
+        tip_position: PlanePosition | None,
+        stop_position: PlanePosition | None = None,
     ) -> None:
         """Let the player follow the run while a block is active.
 
@@ -168,13 +171,13 @@ class PartPane(PathPane):
         for line in self._stock:
             painter.drawPolyline(line)
         painter.setPen(look.make_pen("off", 0.14))
-        painter.setBrush(QBrush(look.color("off"), Qt.BrushStyle.FDiagPattern))
+        painter.setBrush(QBrush(look.get_color("off"), Qt.BrushStyle.FDiagPattern))
         for area in self._chuck:
             painter.drawPolygon(area)
-        self._fill(painter, self._hits, QBrush(look.color("alarm")))
+        self._fill(painter, self._hits, QBrush(look.get_color("alarm")))
         areas = [area for area, _ in self._metal]
-        self._fill(painter, areas, QBrush(look.color("key")))
-        self._fill(painter, areas, QBrush(look.color("todo"), Qt.BrushStyle.BDiagPattern))
+        self._fill(painter, areas, QBrush(look.get_color("key")))
+        self._fill(painter, areas, QBrush(look.get_color("todo"), Qt.BrushStyle.BDiagPattern))
         painter.setPen(look.make_pen("text", 0.2))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for _, edges in self._metal:
@@ -240,17 +243,17 @@ class PartPane(PathPane):
         if tool.is_assumed:
             pen.setDashPattern([4, 3])
         painter.setPen(pen)
-        body = look.color("off")
+        body = look.get_color("off")
         body.setAlphaF(0.12 if tool.is_assumed else 0.45)
         painter.setBrush(body)
         for shape in tool.body_outlines:
             painter.drawPolygon(_placed(shape, projection))
         painter.setPen(look.make_pen("panel", 0.1))
-        painter.setBrush(look.color("pause"))
+        painter.setBrush(look.get_color("pause"))
         for shape in tool.cutting_outlines:
             painter.drawPolygon(_placed(shape, projection))
         at = self.map_to_pane(*tool.control_point)
-        u = look.u
+        u = look.unit_px
         painter.setPen(look.make_pen("tip", 0.2))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.drawEllipse(at, 0.5 * u, 0.5 * u)
@@ -261,25 +264,25 @@ class PartPane(PathPane):
 
     def _draw_scales(self, painter: QPainter, projection: Projection) -> None:
         """Draw the Z scale at the bottom and the X scale at the left, in the unit of the program."""
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         painter.setFont(look.make_font(1.4))
         unit = 1.0 if self.is_metric else 25.4
         step = next(
-            (s for s in _TICK_STEPS_MM if s * unit * projection.scale >= _MIN_TICK_DISTANCE * u),
+            (s for s in _TICK_STEPS_MM if s * unit * projection.pixels_per_mm >= _MIN_TICK_DISTANCE * u),
             _TICK_STEPS_MM[-1],
         )
         bottom, width = float(projection.height), float(projection.width)
-        ground, left, low = look.color("panel"), _X_BAND * u, bottom - _Z_BAND * u
+        ground, left, low = look.get_color("panel"), _X_BAND * u, bottom - _Z_BAND * u
         painter.fillRect(QRectF(0, 0, left, bottom), ground)
         painter.fillRect(QRectF(0, low, width, bottom - low), ground)
         painter.setPen(look.make_pen("soft", 0.1))
-        for value in _ticks(projection.z, width / projection.scale, step * unit):
+        for value in _ticks(projection.z, width / projection.pixels_per_mm, step * unit):
             at = float(projection.find_column(value * unit * step))
             if at > left:
                 painter.drawLine(QPointF(at, low), QPointF(at, low + 0.6 * u))
                 words = _format_tick(value * step)
                 draw_text(painter, QRectF(at - 4 * u, low + 0.8 * u, 8 * u, 1.6 * u), ALIGN_CENTER, words)
-        for value in _ticks(projection.x, bottom / projection.scale, step * unit):
+        for value in _ticks(projection.x, bottom / projection.pixels_per_mm, step * unit):
             at = float(projection.find_row(value * unit * step))
             if 3.2 * u < at < low - u:  # The title of the pane is above.
                 painter.drawLine(QPointF(left - 0.6 * u, at), QPointF(left, at))
@@ -344,7 +347,7 @@ class SolidPane(PartPane):
         flat, shown = super().make_full_projection(), self.part_player.result
         if shown is None or (stock := shown.part_instant.stock) is None:
             return flat
-        wide, high = flat.width, max(flat.height - round(3.0 * self.theme.u), 1)
+        wide, high = flat.width, max(flat.height - round(3.0 * self.theme.unit_px), 1)
         room = _VIEW_RADIUS_RATIO * stock.max_radius_mm  # leaves room for the tool
         left = self._left_of(shown, stock)
         scale, centre = fitted_solid(left, stock.front_z_mm, room, wide, high, self._azimuth)
@@ -360,11 +363,13 @@ class SolidPane(PartPane):
         if projection is None or projection.width < 1 or projection.height < 1:
             return
         opening = find_removed_quarter(self._tilt) if self.aspect is PathAspect.OPEN_SOLID else None
-        view = SolidView(self._azimuth, self._tilt, self._roll, projection.scale, projection.z, opening)
+        view = SolidView(
+            self._azimuth, self._tilt, self._roll, projection.pixels_per_mm, projection.z, opening
+        )
         self._view = view
         self.part_player.set_solid_request(SolidRequest(view, projection.width, projection.height))
 
-    def find_tip_position(self, tip: TipPosition) -> Position | None:
+    def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tool, and turn the part to the position of a locked C axis."""
         if tip.c is not None and tip.c != self._roll:
             self._roll = tip.c
@@ -377,9 +382,9 @@ class SolidPane(PartPane):
         """Turn the part by a drag in pixels."""
         self._turn(pixels.x() * _DEGREES_PER_PIXEL, pixels.y() * _DEGREES_PER_PIXEL)
 
-    def pan_view(self, across: int, down: int) -> None:
+    def pan_view(self, steps_right: int, steps_down: int) -> None:
         """Turn the part by a number of steps of the pan keys."""
-        self._turn(-across * _DEGREES_PER_KEY, -down * _DEGREES_PER_KEY)
+        self._turn(-steps_right * _DEGREES_PER_KEY, -steps_down * _DEGREES_PER_KEY)
 
     def pan_to_point(self, z: float, x: float) -> None:
         """Do nothing, because measuring is not possible in this pane."""
@@ -397,7 +402,7 @@ class SolidPane(PartPane):
         if self.projection is not None:
             self.is_adjusted = True
             across = (position - self.area.topLeft()).x()
-            self.set_projection(self.projection.zoom(factor, across, self.projection.height / 2))
+            self.set_projection(self.projection.magnify(factor, across, self.projection.height / 2))
 
     # --- drawing -------------------------------------------------------------------------------------
 
@@ -434,11 +439,11 @@ class SolidPane(PartPane):
         draw_travel_limits(painter, self.theme, [QPointF(x, y) for x, y in corners.tolist()])
 
 
-def find_removed_quarter(tilt: float) -> tuple[float, float]:
+def find_removed_quarter(tilt_deg: float) -> tuple[float, float]:
     """Return the start and end angles of the removed quarter.
 
     The angles are in degrees from the viewer towards the top. One edge is in the turning plane on the
     operator's side, where the tool is. The other edge is perpendicular to the first, on the visible side.
     """
-    first = -tilt if tilt >= 0.0 else -tilt - 90.0
+    first = -tilt_deg if tilt_deg >= 0.0 else -tilt_deg - 90.0
     return first, first + 90.0

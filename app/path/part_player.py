@@ -33,7 +33,7 @@ FAST_FACTOR = 10.0  # times the program speed
 _REST_TIME_S = 0.25  # seconds after which an image that no longer moves is drawn in full resolution
 _IMAGE_INTERVAL_S = 0.08  # seconds between two images during a long calculation
 
-Place = tuple[float, float]
+ZRadius = tuple[float, float]
 
 
 class SolidRequest(NamedTuple):
@@ -51,13 +51,13 @@ class SolidRequest(NamedTuple):
 class ProgramMoment(NamedTuple):
     """Position in the program: the number of finished blocks and the finished fraction of the next block.
 
-    If ``position_after_end`` is set, it replaces ``block_fraction``. It is the offset of the tool from the
+    If ``offset_from_end_mm`` is set, it replaces ``block_fraction``. It is the offset of the tool from the
     end of the block as (Z, radius), in millimeters.
     """
 
     finished_count: int = 0
     block_fraction: float = 0.0
-    position_after_end: Place | None = None
+    offset_from_end_mm: ZRadius | None = None
     solid_request: SolidRequest | None = None
 
 
@@ -105,7 +105,7 @@ class PartPlayer:
         """
         if picture is self._picture:
             return
-        self.worker.cancel()
+        self.worker.cancel_request()
         before, self._picture = self._picture, picture
         self._asked, self.is_playing, self.error_text = (
             None,
@@ -142,7 +142,7 @@ class PartPlayer:
         """Fetch the result of the worker, request the next result, and return whether the view changed."""
         shown, now = self._played, self.clock()
         gone, self._looked = now - self._looked, now
-        self.worker.poll()
+        self.worker.deliver_results()
         if self.is_playing:
             self._play(gone)
         self._request_image()
@@ -180,21 +180,21 @@ class PartPlayer:
 
     # --- following the run ---------------------------------------------------------------------------
 
-    def follow_run(self, block: int, end_offset_mm: Place) -> None:
+    def follow_run(self, block_number: int, end_offset_mm: ZRadius) -> None:
         """Follow the run in a block.
 
         ``end_offset_mm`` is the offset (Z, radius) of the tool from the end of the block, in mm.
         """
         self.is_playing = False
-        self._wanted = ProgramMoment(block - 1, 0.0, end_offset_mm, self._wanted.solid_request)
-        if self._picture is not None and 1 <= block < len(self._picture.ends):
-            self.time_s = float(self._picture.ends[block])
+        self._wanted = ProgramMoment(block_number - 1, 0.0, end_offset_mm, self._wanted.solid_request)
+        if self._picture is not None and 1 <= block_number < len(self._picture.ends):
+            self.time_s = float(self._picture.ends[block_number])
 
     # --- the time line -------------------------------------------------------------------------------
 
-    def seek_time(self, t: float) -> None:
+    def seek_time(self, time_s: float) -> None:
         """Show the part at a program time in seconds, and cancel the pending request."""
-        self.request_time(t)
+        self.request_time(time_s)
         if self._picture is not None:
             self._ask()
 
@@ -202,7 +202,7 @@ class PartPlayer:
         """Return the actions of the timeline keys."""
         return {
             "Play": self.toggle_playback,
-            "Play fast": self.toggle_fast,
+            "Play fast": self.toggle_fast_playback,
             "Step back": partial(self.step_blocks, -1),
             "Step forward": partial(self.step_blocks, 1),
         }
@@ -218,11 +218,11 @@ class PartPlayer:
         if self.is_playing and self.time_s >= self.duration_s:
             self.seek_time(0.0)
 
-    def toggle_fast(self) -> None:
+    def toggle_fast_playback(self) -> None:
         """Switch between program speed and fast playback."""
         self.is_fast = not self.is_fast
 
-    def step_blocks(self, blocks: int) -> None:
+    def step_blocks(self, step_count: int) -> None:
         """Move to the end of the next block with motion (1) or of the previous block with motion (-1)."""
         if self.follows_run or self._picture is None:
             return
@@ -230,24 +230,24 @@ class PartPlayer:
         ends = self._picture.ends
         moves = np.flatnonzero(np.diff(ends) > 0.0) + 1
         there = ends[moves] if len(moves) else np.zeros(1)
-        if blocks > 0:
+        if step_count > 0:
             at = int(np.searchsorted(there, self.time_s + 1e-9, side="right"))
             self.seek_time(float(there[min(at, len(there) - 1)]))
         else:
             at = int(np.searchsorted(there, self.time_s - 1e-9, side="left")) - 1
             self.seek_time(float(there[at]) if at >= 0 else 0.0)
 
-    def seek_line(self, line: int) -> None:
+    def seek_line(self, line_number: int) -> None:
         """Move to the end of the first execution of a source line."""
         if not self.follows_run and self._picture is not None:
             self.is_playing = False
-            self.seek_time(float(self._picture.ends[self._picture.find_block_for_line(line)]))
+            self.seek_time(float(self._picture.ends[self._picture.find_block_for_line(line_number)]))
 
-    def seek_block(self, block: int) -> None:
+    def seek_block(self, block_number: int) -> None:
         """Move to the end of an elementary block."""
         if not self.follows_run and self._picture is not None:
             self.is_playing = False
-            self.request_time(float(self._picture.ends[min(block, len(self._picture.ends) - 1)]))
+            self.request_time(float(self._picture.ends[min(block_number, len(self._picture.ends) - 1)]))
 
     def find_error_times(self) -> npt.NDArray[np.float64]:
         """Return the program times of the errors of the part, in seconds."""
@@ -257,12 +257,12 @@ class PartPlayer:
         errors = [each.block_number for each in self._played.findings if is_serious(each)]
         return np.array([ends[min(n, len(ends) - 1)] for n in errors])
 
-    def request_time(self, t: float) -> None:
+    def request_time(self, time_s: float) -> None:
         """Request the part at a program time in seconds.
 
         The next call of ``update`` starts the work.
         """
-        self.time_s = min(max(t, 0.0), self.duration_s)
+        self.time_s = min(max(time_s, 0.0), self.duration_s)
         if self._picture is None:
             return
         ends = self._picture.ends
@@ -281,7 +281,7 @@ class PartPlayer:
         if picture is None or picture.part is None or self._wanted == self._asked:
             return
         self._asked = self._wanted
-        self.worker.request(partial(self._make_result, picture, self._wanted), self._take, self._failed)
+        self.worker.request_work(partial(self._make_result, picture, self._wanted), self._take, self._failed)
 
     def _make_result(
         self, picture: ProgramPicture, wanted: ProgramMoment, request: WorkRequest
@@ -295,8 +295,8 @@ class PartPlayer:
         if self._findings is None:
             self._findings = history.at(len(picture.ends) - 1, 0.0, watch).findings
         share = wanted.block_fraction
-        if wanted.position_after_end is not None:
-            share = history.executed_fraction(wanted.finished_count + 1, wanted.position_after_end)
+        if wanted.offset_from_end_mm is not None:
+            share = history.find_executed_fraction(wanted.finished_count + 1, wanted.offset_from_end_mm)
         image = None
         instant = self._find_instant(history, wanted.finished_count, share, watch)
         if wanted.solid_request is not None:
@@ -344,9 +344,9 @@ class PartPlayer:
             look.width,
             look.height,
             version=self._draws,
-            hits=spans,
+            hit_z_spans=spans,
             is_preview=look.is_coarse,
-            scene=history.scene_at(instant),
+            scene=history.make_scene_at(instant),
         )
 
     def _history_of(self, picture: ProgramPicture) -> PartHistory:
@@ -366,7 +366,9 @@ class PartPlayer:
         now = self.clock()
         if now - last_report_time[0] > _IMAGE_INTERVAL_S:
             last_report_time[0] = now
-            request.publish(partial(self._take, PlayedInstant(history.current_part(), self._findings or ())))
+            request.publish_result(
+                partial(self._take, PlayedInstant(history.make_current_part(), self._findings or ()))
+            )
 
     def _take(self, shown: PlayedInstant) -> None:
         self._played = shown
@@ -389,7 +391,7 @@ class PartPlayers(list[PartPlayer]):
 
 def make_part_player(desk: Desk) -> PartPlayer:
     """Return a new part player that closes together with ``desk``."""
-    players = desk.page_registry.find(PartPlayers)
+    players = desk.page_registry.find_model(PartPlayers)
     if players is None:
         players = PartPlayers()
         desk.page_registry.attach_model(players)

@@ -36,15 +36,16 @@ PART_ASPECTS = SPATIAL_ASPECTS | {PathAspect.SECTION}
 class TipPosition(NamedTuple):
     """Active block (0 for none), and the position of the tool tip relative to the part in millimeters.
 
-    ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``h`` is the height
-    of the center line of a mill. ``stop_position`` is the position at which an interrupted block stopped.
+    ``c`` is the programmed C position in degrees while C is locked, and otherwise None. ``center_height_mm``
+    is the height of the center line of a mill. ``stop_position`` is the position at which an interrupted
+    block stopped.
     """
 
-    block: int = 0
+    active_block: int = 0
     z: float = 0.0
     x: float = 0.0
     c: float | None = None
-    h: float = 0.0
+    center_height_mm: float = 0.0
     stop_position: tuple[float, float] | None = (
         None  # Z and X where an interrupted block stopped, if different
     )
@@ -69,7 +70,9 @@ def find_tip_position(snapshot: Snapshot, job: Job | None = None) -> TipPosition
     tool = job.setup.tools.get(found.tool)
     if tool is None:
         return tip
-    return tip._replace(block=found.block, stop_position=(found.where[1] - tool.z, found.where[0] - tool.x))
+    return tip._replace(
+        active_block=found.block, stop_position=(found.where[1] - tool.z, found.where[0] - tool.x)
+    )
 
 
 def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyline | None:
@@ -79,7 +82,7 @@ def select_polyline(picture: ProgramPicture | None, aspect: PathAspect) -> Polyl
     return picture.face if aspect is PathAspect.FACE else picture.side
 
 
-def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectView]:
+def find_views(picture: ProgramPicture, *, has_part: bool = False) -> list[AspectView]:
     """Return the views through which the view key steps.
 
     The first views show the path together with a face or side that is machined with the C axis. The face
@@ -92,7 +95,7 @@ def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectVie
     ]
     both = [(PathAspect.PATH, aspect) for aspect in more]
     views = [*both, *((aspect,) for aspect in more), (PathAspect.PATH,)]
-    if not part:
+    if not has_part:
         return views
     if picture.part is None:
         return [*views, (PathAspect.SECTION,)] if picture.no_part else views  # The section shows the reason.
@@ -103,14 +106,14 @@ def find_views(picture: ProgramPicture, *, part: bool = False) -> list[AspectVie
 
 
 @dataclass(frozen=True, slots=True)
-class DrawnLeg:
+class ApproachLeg:
     """One straight move of an approach to (z, x) in the frame of the part, in mm, with X as a radius.
 
     The position is the machine position minus the tool offset. ``label`` is the number and the axis, for
-    example ``1 X``. The first leg is the current tool position, and its ``rapid`` has no meaning.
+    example ``1 X``. The first leg is the current tool position, and its ``is_rapid`` has no meaning.
     """
 
     z: float
     x: float
-    rapid: bool = True
+    is_rapid: bool = True
     label: str = ""

@@ -44,7 +44,7 @@ BAND_OPACITY = 0.45  # opacity of the band over a marked line
 MAX_SMOOTH_CHORDS = 3_000
 FRAME_BUDGET_S = 0.006  # seconds of drawing per frame
 SMOOTH_SLICE, SLICE = 150, 20_000  # number of points per drawing step
-PIXELS_PER_STEP = 120_000  # pixels per step; one pixel takes 15 ns, and most are set twice
+PIXELS_PER_SLICE = 120_000  # pixels per step; one pixel takes 15 ns, and most are set twice
 # Address, bytes (two doubles per point), writable. The stub of VoidPtr declares only the address.
 _map_memory = cast("Callable[[object, int, bool], bytes]", shiboken6.VoidPtr)
 
@@ -92,8 +92,8 @@ def _round(pen: QPen, style: Qt.PenStyle) -> QPen:
 class PathLayers:
     """Images of one path in one projection.
 
-    ``polyline_before`` is the path before a change, which is drawn below the path. ``ground`` draws the
-    background of the path.
+    ``polyline_before`` is the path before a change, which is drawn below the path. ``draw_background`` draws
+    the background of the path.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class PathLayers:
         polyline: Polyline,
         projection: Projection,
         polyline_before: Polyline | None = None,
-        ground: Callable[[QPainter], None] | None = None,
+        draw_background: Callable[[QPainter], None] | None = None,
     ) -> None:
         self.polyline = polyline
         self.projection = projection
@@ -116,10 +116,10 @@ class PathLayers:
         self._slice = SMOOTH_SLICE if self._smooth else SLICE
         size = QSize(max(1, projection.width), max(1, projection.height))
         self._base = QImage(size, QImage.Format.Format_RGB32)
-        self._base.fill(theme.color("panel"))
-        if ground is not None:
+        self._base.fill(theme.get_color("panel"))
+        if draw_background is not None:
             with QPainter(self._base) as painter:
-                ground(painter)
+                draw_background(painter)
         self.image = self._base
         self._stage = 0  # index of the polyline that is being drawn into the base image
         self._drawn = 0  # number of its points that are drawn
@@ -131,12 +131,12 @@ class PathLayers:
         """Return whether everything that was requested is drawn."""
         return self._stage >= len(self._under) and self._done >= self._wanted
 
-    def request_blocks(self, blocks: int) -> None:
-        """Request that the first ``blocks`` blocks are drawn as finished.
+    def request_blocks(self, block_count: int) -> None:
+        """Request that the first ``block_count`` blocks are drawn as finished.
 
         If this is fewer than before, drawing starts again from the image of the whole path.
         """
-        wanted = self.polyline.count_finished_points(blocks)
+        wanted = self.polyline.count_finished_points(block_count)
         if wanted < self._wanted:
             self._done = 0
             self.image = self._base
@@ -178,32 +178,34 @@ class PathLayers:
         if self._smooth or end - begin < 2:
             return end
         z, x, seen = polyline.z[begin:end], polyline.x[begin:end], self.projection
-        far = seen.scale * np.maximum(np.abs(np.diff(z)), np.abs(np.diff(x)))
+        far = seen.pixels_per_mm * np.maximum(np.abs(np.diff(z)), np.abs(np.diff(x)))
         pixels = np.cumsum(1.0 + np.minimum(far, max(seen.width, seen.height)))
-        return begin + 1 + int(np.searchsorted(pixels, PIXELS_PER_STEP))
+        return begin + 1 + int(np.searchsorted(pixels, PIXELS_PER_SLICE))
 
     def _draw(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
         (self._draw_smooth if self._smooth else self._draw_pixels)(image, polyline, part, ink)
 
     def _draw_smooth(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
         pens = ink.make_pens(self._look)
-        found = [run for run in project_runs(polyline, self.projection, *part) if run.stroke in pens]
+        found = [run for run in project_runs(polyline, self.projection, *part) if run.stroke_kind in pens]
         with QPainter(image) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             if ink is not LineStyle.FINISHED:
                 painter.setPen(self._look.make_pen("ghost", 0.12))
                 for run in found:
-                    if run.stroke == Stroke.TURN:
-                        draw_run(painter, StrokeRun(run.stroke, run.columns, self._mirror_sum - run.rows))
+                    if run.stroke_kind == Stroke.TURN:
+                        draw_run(
+                            painter, StrokeRun(run.stroke_kind, run.columns, self._mirror_sum - run.rows)
+                        )
             for run in found:
-                painter.setPen(pens[run.stroke])
+                painter.setPen(pens[run.stroke_kind])
                 draw_run(painter, run)
 
     def _draw_pixels(self, image: QImage, polyline: Polyline, part: tuple[int, int], ink: LineStyle) -> None:
         shape = project_points(polyline, self.projection, *part)
         if ink is not LineStyle.FINISHED:
             far_side = shape._replace(rows=self._mirror_sum - shape.rows)
-            draw_pixels(image, self.projection, far_side, {Stroke.TURN: self._look.color("ghost")})
+            draw_pixels(image, self.projection, far_side, {Stroke.TURN: self._look.get_color("ghost")})
         draw_pixels(image, self.projection, shape, ink.make_colors(self._look))
 
     @property
@@ -245,10 +247,10 @@ def draw_pixels(image: QImage, projection: Projection, shape: Shape, colors: dic
     ends = ChordEnds(columns[:-1][wanted], rows[:-1][wanted], columns[1:][wanted], rows[1:][wanted])
     cut, inside = clip_chords(ends, projection.width - 1, projection.height - 1)
     column, row, which = rasterize_chords(cut)
-    map_pixels(image)[row, column] = table[strokes[inside]][which]
+    view_pixels(image)[row, column] = table[strokes[inside]][which]
 
 
-def map_pixels(image: QImage) -> npt.NDArray[np.uint32]:
+def view_pixels(image: QImage) -> npt.NDArray[np.uint32]:
     """Return the memory of the image as an array (rows, columns) with 32 bits per pixel.
 
     The array is valid only as long as the image exists.

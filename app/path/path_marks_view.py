@@ -14,7 +14,7 @@ from PySide6.QtGui import QFontMetricsF, QPainter, QPen, QPolygonF
 from app.desk.status import formats
 from app.desk.translation import tr
 from app.path.measuring import LargestDistance
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect
 from app.path.path_layers_view import LineStyle
 from app.path.path_pane_view import PathPane
 from app.path.path_projection import ChordEnds, Projection, clip_chords, find_scale_length
@@ -43,24 +43,24 @@ class ViewButton(NamedTuple):
 LegendItem = tuple[str, QPen]
 
 
-def count_button_columns(theme: ScreenTheme, area: QRectF, count: int) -> int:
+def count_button_columns(theme: ScreenTheme, area: QRectF, button_count: int) -> int:
     """Return the number of button columns.
 
     Several columns are needed if the area is low.
     """
     _, high, gap = _button(theme)
-    rows = max(1, int((area.height() - 3.2 * theme.u + gap) / (high + gap)))
-    return math.ceil(count / rows)
+    rows = max(1, int((area.height() - 3.2 * theme.unit_px + gap) / (high + gap)))
+    return math.ceil(button_count / rows)
 
 
-def find_columns_width(columns: int, theme: ScreenTheme) -> float:
+def find_columns_width(column_count: int, theme: ScreenTheme) -> float:
     """Return the width in pixels of the button columns on the right of a view."""
     wide, _, gap = _button(theme)
-    return columns * (wide + gap)
+    return column_count * (wide + gap)
 
 
 def _button(look: ScreenTheme) -> tuple[float, float, float]:
-    wide, high, gap = (k * look.u for k in BUTTON_SIZE)
+    wide, high, gap = (k * look.unit_px for k in BUTTON_SIZE)
     return max(wide, FINGERTIP_PX), max(high, FINGERTIP_PX), gap
 
 
@@ -75,15 +75,15 @@ def draw_buttons(
     wide, high, gap = _button(theme)
     columns = count_button_columns(theme, area, len(buttons))
     rows = math.ceil(len(buttons) / columns)
-    left = area.right() - find_columns_width(columns, theme) - 0.6 * theme.u
+    left = area.right() - find_columns_width(columns, theme) - 0.6 * theme.unit_px
     for number, (sign, press, lit) in enumerate(buttons):
         column, row = divmod(number, rows)
-        x, y = left + column * (wide + gap), area.y() + 0.8 * theme.u + row * (high + gap)
+        x, y = left + column * (wide + gap), area.y() + 0.8 * theme.unit_px + row * (high + gap)
         box = QRectF(x, y, wide, high)
-        painter.fillRect(box, theme.color("lit" if lit else "key"))
-        painter.setPen(theme.color("on_lit" if lit else "text"))
+        painter.fillRect(box, theme.get_color("lit" if lit else "key"))
+        painter.setPen(theme.get_color("on_lit" if lit else "text"))
         painter.setFont(
-            theme.fit_font(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * theme.u, is_bold=True)
+            theme.fit_font(sign, 1.6 if len(sign) > 1 else 2.8, wide - 0.4 * theme.unit_px, is_bold=True)
         )
         draw_text(painter, box, ALIGN_CENTER, sign)
         add_target(box, press)
@@ -103,29 +103,31 @@ def make_comparison_legend(theme: ScreenTheme) -> list[LegendItem]:
     ]
 
 
-def draw_foot(
+def draw_footer(
     painter: QPainter,
-    look: ScreenTheme,
-    foot: QRectF,
+    theme: ScreenTheme,
+    footer_area: QRectF,
     panes: Sequence[tuple[QRectF, Projection | None]],
     legend: Sequence[LegendItem],
-    metric: bool,
+    is_metric: bool,
 ) -> None:
     """Draw the row below the panes, with the legend, and the scale of each pane below its right edge."""
-    painter.fillRect(foot, look.color("panel"))
-    painter.setFont(look.make_font(1.5))
+    painter.fillRect(footer_area, theme.get_color("panel"))
+    painter.setFont(theme.make_font(1.5))
     for room, projection in panes:
-        below = QRectF(room.x(), foot.y(), room.width(), foot.height())
+        below = QRectF(room.x(), footer_area.y(), room.width(), footer_area.height())
         left = (
-            _draw_scale(painter, look, below, projection, metric) if projection is not None else below.right()
+            _draw_scale(painter, theme, below, projection, is_metric)
+            if projection is not None
+            else below.right()
         )
-        if room.x() <= foot.x():
-            _draw_legend(painter, look, QRectF(below.topLeft(), QPointF(left, below.bottom())), legend)
+        if room.x() <= footer_area.x():
+            _draw_legend(painter, theme, QRectF(below.topLeft(), QPointF(left, below.bottom())), legend)
 
 
 def _draw_legend(painter: QPainter, look: ScreenTheme, box: QRectF, entries: Sequence[LegendItem]) -> None:
     """Draw as many entries of the legend as fit, starting at the left."""
-    u, x = look.u, box.x() + 1.2 * look.u
+    u, x = look.unit_px, box.x() + 1.2 * look.unit_px
     metrics = QFontMetricsF(painter.font())
     for word, pen in entries:
         wide = metrics.horizontalAdvance(word) + 0.4 * u
@@ -133,7 +135,7 @@ def _draw_legend(painter: QPainter, look: ScreenTheme, box: QRectF, entries: Seq
             return
         painter.setPen(pen)
         painter.drawLine(QPointF(x, box.center().y()), QPointF(x + 3 * u, box.center().y()))
-        painter.setPen(look.color("soft"))
+        painter.setPen(look.get_color("soft"))
         draw_text(painter, QRectF(x + 3.6 * u, box.y(), wide, box.height()), ALIGN_LEFT, word)
         x += 5.0 * u + wide
 
@@ -145,9 +147,9 @@ def _draw_scale(
 
     Return the left edge of the bar and its text.
     """
-    u = look.u
-    mm, text = find_scale_length(min(14 * u, 0.2 * box.width()) / projection.scale, metric)
-    wide = mm * projection.scale
+    u = look.unit_px
+    mm, text = find_scale_length(min(14 * u, 0.2 * box.width()) / projection.pixels_per_mm, metric)
+    wide = mm * projection.pixels_per_mm
     right, y = box.right() - 1.4 * u, box.center().y() + 0.4 * u
     painter.setPen(look.make_pen("soft", 0.16))
     for a, b in (((-wide, 0.0), (0.0, 0.0)), ((-wide, -0.7), (-wide, 0.0)), ((0.0, -0.7), (0.0, 0.0))):
@@ -166,53 +168,55 @@ def draw_border(painter: QPainter, theme: ScreenTheme, area: QRectF) -> None:
 
 def draw_title(painter: QPainter, theme: ScreenTheme, area: QRectF, text: str, color: str = "soft") -> None:
     """Draw the title or status of a pane in its upper left corner."""
-    u = theme.u
+    u = theme.unit_px
     painter.setFont(theme.fit_font(text, 1.6, area.width() - 2 * u, is_bold=True))
     box = QRectF(area.x() + 1.2 * u, area.y() + 0.9 * u, area.width() - 2 * u, 2 * u)
     long = min(QFontMetricsF(painter.font()).horizontalAdvance(tr(text)), box.width())
-    painter.fillRect(QRectF(box.x() - 0.4 * u, box.y(), long + 0.8 * u, box.height()), theme.color("ground"))
-    painter.setPen(theme.color(color))
+    painter.fillRect(
+        QRectF(box.x() - 0.4 * u, box.y(), long + 0.8 * u, box.height()), theme.get_color("ground")
+    )
+    painter.setPen(theme.get_color(color))
     draw_text(painter, box, ALIGN_LEFT, text)
 
 
 def draw_no_path(painter: QPainter, theme: ScreenTheme, area: QRectF, reason: str) -> None:
     """Draw the reason why no path is shown."""
-    painter.setPen(theme.color("soft"))
+    painter.setPen(theme.get_color("soft"))
     painter.setFont(theme.fit_font(reason, 2.0, area.width()))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     draw_text(painter, area, ALIGN_CENTER, reason)
 
 
-def draw_approach(painter: QPainter, theme: ScreenTheme, pane: PathPane, legs: Sequence[DrawnLeg]) -> None:
+def draw_approach(painter: QPainter, theme: ScreenTheme, pane: PathPane, legs: Sequence[ApproachLeg]) -> None:
     """Draw the visible parts of all legs, starting at the current tool position.
 
     The origin of the painter is the corner of the pane.
     """
-    u = theme.u
+    u = theme.unit_px
     spots = [pane.map_to_pane(leg.z, leg.x) for leg in legs]
     size = pane.area.size()
     labels = []
     painter.setBrush(Qt.BrushStyle.NoBrush)
     for leg, (start, end) in zip(legs[1:], pairwise(spots), strict=True):
-        seen = visible_part(start, end, size)
+        seen = clip_line(start, end, size)
         if seen is None:
             continue
         pen = theme.make_pen("lit", 0.34)
-        pen.setStyle(Qt.PenStyle.DashLine if leg.rapid else Qt.PenStyle.SolidLine)
+        pen.setStyle(Qt.PenStyle.DashLine if leg.is_rapid else Qt.PenStyle.SolidLine)
         painter.setPen(pen)
         painter.drawLine(*seen)
         _draw_arrow(painter, theme, *seen)
         labels.append(((seen[0] + seen[1]) / 2, leg.label))
     painter.setPen(theme.make_pen("lit", 0.34))
-    painter.setBrush(theme.color("panel"))
+    painter.setBrush(theme.get_color("panel"))
     for spot in spots[:1]:
         painter.drawEllipse(spot, 0.8 * u, 0.8 * u)
     room = QRectF(QPointF(), size)
-    for box, text in place_leg_labels(theme, [at for at, _ in labels], [label for _, label in labels]):
-        _label(painter, theme, inside_room(box, room), text)
+    for box, text in make_leg_labels(theme, [at for at, _ in labels], [label for _, label in labels]):
+        _label(painter, theme, move_box_inside(box, room), text)
 
 
-def visible_part(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, QPointF] | None:
+def clip_line(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, QPointF] | None:
     """Return the part of a line that is inside a pane of this size, or None if no part is visible."""
     ends = ChordEnds(*(np.array([value]) for value in (start.x(), start.y(), end.x(), end.y())))
     cut, inside = clip_chords(ends, round(size.width()), round(size.height()))
@@ -222,16 +226,16 @@ def visible_part(start: QPointF, end: QPointF, size: QSizeF) -> tuple[QPointF, Q
     return QPointF(c0, r0), QPointF(c1, r1)
 
 
-def inside_room(box: QRectF, room: QRectF) -> QRectF:
+def move_box_inside(box: QRectF, area: QRectF) -> QRectF:
     """Return the box, moved only as far as necessary to be inside the room."""
-    across = max(room.x() - box.x(), 0.0) + min(room.right() - box.right(), 0.0)
-    down = max(room.y() - box.y(), 0.0) + min(room.bottom() - box.bottom(), 0.0)
+    across = max(area.x() - box.x(), 0.0) + min(area.right() - box.right(), 0.0)
+    down = max(area.y() - box.y(), 0.0) + min(area.bottom() - box.bottom(), 0.0)
     return box.translated(across, down)
 
 
 def _draw_arrow(painter: QPainter, theme: ScreenTheme, start: QPointF, end: QPointF) -> None:
     """Draw an arrowhead at the end of a leg if the leg is long enough."""
-    leg_vector, u = end - start, theme.u
+    leg_vector, u = end - start, theme.unit_px
     length = math.hypot(leg_vector.x(), leg_vector.y())
     if length < 2.5 * u:
         return
@@ -240,12 +244,12 @@ def _draw_arrow(painter: QPainter, theme: ScreenTheme, start: QPointF, end: QPoi
     back = end - along * 1.6 * u
     painter.save()
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(theme.color("lit"))
+    painter.setBrush(theme.get_color("lit"))
     painter.drawPolygon(QPolygonF([end, back + across * 0.7 * u, back - across * 0.7 * u]))
     painter.restore()
 
 
-def place_leg_labels(
+def make_leg_labels(
     theme: ScreenTheme, middles: Sequence[QPointF], labels: Sequence[str]
 ) -> list[tuple[QRectF, str]]:
     """Return the boxes and texts of the labels at the middle of each leg.
@@ -268,27 +272,27 @@ def place_leg_labels(
 
 
 def _label_box(look: ScreenTheme, at: QPointF, text: str) -> QRectF:
-    wide = QFontMetricsF(look.make_font(1.6, is_bold=True)).horizontalAdvance(text) + 1.2 * look.u
-    return QRectF(at.x() - wide / 2, at.y() - 1.2 * look.u, wide, 2.4 * look.u)
+    wide = QFontMetricsF(look.make_font(1.6, is_bold=True)).horizontalAdvance(text) + 1.2 * look.unit_px
+    return QRectF(at.x() - wide / 2, at.y() - 1.2 * look.unit_px, wide, 2.4 * look.unit_px)
 
 
 def _label(painter: QPainter, look: ScreenTheme, box: QRectF, text: str) -> None:
     painter.setFont(look.make_font(1.6, is_bold=True))
-    painter.fillRect(box, look.color("lit"))
-    painter.setPen(look.color("on_lit"))
+    painter.fillRect(box, look.get_color("lit"))
+    painter.setPen(look.get_color("on_lit"))
     draw_text(painter, box, ALIGN_CENTER, text)
 
 
-def describe_difference(difference: LargestDistance, in_mm: bool) -> str:
+def describe_difference(difference: LargestDistance, is_metric: bool) -> str:
     """Return the text for the largest difference between two pictures."""
-    if not difference.distance:
+    if not difference.distance_mm:
         return tr("NO CUTTING MOVE HAS CHANGED")
-    length = formats.format_length(difference.distance, in_mm)
+    length = formats.format_length(difference.distance_mm, is_metric)
     return tr(
         Message(
             "LARGEST DIFFERENCE {length} {unit}  ·  CIRCLED",
             length=length,
-            unit="mm" if in_mm else "in",
+            unit="mm" if is_metric else "in",
         )
     )
 
@@ -322,17 +326,17 @@ def make_part_title(pane: PathPane) -> str:
     )
 
 
-def make_pane_title(pane: PathPane, in_mm: bool) -> str:
+def make_pane_title(pane: PathPane, is_metric: bool) -> str:
     """Return the title of a pane, which names the visible side of the part."""
     if pane.aspect in PART_ASPECTS:
         return make_part_title(pane)
     if pane.aspect is PathAspect.FACE:
         return tr("FACE  ·  VIEW FROM THE TAILSTOCK")
-    diameter = formats.format_length(pane.polyline.mm_per_degree * 360.0 / math.pi, in_mm)
+    diameter = formats.format_length(pane.polyline.mm_per_degree * 360.0 / math.pi, is_metric)
     return tr(Message("SIDE  ·  UNROLLED AT Ø {diameter}", diameter=diameter))
 
 
-QUARTER_ANGLES = (0, 90, 180, 270)
+QUARTER_ANGLES_DEG = (0, 90, 180, 270)
 MIN_C_LINE_DISTANCE = 9.0  # units: minimum distance between the C lines of the side view
 
 
@@ -371,16 +375,16 @@ def _cross(painter: QPainter, look: ScreenTheme, projection: Projection) -> None
 
 def _draw_c_circle(painter: QPainter, theme: ScreenTheme, projection: Projection, polyline: Polyline) -> None:
     """Draw the circle around all cuts, with the tool positions at C 0, 90, 180 and 270 degrees."""
-    u = theme.u
+    u = theme.unit_px
     reach = polyline.bounds[1]
     middle = QPointF(float(projection.find_column(0.0)), float(projection.find_row(0.0)))
-    radius = reach * projection.scale + 0.9 * u
+    radius = reach * projection.pixels_per_mm + 0.9 * u
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(_pen(theme, [3, 4]))
     painter.drawEllipse(middle, radius, radius)
     painter.setFont(theme.make_font(1.5))
-    painter.setPen(theme.color("soft"))
-    for degrees in QUARTER_ANGLES:
+    painter.setPen(theme.get_color("soft"))
+    for degrees in QUARTER_ANGLES_DEG:
         at = math.radians(degrees)
         place = middle + QPointF(math.cos(at), math.sin(at)) * (radius + 1.7 * u)
         draw_text(
@@ -393,14 +397,18 @@ def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection,
 
     Full revolutions are drawn like center lines.
     """
-    u, scale = theme.u, polyline.mm_per_degree
+    u, scale = theme.unit_px, polyline.mm_per_degree
     step = next(
-        (s for s in (15, 30, 45, 90, 180, 360) if s * scale * projection.scale >= MIN_C_LINE_DISTANCE * u),
+        (
+            s
+            for s in (15, 30, 45, 90, 180, 360)
+            if s * scale * projection.pixels_per_mm >= MIN_C_LINE_DISTANCE * u
+        ),
         360,
     )
     top, bottom = (
-        projection.x - projection.height / 2 / projection.scale,
-        projection.x + projection.height / 2 / projection.scale,
+        projection.x - projection.height / 2 / projection.pixels_per_mm,
+        projection.x + projection.height / 2 / projection.pixels_per_mm,
     )
     painter.setFont(theme.make_font(1.5))
     for number in range(math.ceil(-bottom / scale / step), math.floor(-top / scale / step) + 1):
@@ -408,7 +416,7 @@ def _draw_c_lines(painter: QPainter, theme: ScreenTheme, projection: Projection,
         row = round(float(projection.find_row(-degrees * scale))) + 0.5
         painter.setPen(_pen(theme, [14, 4, 2, 4] if degrees % 360 == 0 else [2, 6]))
         painter.drawLine(QPointF(0, row), QPointF(projection.width, row))
-        painter.setPen(theme.color("soft"))
+        painter.setPen(theme.get_color("soft"))
         text = f"C{formats.format_fixed(degrees, 0)}"
         draw_text(painter, QRectF(0.8 * u, row - 2.0 * u, 8 * u, 2 * u), ALIGN_LEFT, text)
     column = round(float(projection.find_column(0.0))) + 0.5

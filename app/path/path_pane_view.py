@@ -21,7 +21,7 @@ from app.path.path_aspects import (
 from app.path.path_layers_view import LineStyle, PathLayers, draw_run, make_polygon
 from app.path.path_picture import ProgramPicture, map_to_face
 from app.path.path_projection import Projection, fit_bounds, fit_mirrored, project_progress, project_runs
-from app.path.path_stock_view import Blank, blank_of, draw_blank
+from app.path.path_stock_view import Blank, draw_blank, find_blank
 from app.path.polyline import Bounds, Polyline
 from app.screen.screen_theme import ScreenTheme
 
@@ -29,10 +29,10 @@ if TYPE_CHECKING:
     from app.path.part_player import PartPlayer
 
 ZOOM_STEP = 1.25
-PAN_STEP_SHARE = 0.1  # ratio to the width of the pane
+PAN_STEP_FRACTION = 0.1  # ratio to the width of the pane
 FIT_MARGIN = 1.4  # units around the fitted path
 
-Position = tuple[float, float]
+PlanePosition = tuple[float, float]
 PICK_DISTANCE = 1.6  # units: maximum distance from a line at which a touch selects the line
 RING_MARGIN = 6.0  # units around a face: room for the circle of the part and its angles
 MAX_MARKED_POINTS = 20_000  # maximum number of points of a line that are drawn thick
@@ -53,7 +53,7 @@ class PathPane:
         self.theme, self.aspect = theme, aspect
         self.area = QRectF()
         self.extra_points: tuple[
-            Position, ...
+            PlanePosition, ...
         ] = ()  # points that must be visible together with the whole path
         self.is_adjusted = False  # set when the user zooms or pans
         self.projection: Projection | None = None
@@ -62,8 +62,8 @@ class PathPane:
         self.largest_distance = find_largest_distance(before, polyline) if before is not None else None
         self._layers: PathLayers | None = None
         self._block = 0
-        self._place: Position | None = None  # position of the tip; None until the first position is set
-        self._stood: Position | None = None
+        self._place: PlanePosition | None = None  # position of the tip; None until the first position is set
+        self._stood: PlanePosition | None = None
         self.marked_point_ranges: list[tuple[int, int]] = []  # ranges of points
 
     # --- projection and path -------------------------------------------------------------------------
@@ -85,7 +85,7 @@ class PathPane:
         """Return the stock and clamping that are drawn below the path, or None if there are none."""
         picture = self.polyline
         wanted = self.aspect is PathAspect.PATH and self.polyline_before is None
-        return blank_of(picture) if wanted and isinstance(picture, ProgramPicture) else None
+        return find_blank(picture) if wanted and isinstance(picture, ProgramPicture) else None
 
     def make_full_projection(self) -> Projection:
         """Return the projection that shows the part, all cuts near it, and the path before a change.
@@ -95,17 +95,17 @@ class PathPane:
         fit = fit_bounds if self.aspect is PathAspect.SIDE else fit_mirrored
         bounds, blank = self.polyline.bounds, self._blank
         if blank is not None:
-            bounds = blank.cuts_seen(bounds)
+            bounds = blank.find_visible_area(bounds)
         if self.polyline_before is not None:
             bounds = _unite_bounds(bounds, self.polyline_before.bounds)
         for z, x in self.extra_points:
             bounds = _unite_bounds(bounds, (z, z, x, x))
-        margin = (RING_MARGIN if self.aspect is PathAspect.FACE else FIT_MARGIN) * self.theme.u
+        margin = (RING_MARGIN if self.aspect is PathAspect.FACE else FIT_MARGIN) * self.theme.unit_px
         whole = fit(bounds, int(self.area.width()), int(self.area.height()), margin)
-        if blank is None or blank.chuck_from is None:
+        if blank is None or blank.chuck_left_z_mm is None:
             return whole
-        free = self.area.width() - 2 * margin - (bounds[1] - bounds[0]) * whole.scale
-        wanted = max(0.0, bounds[0] - blank.chuck_from) * whole.scale
+        free = self.area.width() - 2 * margin - (bounds[1] - bounds[0]) * whole.pixels_per_mm
+        wanted = max(0.0, bounds[0] - blank.chuck_left_z_mm) * whole.pixels_per_mm
         return whole.shift(max(0.0, min(free, wanted)) / 2, 0.0)
 
     def redraw(self) -> None:
@@ -119,7 +119,7 @@ class PathPane:
         blank = self._blank
         ground = None
         if blank is not None:
-            ground = partial(draw_blank, look=self.theme, blank=blank, projection=projection)
+            ground = partial(draw_blank, theme=self.theme, blank=blank, projection=projection)
         self._layers = PathLayers(self.theme, self.polyline, projection, self.polyline_before, ground)
         self._layers.request_blocks(self._block - 1)
         self._layers.draw_slice()
@@ -127,7 +127,9 @@ class PathPane:
     def find_block(self, position: QPointF) -> int:
         """Return the number of the block drawn at or near a widget position, or 0 if there is no block."""
         z, x = self.map_to_plane(position)
-        point = find_nearest_chord(self.polyline, z, x, PICK_DISTANCE * self.theme.u * self.pixel_size_mm)
+        point = find_nearest_chord(
+            self.polyline, z, x, PICK_DISTANCE * self.theme.unit_px * self.pixel_size_mm
+        )
         return 0 if point is None else self.polyline.find_block(point)
 
     # --- navigation ----------------------------------------------------------------------------------
@@ -143,7 +145,7 @@ class PathPane:
         self.is_adjusted = False
         self.set_projection(self.make_full_projection())
 
-    def include_points(self, points: Sequence[Position]) -> None:
+    def set_extra_points(self, points: Sequence[PlanePosition]) -> None:
         """Set the points that must be visible together with the whole path."""
         if tuple(points) != self.extra_points:
             self.extra_points = tuple(points)
@@ -172,12 +174,12 @@ class PathPane:
         if self.projection is not None:
             self.is_adjusted = True
             position = position - self.area.topLeft()
-            self.set_projection(self.projection.zoom(factor, position.x(), position.y()))
+            self.set_projection(self.projection.magnify(factor, position.x(), position.y()))
 
-    def pan_view(self, across: int, down: int) -> None:
+    def pan_view(self, steps_right: int, steps_down: int) -> None:
         """Move the visible area by a number of steps to the right and down."""
-        step = PAN_STEP_SHARE * self.area.width()
-        self.handle_drag(QPointF(-across * step, -down * step))
+        step = PAN_STEP_FRACTION * self.area.width()
+        self.handle_drag(QPointF(-steps_right * step, -steps_down * step))
 
     def handle_drag(self, pixels: QPointF) -> None:
         """Move the picture by a drag in pixels."""
@@ -190,19 +192,19 @@ class PathPane:
     @property
     def pixel_size_mm(self) -> float:
         """Return the size of one pixel in millimeters."""
-        return 1.0 / self.projection.scale if self.projection is not None else 1.0
+        return 1.0 / self.projection.pixels_per_mm if self.projection is not None else 1.0
 
     def map_to_pane(self, z: float, x: float) -> QPointF:
         """Return the position of a point of the plane in pixels from the corner of the pane."""
         assert self.projection is not None
         return QPointF(float(self.projection.find_column(z)), float(self.projection.find_row(x)))
 
-    def map_to_plane(self, position: QPointF) -> Position:
+    def map_to_plane(self, position: QPointF) -> PlanePosition:
         """Return the coordinates z and x of the plane at a widget position."""
         projection, room = self.projection, self.area
         assert projection is not None
-        z = projection.z + (position.x() - room.x() - projection.width / 2) / projection.scale
-        return z, projection.x + (position.y() - room.y() - projection.height / 2) / projection.scale
+        z = projection.z + (position.x() - room.x() - projection.width / 2) / projection.pixels_per_mm
+        return z, projection.x + (position.y() - room.y() - projection.height / 2) / projection.pixels_per_mm
 
     def find_visible_area(self) -> Bounds:
         """Return the visible area as minimum z, maximum z, minimum x and maximum x."""
@@ -215,7 +217,7 @@ class PathPane:
     def pan_to_point(self, z: float, x: float) -> None:
         """Pan only as far as necessary to make a point visible."""
         at, room = self.map_to_pane(z, x), self.area
-        edge = FIT_MARGIN * self.theme.u
+        edge = FIT_MARGIN * self.theme.unit_px
         over = QPointF(
             min(0.0, at.x() - edge) + max(0.0, at.x() - room.width() + edge),
             min(0.0, at.y() - edge) + max(0.0, at.y() - room.height() + edge),
@@ -226,7 +228,10 @@ class PathPane:
     # --- moving parts --------------------------------------------------------------------------------
 
     def set_run_state(
-        self, active_block: int, tip_position: Position | None, stop_position: Position | None = None
+        self,
+        active_block: int,
+        tip_position: PlanePosition | None,
+        stop_position: PlanePosition | None = None,
     ) -> None:
         """Set the active block and the tip position, in the z and x of the polyline.
 
@@ -237,14 +242,14 @@ class PathPane:
         self._block, self._place = active_block, tip_position
         self._stood = stop_position
 
-    def find_block_end(self, block: int) -> Position | None:
+    def find_block_end(self, block_number: int) -> PlanePosition | None:
         """Return the end of a block, or the end of the last earlier block that is drawn in this pane."""
-        at = max(0, self.polyline.count_finished_points(block) - 1)
+        at = max(0, self.polyline.count_finished_points(block_number) - 1)
         return (
             (float(self.polyline.z[at]), float(self.polyline.x[at])) if len(self.polyline.z) else self._place
         )
 
-    def find_tip_position(self, tip: TipPosition) -> Position | None:
+    def find_tip_position(self, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the machine's tool tip in this pane.
 
         In a face, the last position is retained while C turns as the spindle.
@@ -254,16 +259,16 @@ class PathPane:
         if tip.c is None:
             return self._place
         if self.aspect is PathAspect.FACE:
-            return map_to_face(tip.x, tip.c, tip.h)
+            return map_to_face(tip.x, tip.c, tip.center_height_mm)
         return tip.z, -tip.c * self.polyline.mm_per_degree
 
-    def mark(self, blocks: list[tuple[int, int]]) -> None:
+    def mark(self, block_ranges: list[tuple[int, int]]) -> None:
         """Draw blocks as thick lines.
 
         Each range is (first, last), inclusive and counted from 1.
         """
         first = self.polyline.first
-        ranges = [(int(first[a - 1]), int(first[b])) for a, b in blocks]
+        ranges = [(int(first[a - 1]), int(first[b])) for a, b in block_ranges]
         self.marked_point_ranges = [(a, min(b, a + MAX_MARKED_POINTS)) for a, b in ranges if b > a]
 
     def draw_slice(self) -> bool:
@@ -296,13 +301,13 @@ class PathPane:
         if self.polyline_before is None:
             self._draw_active_block(painter, self.projection)
             self._tool_tip(painter)
-        elif self.largest_distance is not None and self.largest_distance.distance:
+        elif self.largest_distance is not None and self.largest_distance.distance_mm:
             painter.setPen(self.theme.make_pen("text", 0.2))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawEllipse(
                 self.map_to_pane(self.largest_distance.z, self.largest_distance.x),
-                1.4 * self.theme.u,
-                1.4 * self.theme.u,
+                1.4 * self.theme.unit_px,
+                1.4 * self.theme.unit_px,
             )
 
     def _draw_marked(self, painter: QPainter, projection: Projection) -> None:
@@ -310,7 +315,7 @@ class PathPane:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for start, end in self.marked_point_ranges:
             for run in project_runs(self.polyline, projection, start, end):
-                painter.setPen(pens[run.stroke])
+                painter.setPen(pens[run.stroke_kind])
                 draw_run(painter, run)
 
     def _draw_active_block(self, painter: QPainter, projection: Projection) -> None:
@@ -321,17 +326,17 @@ class PathPane:
             return  # On a face or a side, the C position of the interruption is not known.
         found = project_progress(self.polyline, projection, self._block, *(self._stood or self._place))
         if found is not None:
-            painter.setPen(LineStyle.FINISHED.make_pens(self.theme)[found.stroke])
+            painter.setPen(LineStyle.FINISHED.make_pens(self.theme)[found.stroke_kind])
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawPolyline(make_polygon(found.columns, found.rows))
 
     def _tool_tip(self, painter: QPainter) -> None:
         if self._place is None:
             return
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         at = self.map_to_pane(*self._place)
         painter.setPen(look.make_pen("panel", 0.2))
-        painter.setBrush(look.color("tip"))
+        painter.setBrush(look.get_color("tip"))
         if self.aspect is not PathAspect.PATH:  # A mill is viewed along its axis.
             painter.drawEllipse(at, 0.7 * u, 0.7 * u)
             return
@@ -372,7 +377,7 @@ class PaneSet:
         """
         self.picture, self.picture_before = picture, before
         with_part = self._with_part and before is None
-        views = find_views(picture, part=with_part) if picture is not None else []
+        views = find_views(picture, has_part=with_part) if picture is not None else []
         if views != self._views:
             self._views, self._view = views, 0
         self._fill()

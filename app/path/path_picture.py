@@ -28,7 +28,7 @@ from app.path.polyline import (
     sample_mill_move,
 )
 from app.working_plane.plane_scene import MillScene, SceneBuilder
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.geometry.virtual_mill import FacePlane, SidePlane
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries, TimedSeries
 
@@ -41,21 +41,21 @@ STILL_TOLERANCE = 1e-9  # mm, degrees
 MIN_UNROLL_RADIUS_MM = 1.0  # mm: radius for unrolling a side whose radius is unknown
 
 
-def map_to_face(x: float, c: float, h: float = 0.0) -> tuple[float, float]:
+def map_to_face(x: float, c: float, center_height_mm: float = 0.0) -> tuple[float, float]:
     """Return the position (right, down) on the face for a tool tip at lathe X (a radius).
 
-    C is turned by ``c`` degrees, and ``h`` is the height of the center line.
+    C is turned by ``c`` degrees, and ``center_height_mm`` is the height of the center line.
     """
-    at = math.atan2(h, -x) - math.radians(c)
-    rho = math.hypot(x, h)
+    at = math.atan2(center_height_mm, -x) - math.radians(c)
+    rho = math.hypot(x, center_height_mm)
     return rho * math.cos(at), -rho * math.sin(at)
 
 
 class FaceBuilder:
     """Builder that collects the moves that are visible on the face."""
 
-    def __init__(self, blocks: int) -> None:
-        self.polyline_builder = PolylineBuilder(blocks)
+    def __init__(self, block_count: int) -> None:
+        self.polyline_builder = PolylineBuilder(block_count)
         self.is_needed = False
 
     def add_mill_move(self, move: PlaneMove, frame: FacePlane, points: list[MillPoint], stroke: int) -> None:
@@ -67,7 +67,7 @@ class FaceBuilder:
         turn = -math.radians(frame.heading_deg)
         cos, sin = math.cos(turn), math.sin(turn)
         x, y, _ = move.start
-        self.polyline_builder.start_at(x * cos + y * sin, x * sin - y * cos)
+        self.polyline_builder.move_to(x * cos + y * sin, x * sin - y * cos)
         for x, y, _ in points:
             self.polyline_builder.add_point(x * cos + y * sin, x * sin - y * cos, stroke)
         if move.center is not None:
@@ -77,7 +77,7 @@ class FaceBuilder:
     def add_move(self, block: Block, x0: float, x1: float, stroke: int) -> None:
         """Add any other move with C locked, from lathe X ``x0`` to lathe X ``x1``."""
         self.is_needed |= abs(block.c - block.c0) > STILL_TOLERANCE and abs(x1 - x0) > STILL_TOLERANCE
-        self.polyline_builder.start_at(*map_to_face(x0, block.c0))
+        self.polyline_builder.move_to(*map_to_face(x0, block.c0))
         pieces = count_turn_chords(block.c - block.c0)
         for k in range(1, pieces + 1):
             s = k / pieces
@@ -99,8 +99,8 @@ class SideBuilder:
     ``x`` is minus C in degrees until the radius is known.
     """
 
-    def __init__(self, blocks: int) -> None:
-        self.polyline_builder = PolylineBuilder(blocks)
+    def __init__(self, block_count: int) -> None:
+        self.polyline_builder = PolylineBuilder(block_count)
         self.is_needed = False
         self._diameter = 0.0  # diameter of the first plane, which the program uses
         self._reach = 0.0
@@ -113,10 +113,10 @@ class SideBuilder:
         ``dz`` converts Z of the program to Z of the part.
         """
         self.is_needed = True
-        self._diameter = self._diameter or frame.diameter
-        degrees = 360.0 / (math.pi * frame.diameter)
+        self._diameter = self._diameter or frame.diameter_mm
+        degrees = 360.0 / (math.pi * frame.diameter_mm)
         x, y, _ = move.start
-        self.polyline_builder.start_at(frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg)
+        self.polyline_builder.move_to(frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg)
         for x, y, _ in points:
             self.polyline_builder.add_point(
                 frame.z_start_mm - x + dz, y * degrees - frame.c_start_deg, stroke
@@ -132,7 +132,7 @@ class SideBuilder:
         )
         if stroke != Stroke.RAPID:
             self._reach = max(self._reach, abs(x))
-        self.polyline_builder.start_at(block.z0 + dz, -block.c0)
+        self.polyline_builder.move_to(block.z0 + dz, -block.c0)
         self.polyline_builder.add_point(block.z + dz, -block.c, stroke)
 
     def build_polyline(self) -> Polyline:
@@ -151,8 +151,8 @@ class SideBuilder:
 class FaceAndSideBuilder:
     """Builder of the face and side views of all moves with C locked."""
 
-    def __init__(self, blocks: int) -> None:
-        self._face, self._side = FaceBuilder(blocks), SideBuilder(blocks)
+    def __init__(self, block_count: int) -> None:
+        self._face, self._side = FaceBuilder(block_count), SideBuilder(block_count)
 
     def add_move(self, block: Block, stroke: int, points: list[MillPoint]) -> None:
         """Add one move with C locked.
@@ -218,50 +218,50 @@ class ProgramPicture(Polyline):
     part: ProgramSteps | None = None  # moves from which the part can be calculated
     no_part: str = ""  # reason why the part is not calculated
 
-    def find_block_for_line(self, line: int) -> int:
+    def find_block_for_line(self, line_number: int) -> int:
         """Return the block that ends the first execution of a source line.
 
         If the line has no blocks, the nearest earlier line with blocks is used. Return 0 if no such line
         exists. Numbers are counted from 1.
         """
-        before = self.line[self.line <= line]
+        before = self.line[self.line <= line_number]
         if not len(before):
             return 0
         there = np.flatnonzero(self.line == before.max())
         apart = np.flatnonzero(np.diff(there) > 1)
         return int(there[apart[0]] if len(apart) else there[-1]) + 1
 
-    def count_blocks_before(self, line: int) -> int:
+    def count_blocks_before(self, line_number: int) -> int:
         """Return the number of blocks that are finished when a source line is first reached."""
-        there = np.flatnonzero(self.line == line)
-        return int(there[0]) if len(there) else self.find_block_for_line(line)
+        there = np.flatnonzero(self.line == line_number)
+        return int(there[0]) if len(there) else self.find_block_for_line(line_number)
 
-    def find_blocks_for_line(self, line: int) -> list[tuple[int, int]]:
+    def find_blocks_for_line(self, line_number: int) -> list[tuple[int, int]]:
         """Return all blocks of a source line as ranges (first, last).
 
         The ranges are inclusive and counted from 1.
         """
-        there = np.flatnonzero(self.line == line) + 1
+        there = np.flatnonzero(self.line == line_number) + 1
         parts = np.split(there, np.flatnonzero(np.diff(there) > 1) + 1) if len(there) else []
         return [(int(part[0]), int(part[-1])) for part in parts]
 
-    def find_source_line(self, block: int) -> int:
+    def find_source_line(self, block_number: int) -> int:
         """Return the source line of a block, or 0 if there is no such block.
 
         Both numbers are counted from 1.
         """
-        return int(self.line[block - 1]) if 1 <= block <= len(self.line) else 0
+        return int(self.line[block_number - 1]) if 1 <= block_number <= len(self.line) else 0
 
-    def time_left(self, block: int, remaining_mm: float) -> float:
+    def time_left(self, block_number: int, remaining_mm: float) -> float:
         """Return the remaining program time in seconds at 100 % override.
 
         ``remaining_mm`` is the distance in mm that remains in block number ``block``.
         """
         total = float(self.ends[-1])
-        if not 1 <= block <= self.blocks:
+        if not 1 <= block_number <= self.blocks:
             return total
-        start, end = float(self.ends[block - 1]), float(self.ends[block])
-        chord = float(self.chord[block - 1])
+        start, end = float(self.ends[block_number - 1]), float(self.ends[block_number])
+        chord = float(self.chord[block_number - 1])
         share = min(1.0, remaining_mm / chord) if chord > SAME_POINT_MM else 1.0
         return total - end + (end - start) * share
 
@@ -279,8 +279,8 @@ class PictureBuilder:
         self._scene = SceneBuilder()
         self._ends, self._chord, self._line = array("d", [0.0]), array("d"), array("q")
 
-    def add_block(self, block: Block, end_time: float) -> None:
-        """Append one block that ends ``end_time`` seconds after the start of the program."""
+    def add_block(self, block: Block, end_time_s: float) -> None:
+        """Append one block that ends ``end_time_s`` seconds after the start of the program."""
         if block.swivel is not None:
             self._scene.add_block(
                 block, block.swivel
@@ -293,27 +293,27 @@ class PictureBuilder:
         self._pencil.end_block()
         if self._turned is not None:
             self._turned.end_block()
-        self._ends.append(end_time)
+        self._ends.append(end_time_s)
         self._line.append(block.line)
         self._metric = block.modal.metric
         self._chord.append(_find_chord(block) if block.moves else 0.0)
 
-    def add_series(self, series: StraightMoveSeries, end_times: FloatArray) -> None:
-        """Append straight moves that end ``end_times`` (m,) seconds after the start of the program."""
+    def add_series(self, series: StraightMoveSeries, end_times_s: FloatArray) -> None:
+        """Append straight moves that end ``end_times_s`` (m,) seconds after the start of the program."""
         like = series.pattern
         if self._turned is not None or like.modal.c_locked:
-            for block, end in zip(series, end_times.tolist(), strict=True):
+            for block, end in zip(series, end_times_s.tolist(), strict=True):
                 self.add_block(block, end)
             return
         dx, dz = like.offset_x - like.modal.drawing_zero_x, like.offset_z - like.modal.drawing_zero_z
-        self._pencil.start_at(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
+        self._pencil.move_to(float(series.z0[0]) + dz, float(series.x0[0]) + dx)
         self._pencil.add_separate_points(series.z + dz, series.x + dx, _stroke(like))
-        self._ends.frombytes(end_times.tobytes())
+        self._ends.frombytes(end_times_s.tobytes())
         self._line.frombytes(series.line.tobytes())
         self._chord.frombytes(np.hypot(series.x - series.x0, series.z - series.z0).tobytes())
         self._metric = like.modal.metric
 
-    def add_timed(self, each: TimedBlocks | TimedSeries) -> int:
+    def add_timed_blocks(self, each: TimedBlocks | TimedSeries) -> int:
         """Append a timed block or series of moves, and return the number of appended blocks."""
         if isinstance(each, TimedSeries):
             self.add_series(each.series, each.end_times_s)
@@ -354,13 +354,15 @@ class PictureBuilder:
     def _move(self, block: Block, stroke: Stroke) -> None:
         dx = block.offset_x - block.modal.drawing_zero_x
         dz = block.offset_z - block.modal.drawing_zero_z
-        self._pencil.start_at(block.z0 + dz, block.x0 + dx)
+        self._pencil.move_to(block.z0 + dz, block.x0 + dx)
         if block.kind is BlockKind.ARC:
             self._arc(block, dx, dz, stroke)
         self._pencil.add_point(block.z + dz, block.x + dx, stroke)
 
     def _arc(self, block: Block, dx: float, dz: float, stroke: Stroke) -> None:
-        start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        start, sweep = compute_arc_sweep(
+            block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
+        )
         radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
         pieces = count_arc_chords(radius, sweep)
         cz, cx = block.cz + dz, block.cx + dx
@@ -384,22 +386,22 @@ class PictureBuilder:
             if number:
                 self._pencil.add_point(*at, stroke)
             else:
-                self._pencil.start_at(*at)
+                self._pencil.move_to(*at)
 
 
 def build_picture(
-    blocks: Iterable[TimedBlocks | TimedSeries], watch: Callable[[int], None]
+    blocks: Iterable[TimedBlocks | TimedSeries], report_progress: Callable[[int], None]
 ) -> ProgramPicture:
     """Return the picture of all blocks.
 
-    ``watch`` is called with the block count at intervals. It may raise an exception to cancel.
+    ``report_progress`` is called with the block count at intervals. It may raise an exception to cancel.
     """
     sketch, count, reported_count = PictureBuilder(), 0, 0
     for each in blocks:
-        count += sketch.add_timed(each)
+        count += sketch.add_timed_blocks(each)
         if count - reported_count >= BLOCKS_PER_CHECK:
             reported_count = count
-            watch(count)
+            report_progress(count)
     return sketch.build_picture()
 
 

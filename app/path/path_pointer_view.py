@@ -55,7 +55,7 @@ class PathPointer:
             self.on_hover(position)
             return
         if not self._dragging:
-            self._dragging = (position - self._down).manhattanLength() > DRAG_THRESHOLD * self.theme.u
+            self._dragging = (position - self._down).manhattanLength() > DRAG_THRESHOLD * self.theme.unit_px
         if self._dragging:
             self.on_drag(self._pane, position - self._last)
         self._last = position

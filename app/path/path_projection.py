@@ -25,36 +25,38 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Visible area, given by its middle (z, x), its size in pixels, and ``scale`` in pixels per mm."""
+    """Visible area, given by its middle (z, x), its size in pixels, and ``pixels_per_mm`` in pixels per
+    mm.
+    """
 
     z: float
     x: float
-    scale: float
+    pixels_per_mm: float
     width: int
     height: int
 
     def find_column(self, z: FloatArray | float) -> FloatArray | float:
         """Return the pixel column of a Z position. Z+ is to the right."""
-        return self.width / 2 + (z - self.z) * self.scale
+        return self.width / 2 + (z - self.z) * self.pixels_per_mm
 
     def find_row(self, x: FloatArray | float) -> FloatArray | float:
         """Return the pixel row of an X radius. X+ is down, towards the operator."""
-        return self.height / 2 + (x - self.x) * self.scale
+        return self.height / 2 + (x - self.x) * self.pixels_per_mm
 
-    def zoom(self, factor: float, column: float, row: float) -> Projection:
+    def magnify(self, factor: float, column: float, row: float) -> Projection:
         """Return a projection magnified by ``factor``.
 
         The point at (column, row) does not move.
         """
-        scale = min(max(self.scale * factor, 0.02), 5000.0)
-        z = self.z + (column - self.width / 2) * (1 / self.scale - 1 / scale)
-        x = self.x + (row - self.height / 2) * (1 / self.scale - 1 / scale)
+        scale = min(max(self.pixels_per_mm * factor, 0.02), 5000.0)
+        z = self.z + (column - self.width / 2) * (1 / self.pixels_per_mm - 1 / scale)
+        x = self.x + (row - self.height / 2) * (1 / self.pixels_per_mm - 1 / scale)
         return Projection(z, x, scale, self.width, self.height)
 
-    def shift(self, columns: float, rows: float) -> Projection:
+    def shift(self, column_count: float, row_count: float) -> Projection:
         """Return the projection shifted by a number of pixels."""
-        z, x = self.z - columns / self.scale, self.x - rows / self.scale
-        return Projection(z, x, self.scale, self.width, self.height)
+        z, x = self.z - column_count / self.pixels_per_mm, self.x - row_count / self.pixels_per_mm
+        return Projection(z, x, self.pixels_per_mm, self.width, self.height)
 
 
 def fit_mirrored(
@@ -90,7 +92,7 @@ class Shape(NamedTuple):
 class StrokeRun:
     """Consecutive points of one stroke, in pixels."""
 
-    stroke: int
+    stroke_kind: int
     columns: FloatArray
     rows: FloatArray
 
@@ -140,15 +142,15 @@ def _find_outside(columns: FloatArray, rows: FloatArray, projection: Projection)
 
 
 def project_progress(
-    polyline: Polyline, projection: Projection, block: int, z: float, x: float
+    polyline: Polyline, projection: Projection, block_number: int, z: float, x: float
 ) -> StrokeRun | None:
     """Return the finished part of a block, or None if nothing is drawn.
 
     The finished part consists of the points of the block up to the tip at (z, x).
     """
-    if not 1 <= block <= polyline.blocks:
+    if not 1 <= block_number <= polyline.blocks:
         return None
-    start, end = int(polyline.first[block - 1]), int(polyline.first[block])
+    start, end = int(polyline.first[block_number - 1]), int(polyline.first[block_number])
     if start < end and polyline.stroke[start] == 0:
         start += 1  # a jump to the tip of another tool
     if start >= end or start == 0:
@@ -169,9 +171,9 @@ def _find_nearest_chord(zs: FloatArray, xs: FloatArray, z: float, x: float) -> i
     return int(np.argmin(off))
 
 
-def find_scale_length(maximum_mm: float, metric: bool) -> tuple[float, str]:
+def find_scale_length(maximum_mm: float, is_metric: bool) -> tuple[float, str]:
     """Return the longest round length up to ``maximum_mm`` mm, with its text in the current unit."""
-    unit, name = (1.0, "mm") if metric else (25.4, "in")
+    unit, name = (1.0, "mm") if is_metric else (25.4, "in")
     decade = 10.0 ** np.floor(np.log10(max(maximum_mm / unit, 1e-9)))
     step = max((k for k in (1.0, 2.0, 5.0) if k * decade <= maximum_mm / unit * (1 + 1e-9)), default=1.0)
     return float(step * decade * unit), f"{step * decade:g} {name}"
@@ -291,7 +293,7 @@ def project_stock(stock: Stock, projection: Projection) -> list[PixelLine]:
     return found
 
 
-def stock_areas(stock: Stock, projection: Projection) -> list[PixelLine]:
+def project_stock_section(stock: Stock, projection: Projection) -> list[PixelLine]:
     """Return the areas of the section of the stock on both sides of the axis."""
     z, r = np.array(stock.outside_profile).T
     inner_z, inner_r = np.array(stock.bore_profile or ((stock.back_z_mm, 0.0), (stock.front_z_mm, 0.0))).T
@@ -305,7 +307,7 @@ def project_clamping(clamping: Clamping, stock: Stock, projection: Projection) -
     """Return the areas of the chuck or collet on both sides, and of the tailstock center."""
     found: list[PixelLine] = []
     if clamping.diameter:
-        held = clamping.chuck_around(stock)
+        held = clamping.make_chuck_around(stock)
         (z, r), (inner_z, inner_r) = np.array(held.outside_profile).T, np.array(held.bore_profile).T
         found += [
             _ring(_line(z, side * r, projection), _line(inner_z, side * inner_r, projection))
@@ -374,7 +376,7 @@ def _padded(r: FloatArray) -> FloatArray:
 
 def _find_visible_range(edges: FloatArray, projection: Projection) -> tuple[int, int]:
     """Return the first visible column, and the last visible column plus one."""
-    half = (projection.width / 2 + _OVERDRAW_PX) / projection.scale
+    half = (projection.width / 2 + _OVERDRAW_PX) / projection.pixels_per_mm
     first = int(np.searchsorted(edges, projection.z - half)) - 1
     last = int(np.searchsorted(edges, projection.z + half))
     return max(first, 0), min(last, len(edges) - 1)

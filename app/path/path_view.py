@@ -17,7 +17,7 @@ from PySide6.QtGui import QFocusEvent, QKeyEvent, QMouseEvent, QPainter, QResize
 from PySide6.QtWidgets import QWidget
 
 from app.desk.translation import tr
-from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, DrawnLeg, PathAspect, TipPosition
+from app.path.path_aspects import PART_ASPECTS, SPATIAL_ASPECTS, ApproachLeg, PathAspect, TipPosition
 from app.path.path_pointer_view import PathPointer
 from app.screen.panel import OnPress, Panel
 from app.screen.screen_theme import ScreenTheme
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
     from app.path.measuring_view import Measurement
     from app.path.part_bar_view import PartTimeline
     from app.path.part_player import PartPlayer
-    from app.path.path_pane_view import PaneSet, PathPane, Position
+    from app.path.path_pane_view import PaneSet, PathPane, PlanePosition
     from app.path.path_picture import ProgramPicture
     from app.path.path_projection import Projection
     from app.path.polyline import Polyline
     from app.screen.page_base import KeyActions
 
 TIMELINE_HEIGHT = 6.8  # units: height of the time line below the part
-FOOT = 2.4  # units: height of the row with the legend and the scales below the panes
+FOOTER_HEIGHT = 2.4  # units: height of the row with the legend and the scales below the panes
 OnBlockPicked = Callable[[int], None]
 
 
@@ -48,7 +48,7 @@ class PathView(Panel):
 
     accessible_name = "PATH"
     title = "PATH"
-    keeps_view = False  # whether adjusted projections remain when the picture changes
+    preserves_view = False  # whether adjusted projections remain when the picture changes
     shows_whole_approach = False  # whether the visible area includes all legs of an approach
 
     def __init__(
@@ -66,7 +66,7 @@ class PathView(Panel):
         self._bar: PartTimeline | None = None  # the time line, created when the part is first shown
         self._set: PaneSet | None = None  # created with the first picture
         self._tip: TipPosition | None = None  # not drawn until the first position is set
-        self.drawn_legs: tuple[DrawnLeg, ...] = ()  # legs of an approach
+        self.drawn_legs: tuple[ApproachLeg, ...] = ()  # legs of an approach
         self.measurement: Measurement | None = None  # None while the user does not measure
         self._pointer = PathPointer(
             theme, self._find_touch_target, self._hovers, self._dragged, self._handle_touch, self.magnify
@@ -127,7 +127,7 @@ class PathView(Panel):
         """
         self._show(after, before)
 
-    def show_approach(self, legs: Sequence[DrawnLeg] | None) -> None:
+    def show_approach(self, legs: Sequence[ApproachLeg] | None) -> None:
         """Show the approach over the path.
 
         The first leg is the current tool position.
@@ -144,13 +144,13 @@ class PathView(Panel):
             self._show_tool()
             self.update()
 
-    def mark(self, blocks: list[tuple[int, int]]) -> None:
+    def mark(self, block_ranges: list[tuple[int, int]]) -> None:
         """Draw blocks as thick lines.
 
         Each range is (first, last), inclusive and counted from 1.
         """
         for pane in self.panes:
-            pane.mark(blocks)
+            pane.mark(block_ranges)
         self.update()
 
     def draw_slice(self) -> None:
@@ -165,11 +165,11 @@ class PathView(Panel):
         from app.path.path_pane_view import PaneSet
 
         if self._set is None:
-            self._set = PaneSet(self.keeps_view, self._make, has_part=self.part_player is not None)
+            self._set = PaneSet(self.preserves_view, self._make, has_part=self.part_player is not None)
         if picture is self._set.picture and before is self._set.picture_before:
             return
         if self._tip is not None:
-            self._tip = self._tip._replace(block=0)
+            self._tip = self._tip._replace(active_block=0)
         if self.part_player is not None:
             self.part_player.load_picture(picture if before is None else None)
         self._set.set_pictures(picture, before)
@@ -204,20 +204,20 @@ class PathView(Panel):
         """Include the whole approach in the visible area if the view shows the approach."""
         for pane in self.panes:
             if pane.aspect is PathAspect.PATH and self.shows_whole_approach:
-                pane.include_points([(leg.z, leg.x) for leg in self.drawn_legs])
+                pane.set_extra_points([(leg.z, leg.x) for leg in self.drawn_legs])
 
     def _show_tool(self) -> None:
         if self._tip is not None:
             for pane in self.panes:
                 pane.set_run_state(
-                    self._tip.block, self._find_tip_position(pane, self._tip), self._tip.stop_position
+                    self._tip.active_block, self._find_tip_position(pane, self._tip), self._tip.stop_position
                 )
 
-    def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> Position | None:
+    def _find_tip_position(self, pane: PathPane, tip: TipPosition) -> PlanePosition | None:
         """Return the position of the tip in a pane."""
         return pane.find_tip_position(tip)
 
-    def fit_all(self) -> None:
+    def fit_all_panes(self) -> None:
         """Show the whole path in each pane."""
         for pane in self.panes:
             pane.fit_view()
@@ -238,8 +238,8 @@ class PathView(Panel):
 
         The panes use the area that the buttons do not cover.
         """
-        u = self.theme.u
-        bar = TIMELINE_HEIGHT if self.is_part_shown else FOOT
+        u = self.theme.unit_px
+        bar = TIMELINE_HEIGHT if self.is_part_shown else FOOTER_HEIGHT
         return self.find_full_area().adjusted(0.2 * u, 1.2 * u, -0.2 * u, -(0.2 + bar) * u).toRect().toRectF()
 
     # --- navigation ----------------------------------------------------------------------------------
@@ -273,11 +273,11 @@ class PathView(Panel):
             pane.magnify(factor, position)
             self.update()
 
-    def pan_view(self, across: int, down: int) -> None:
+    def pan_view(self, steps_right: int, steps_down: int) -> None:
         """Move the visible area by a number of steps to the right and down."""
         pane = self.find_pane(None)
         if pane is not None:
-            pane.pan_view(across, down)
+            pane.pan_view(steps_right, steps_down)
             self.update()
 
     def make_view_key_actions(self) -> KeyActions:
@@ -434,8 +434,8 @@ class PathView(Panel):
             return
         legend = marks.make_comparison_legend(look) if self.is_comparing else marks.make_run_legend(look)
         room = self.find_panes_area()
-        foot = QRectF(room.x(), room.bottom(), room.width(), FOOT * look.u)
-        marks.draw_foot(
+        foot = QRectF(room.x(), room.bottom(), room.width(), FOOTER_HEIGHT * look.unit_px)
+        marks.draw_footer(
             painter, look, foot, [(pane.area, pane.projection) for pane in panes], legend, self.is_metric
         )
         apart = panes[0].largest_distance
@@ -449,7 +449,7 @@ class PathView(Panel):
         assert self.part_player is not None
         if self._bar is None:
             self._bar = PartTimeline(self.theme, self.part_player, self.open_stock)
-        room, u = self.find_panes_area(), self.theme.u
+        room, u = self.find_panes_area(), self.theme.unit_px
         self._bar.draw(
             painter, QRectF(room.x(), room.bottom(), room.width(), TIMELINE_HEIGHT * u), self.add_target
         )
@@ -460,7 +460,7 @@ class PathView(Panel):
         found = [
             ViewButton("+", lambda: self.zoom_view(1)),
             ViewButton("−", lambda: self.zoom_view(-1)),
-            ViewButton(tr("FIT"), self.fit_all),
+            ViewButton(tr("FIT"), self.fit_all_panes),
             ViewButton(tr("MEAS"), self.set_measuring, self.measurement is not None),
         ]
         if self.has_several_views:

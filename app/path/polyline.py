@@ -57,9 +57,9 @@ class Polyline:
         """Return the number of elementary blocks."""
         return len(self.first) - 1
 
-    def count_finished_points(self, blocks: int) -> int:
+    def count_finished_points(self, block_count: int) -> int:
         """Return the number of points of the first ``blocks`` blocks."""
-        return int(self.first[max(0, min(blocks, self.blocks))])
+        return int(self.first[max(0, min(block_count, self.blocks))])
 
     def find_block(self, point: int) -> int:
         """Return the number of the block (from 1) with the chord that ends at a point (from 0)."""
@@ -72,12 +72,12 @@ class PolylineBuilder:
     For each block, call ``add_point`` for each of its points, then ``end_block``.
     """
 
-    def __init__(self, blocks: int = 0) -> None:
-        self.z, self.x, self.stroke = array("d"), array("d"), array("B")
-        self.first_points = array("q", bytes(8 * (blocks + 1)))
+    def __init__(self, block_count: int = 0) -> None:
+        self.z, self.x, self.strokes = array("d"), array("d"), array("B")
+        self.first_points = array("q", bytes(8 * (block_count + 1)))
         self.centers = array("d")
 
-    def start_at(self, z: float, x: float) -> None:
+    def move_to(self, z: float, x: float) -> None:
         """Set the start point, and add a jump if the last point differs."""
         if self.z and abs(self.z[-1] - z) < SAME_POINT_MM and abs(self.x[-1] - x) < SAME_POINT_MM:
             return
@@ -87,14 +87,14 @@ class PolylineBuilder:
         """Append a point with its stroke."""
         self.z.append(z)
         self.x.append(x)
-        self.stroke.append(stroke)
+        self.strokes.append(stroke)
 
     def add_separate_points(self, z: FloatArray, x: FloatArray, stroke: int) -> None:
         """Append points, each of which ends a separate block."""
         first = len(self.z)
         self.z.frombytes(z.tobytes())
         self.x.frombytes(x.tobytes())
-        self.stroke.frombytes(bytes([stroke]) * len(z))
+        self.strokes.frombytes(bytes([stroke]) * len(z))
         self.first_points.frombytes(np.arange(first + 1, first + 1 + len(z)).tobytes())
 
     def end_block(self) -> None:
@@ -106,7 +106,7 @@ class PolylineBuilder:
         return (
             np.array(self.z),
             np.array(self.x),
-            np.array(self.stroke, dtype=np.uint8),
+            np.array(self.strokes, dtype=np.uint8),
             np.array(self.first_points, dtype=np.int64),
         )
 
@@ -131,15 +131,15 @@ TURN_STEP_DEG = 4.0  # degrees of C between two points of a combined move
 MAX_TURN_POINTS = 720  # maximum number of points of one turning move
 
 
-def count_arc_chords(radius: float, sweep: float) -> int:
+def count_arc_chords(radius_mm: float, sweep_rad: float) -> int:
     """Return the number of chords for an arc.
 
     The chords deviate from the arc by at most ``MAX_CHORD_ERROR_MM``.
     """
-    if radius <= MAX_CHORD_ERROR_MM:
+    if radius_mm <= MAX_CHORD_ERROR_MM:
         return 4
-    step = 2 * math.acos(1 - MAX_CHORD_ERROR_MM / radius)
-    return max(1, math.ceil(abs(sweep) / step))
+    step = 2 * math.acos(1 - MAX_CHORD_ERROR_MM / radius_mm)
+    return max(1, math.ceil(abs(sweep_rad) / step))
 
 
 def count_turn_chords(degrees: float) -> int:
@@ -147,17 +147,17 @@ def count_turn_chords(degrees: float) -> int:
     return max(1, min(MAX_TURN_POINTS, math.ceil(abs(degrees) / TURN_STEP_DEG)))
 
 
-def sample_mill_move(move: PlaneMove, degrees: float) -> list[MillPoint]:
+def sample_mill_move(move: PlaneMove, c_rotation_deg: float) -> list[MillPoint]:
     """Return the points of a mill move in the frame of the plane, from after the start to the end.
 
     ``degrees`` is the rotation of C during the move.
     """
     if move.center is None:
-        pieces = count_turn_chords(degrees)
+        pieces = count_turn_chords(c_rotation_deg)
         (x0, y0, z0), (x1, y1, z1) = move.start, move.end
         shares = [k / pieces for k in range(1, pieces)]
         return [*((x0 + (x1 - x0) * s, y0 + (y1 - y0) * s, z0 + (z1 - z0) * s) for s in shares), move.end]
     radius = move.radius
     sweep = move.length / radius if radius else 0.0
-    pieces = max(count_turn_chords(degrees), count_arc_chords(radius, sweep))
-    return [(x, y, z) for x, y, z in move.mill_points(np.linspace(0.0, 1.0, pieces + 1)[1:]).tolist()]
+    pieces = max(count_turn_chords(c_rotation_deg), count_arc_chords(radius, sweep))
+    return [(x, y, z) for x, y, z in move.compute_mill_points(np.linspace(0.0, 1.0, pieces + 1)[1:]).tolist()]

@@ -13,9 +13,9 @@ from core.store.store_rows import get_utc_now_text
 COMPLETE, UNCOUNTED, GIVEN_UP, RESTARTED = "COMPLETE", "NOT COUNTED", "GIVEN UP", "RESTARTED"
 BETWEEN_CYCLES = "BETWEEN CYCLES"  # the next cycle was not started
 _STOPPED_STATES = frozenset(
-    {MachineState.HOLD.value, MachineState.BLOCK_END.value, MachineState.PROGRAM_STOP.value}
+    {MachineState.HOLD.value, MachineState.SINGLE_BLOCK_STOP.value, MachineState.PROGRAM_STOP.value}
 )
-_RUNNING_STATES = frozenset({MachineState.RUN.value, MachineState.WAIT.value, MachineState.HOLDING.value})
+_RUNNING_STATES = frozenset({MachineState.RUN.value, MachineState.WAIT.value, MachineState.STOPPING.value})
 _FAULT_STATES = frozenset({MachineState.FAULT.value, MachineState.ESTOP.value})
 
 
@@ -127,7 +127,7 @@ class CycleRecorder:
             self._go(cycle, event, cycles)
 
     def _go(self, cycle: _Cycle, event: LogEvent, cycles: CycleRecords) -> None:
-        if event.text != MachineState.HOLDING.value:
+        if event.text != MachineState.STOPPING.value:
             self._reason = ""
         if self._stop is not None:
             cycle.stopped_s += event.time_s - self._stop.start_time
@@ -148,7 +148,7 @@ class CycleRecorder:
         key, now = self._key()
         cycle = self._cycle.row.key if self._cycle is not None else ""
         self._stop = _Stop(
-            StopRow(key, cycle, self._program, now, 0.0, reason, event.line), event.time_s, named
+            StopRow(key, cycle, self._program, now, 0.0, reason, event.line_number), event.time_s, named
         )
         self._reason = ""
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.desk.access import UserAccess
 from app.desk.background_work import LatestRequestWorker
-from app.production.tool_totals import TOTALS, ToolTotals
+from app.production.tool_totals import TOTALS_SETTING, ToolTotals
 from core.access.access_table import ProtectedChange
 from core.message import Message
 from core.store.production import part_cycles, tool_lives
@@ -24,7 +24,7 @@ from core.store.store_errors import StoreError
 from core.store.store_rows import OffsetKind
 
 PARTS_NOT_STORED = "MEASURED PARTS CANNOT BE SAVED: NO DATA STORE"
-ReadFeature = Callable[[Store, str], Any]
+ReadFeatureData = Callable[[Store, str], Any]
 """What an optional feature reads of the store for a program, on the worker. Raises StoreError."""
 MAX_ROWS = 1000  # maximum number of readings, cycles and stops
 
@@ -33,24 +33,24 @@ MAX_ROWS = 1000  # maximum number of readings, cycles and stops
 class ProductionData:
     """Production data, with tool life of all tools, the latest stops, and data of optional features."""
 
-    program: str = ""
+    program_name: str = ""
     tool_lives: dict[int, ToolLifeRow] = field(default_factory=dict)
     stops: tuple[StopRow, ...] = ()  # stops of all programs, oldest first
     feature_data: Mapping[str, Any] = field(default_factory=dict)  # by the name of the feature
 
 
-def read_production(
-    store: Store, program: str, tools: OffsetKind, readers: Mapping[str, ReadFeature]
+def read_production_data(
+    store: Store, program: str, tool_table: OffsetKind, readers: Mapping[str, ReadFeatureData]
 ) -> ProductionData:
     """Return the stored production data.
 
-    ``tools`` is the tool table of the machine. The call reads the store and can take a while. Raise
+    ``tool_table`` is the tool table of the machine. The call reads the store and can take a while. Raise
     StoreError on failure.
     """
     more = {name: read(store, program) for name, read in readers.items()}
     with store.read() as connection:
         lives, stops = (
-            tool_lives.read_tool_lives(connection, tools),
+            tool_lives.read_tool_lives(connection, tool_table),
             part_cycles.read_stops(connection, None, MAX_ROWS),
         )
     return ProductionData(program, lives, stops, more)
@@ -65,19 +65,19 @@ def find_tool_table_kind(machine_kind: str) -> OffsetKind:
 class PartsBook:
     """Access to stored production data.
 
-    ``update`` is called once a frame, and ``current`` is the latest data. A worker reads the data, and the
-    store writes it. Without ``store``, nothing is stored. ``no_store_reason`` is the reason, and
+    ``update`` is called once a frame, and ``current_data`` is the latest data. A worker reads the data, and
+    the store writes it. Without ``store``, nothing is stored. ``no_store_reason`` is the reason, and
     ``lock_reason`` is the message on the pages of measured parts.
     """
 
     store: Store | None = None
     no_store_reason: str = ""
     tool_kind: OffsetKind = OffsetKind.TOOL  # tool table of this machine
-    current: ProductionData = field(default_factory=ProductionData)
-    access: UserAccess = field(default_factory=UserAccess)  # user and permissions for changes
+    current_data: ProductionData = field(default_factory=ProductionData)
+    user_access: UserAccess = field(default_factory=UserAccess)  # user and permissions for changes
     error_text: str = ""  # reason for the last failure of reading or writing
-    load_count: int = 0  # number of times that ``current`` was read
-    readers: dict[str, ReadFeature] = field(default_factory=dict)  # readers of optional features
+    load_count: int = 0  # number of times that ``current_data`` was read
+    feature_readers: dict[str, ReadFeatureData] = field(default_factory=dict)  # readers of optional features
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("measured-parts"))
     _stale: bool = True
     _reading: bool = False
@@ -103,18 +103,20 @@ class PartsBook:
         if self._reopened is not None:
             self.store, self.no_store_reason = self._reopened
             self._reopened, self._behind, self._stale = None, None, True
-        self.worker.poll()
+        self.worker.deliver_results()
         self._look_at_writing()
-        if program != self.current.program:
-            self.current, self._stale = (
-                ProductionData(program, self.current.tool_lives, feature_data=self.current.feature_data),
+        if program != self.current_data.program_name:
+            self.current_data, self._stale = (
+                ProductionData(
+                    program, self.current_data.tool_lives, feature_data=self.current_data.feature_data
+                ),
                 True,
             )
         store = self.store
         if store is not None and not self.worker.is_busy and self._is_reload_due(store):
             self._reading = True
-            work = partial(read_production, store, program, self.tool_kind, self.readers)
-            self.worker.request(lambda _watch: work(), self._read, self._failed)
+            work = partial(read_production_data, store, program, self.tool_kind, self.feature_readers)
+            self.worker.request_work(lambda _watch: work(), self._read, self._failed)
 
     def _is_reload_due(self, store: Store) -> bool:
         """Return whether data must be read again and all earlier changes have been written."""
@@ -130,7 +132,7 @@ class PartsBook:
         return True
 
     def _read(self, found: ProductionData) -> None:
-        self.current, self.error_text, self._reading = found, "", False
+        self.current_data, self.error_text, self._reading = found, "", False
         self.load_count += 1
         self._call_done()
 
@@ -168,7 +170,7 @@ class PartsBook:
 
     @property
     def is_settled(self) -> bool:
-        """Return whether ``current`` equals the stored data, with nothing left to write or read."""
+        """Return whether ``current_data`` equals the stored data, with nothing left to write or read."""
         return not (self.is_busy or self._stale or self._behind is not None or self._reading)
 
     def write_change(
@@ -187,7 +189,7 @@ class PartsBook:
         why = (
             (self.no_store_reason or PARTS_NOT_STORED)
             if self.store is None
-            else self.access.find_refusal(access_right)
+            else self.user_access.find_refusal(access_right)
         )
         if self.store is None or why:
             on_failed(why)
@@ -195,7 +197,7 @@ class PartsBook:
 
         def kept() -> None:
             if description:
-                self.access.persistence.log_change(description)
+                self.user_access.persistence.log_change(description)
             on_done()
 
         try:
@@ -216,7 +218,8 @@ class PartsBook:
                 unwritten.replace_operation(("life", str(row.number)), partial(_set_use, use))
             if totals is not None:
                 unwritten.replace_operation(
-                    ("setting", TOTALS), lambda c: save_setting(c, TOTALS, totals.plain)
+                    ("setting", TOTALS_SETTING),
+                    lambda c: save_setting(c, TOTALS_SETTING, totals.setting_value),
                 )
 
         store.keep(keeping)

@@ -22,7 +22,7 @@ class ProductionPlan(Protocol):
     def find_block_reason(self, snapshot: Snapshot) -> str:
         """Return why the next part must not start, or an empty string."""
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return the reminder for the prompt line, or an empty string."""
 
 
@@ -30,7 +30,7 @@ class ProductionPlan(Protocol):
 class PartsWatch:
     """Watch of production.
 
-    ``observe`` is called once a frame. The prompt line calls ``due_reminder``, which does not wait.
+    ``observe`` is called once a frame. The prompt line calls ``find_reminder``, which does not wait.
     """
 
     desk: Desk
@@ -74,15 +74,15 @@ class PartsWatch:
             self.desk.post(BlockNextPart(wanted))
         self._barred = wanted
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return the due measurements and tool changes for the prompt line, or an empty string."""
         return join_messages(
             " · ",
             filter(
                 None,
                 (
-                    *(plan.due_reminder() for plan in self.production_plans),
-                    self.tool_life_watch.due_reminder(),
+                    *(plan.find_reminder() for plan in self.production_plans),
+                    self.tool_life_watch.find_reminder(),
                 ),
             ),
         )

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from app.desk.translation import tr
 from app.production.parts_book import PartsBook
-from app.production.tool_totals import TOTALS, ToolTotals
+from app.production.tool_totals import TOTALS_SETTING, ToolTotals
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import CYCLE_STATES, Snapshot
 from core.message import Message
@@ -36,7 +36,7 @@ class ToolLifeWatch:
     """
 
     parts_book: PartsBook
-    control: Callable[[], str] = str  # identity of the control process, empty without one
+    read_control_id: Callable[[], str] = str  # identity of the control process, empty without one
     # parts and seconds since the last change of insert
     counted_use: dict[int, tuple[int, float]] = field(default_factory=dict)
     _kept: dict[int, float] = field(default_factory=dict)  # stored seconds
@@ -61,7 +61,7 @@ class ToolLifeWatch:
         return self._lives[1]
 
     def _found(self) -> dict[int, ToolLife]:
-        rows = self.parts_book.current.tool_lives
+        rows = self.parts_book.current_data.tool_lives
         found = {}
         for number in sorted({*rows, *self.counted_use}):
             row = rows.get(number, ToolLifeRow(number))
@@ -74,8 +74,8 @@ class ToolLifeWatch:
 
         This is called once a frame.
         """
-        if self._control != self.control():
-            self._begin(snapshot, self.control())
+        if self._control != self.read_control_id():
+            self._begin(snapshot, self.read_control_id())
         if not self.parts_book.load_count and self.parts_book.store is not None:
             return  # The stored counts are not known yet; the totals of the snapshot remain until then.
         for number, seconds in snapshot.cutting.items():
@@ -103,10 +103,16 @@ class ToolLifeWatch:
         """
         self._control, self._ends, self._cut = control, snapshot.ends, snapshot.cutting
         stored = (
-            ToolTotals.of_plain(self.parts_book.access.persistence.read_setting(TOTALS)) if control else None
+            ToolTotals.from_setting(self.parts_book.user_access.persistence.read_setting(TOTALS_SETTING))
+            if control
+            else None
         )
         if stored is not None and stored.control == control:
-            self._ends, self._cut, self._in_part = stored.ends, stored.cut, set(stored.in_part)
+            self._ends, self._cut, self._in_part = (
+                stored.finished_part_count,
+                stored.cutting_seconds,
+                set(stored.tools_in_part),
+            )
         elif control:
             self.parts_book.save_tool_use((), self._totals())
 
@@ -116,7 +122,7 @@ class ToolLifeWatch:
         return ToolTotals(self._control, self._ends, dict(self._cut), frozenset(self._in_part))
 
     def _add(self, number: int, parts: int, seconds: float) -> None:
-        row = self.parts_book.current.tool_lives.get(number, ToolLifeRow(number))
+        row = self.parts_book.current_data.tool_lives.get(number, ToolLifeRow(number))
         before = self.counted_use.get(number, (row.parts, row.seconds))
         self.counted_use[number] = before[0] + parts, before[1] + seconds
         self._changes += 1
@@ -157,7 +163,7 @@ class ToolLifeWatch:
         ``on_done`` is called with the result.
         """
         parts, seconds = self.counted_use.get(number, (0, 0.0))
-        known, who = number in self.counted_use, self.parts_book.access.persistence.who()
+        known, who = number in self.counted_use, self.parts_book.user_access.persistence.who()
 
         def operation(connection: sqlite3.Connection) -> None:
             if known:
@@ -213,7 +219,7 @@ class ToolLifeWatch:
 
     # --- messages and lock -------------------------------------------------------------------------------
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return the message about the tool that is nearest to the end of its life, or an empty string."""
         lives = self.read_lives()
         if self._due[0] is not lives:
@@ -229,7 +235,7 @@ class ToolLifeWatch:
         for life in self._stopping(tools):
             after = replace(life, parts=life.parts + 1) if snapshot.counts else life
             if after.state is ToolLifeState.USED_UP:
-                return find_spent_reason(after, self.parts_book.tool_kind)
+                return describe_used_up_tool(after, self.parts_book.tool_kind)
         return ""
 
     def _stopping(self, used: Collection[int]) -> Iterator[ToolLife]:
@@ -246,9 +252,9 @@ def make_life_notice(life: ToolLife) -> str:
     return tr(Message("TOOL {number} LIFE: {words} USED", number=life.number, words=tr(life.words)))
 
 
-def find_spent_reason(life: ToolLife, tools: OffsetKind) -> str:
+def describe_used_up_tool(life: ToolLife, tool_table: OffsetKind) -> str:
     """Return why no part may start with this tool."""
-    if tools is OffsetKind.MILL_TOOL:
+    if tool_table is OffsetKind.MILL_TOOL:
         how = "fit a new tool and set its CUR.TIME to 0 in the tool table (F8)"
         return Message(
             "T{number} tool life is used up ({life}): {method}",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-TOTALS = "tool_totals"  # key of the setting
+TOTALS_SETTING = "tool_totals"  # key of the setting
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,18 +13,23 @@ class ToolTotals:
     """Number of finished parts, cutting seconds by tool, and tools of the current part of a control."""
 
     control: str
-    ends: int = 0
-    cut: Mapping[int, float] = field(default_factory=dict)
-    in_part: frozenset[int] = frozenset()
+    finished_part_count: int = 0
+    cutting_seconds: Mapping[int, float] = field(default_factory=dict)
+    tools_in_part: frozenset[int] = frozenset()
 
     @property
-    def plain(self) -> dict[str, object]:
+    def setting_value(self) -> dict[str, object]:
         """Return the totals as the value of a setting."""
-        cut = {str(number): seconds for number, seconds in self.cut.items()}
-        return {"control": self.control, "ends": self.ends, "cut": cut, "in_part": sorted(self.in_part)}
+        cut = {str(number): seconds for number, seconds in self.cutting_seconds.items()}
+        return {
+            "control": self.control,
+            "ends": self.finished_part_count,
+            "cut": cut,
+            "in_part": sorted(self.tools_in_part),
+        }
 
     @classmethod
-    def of_plain(cls, value: object) -> ToolTotals | None:
+    def from_setting(cls, value: object) -> ToolTotals | None:
         """Return the totals of a setting value, or None if the value is missing or damaged."""
         match value:
             case {

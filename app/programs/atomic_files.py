@@ -14,7 +14,7 @@ from pathlib import Path
 from core.file_lock import create_unfinished_folder
 from core.file_replacement import create_synced_folder, replace_atomically, sync_all_files, sync_folder
 from core.input_file import read_input_bytes
-from core.language.source import MAX_FILE_SIZE, SourceError, load_source
+from core.language.source import MAX_FILE_BYTES, SourceError, load_source
 from core.message import CodedError, Message, get_error_code
 
 
@@ -136,7 +136,7 @@ def read_if_exists(path: Path) -> bytes | None:
     Raise FileOperationError if the file cannot be read.
     """
     try:
-        return read_input_bytes(path, MAX_FILE_SIZE)
+        return read_input_bytes(path, MAX_FILE_BYTES)
     except FileNotFoundError:
         return None
     except OSError as error:

@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QLineEdit, QWidget
 
 from app.desk.programs.program_folder import ListedProgram, ProgramFolders
-from app.desk.status.prompt_line import ASK_FILE, CHOOSE_FILE, FILE_NOT_FOUND
+from app.desk.status.prompt_line import CHOOSE_FILE_TEXT, FILE_NOT_FOUND_TEXT, FILE_QUESTION
 from app.desk.translation import tr
 from app.screen.entry_panel import style_line_edit
 from app.screen.screen_theme import ALIGN_CENTER, ALIGN_RIGHT, ScreenTheme, ThemedPainter, draw_text
@@ -26,19 +26,19 @@ class FilePrompt(RowPanel):
     Typing filters the list. Enter opens the program with exactly this name, or the selected row.
     """
 
-    title = ASK_FILE
+    title = FILE_QUESTION
     scroll_step, is_centered = 1, True
 
     def __init__(
         self,
         theme: ScreenTheme,
         program_folders: ProgramFolders,
-        on_select: Callable[[str], bool],
+        select_cell: Callable[[str], bool],
         on_closed: Callable[[], None],
         parent: QWidget,
     ) -> None:
         super().__init__(theme, parent)
-        self._shelf, self._choose, self._closed = program_folders, on_select, on_closed
+        self._shelf, self._choose, self._closed = program_folders, select_cell, on_closed
         self._entries: tuple[ListedProgram, ...] = ()
         self._row = 0
         self._moved = False  # The user selected a row, which has priority over the typed name.
@@ -54,7 +54,7 @@ class FilePrompt(RowPanel):
     @property
     def message_text(self) -> str:
         """Return the message about the name, or an empty string."""
-        return FILE_NOT_FOUND if self.is_not_found else ""
+        return FILE_NOT_FOUND_TEXT if self.is_not_found else ""
 
     @property
     def wanted_name(self) -> str:
@@ -71,7 +71,7 @@ class FilePrompt(RowPanel):
 
         The prompt does not mention Cycle Start, because its keys are text here.
         """
-        return FILE_NOT_FOUND if self.is_not_found else CHOOSE_FILE
+        return FILE_NOT_FOUND_TEXT if self.is_not_found else CHOOSE_FILE_TEXT
 
     def show_prompt(self) -> None:
         """Show the empty prompt with the keyboard focus."""
@@ -156,7 +156,7 @@ class FilePrompt(RowPanel):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Place the entry line below the title."""
-        u = self.theme.u
+        u = self.theme.unit_px
         self.name_edit.setGeometry(
             round(1.6 * u), round(2.8 * u), round(self.width() - 3.2 * u), round(4.8 * u)
         )
@@ -164,7 +164,7 @@ class FilePrompt(RowPanel):
 
     def apply_theme(self) -> None:
         """Apply font and colors to the entry line."""
-        self.name_edit.setAccessibleName(tr(ASK_FILE))
+        self.name_edit.setAccessibleName(tr(FILE_QUESTION))
         style_line_edit(self.name_edit, self.theme, 2.6, 1.0)
 
     def scroll_by(self, rows: int) -> None:
@@ -176,7 +176,7 @@ class FilePrompt(RowPanel):
 
         The last row shows the keys and the number of matching programs.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         self.frame(painter, self.title, "accent", 0.3)
         foot = QRectF(1.6 * u, self.height() - 3.2 * u, self.width() - 3.2 * u, 2.6 * u)
         if self.is_not_found:
@@ -194,7 +194,7 @@ class FilePrompt(RowPanel):
         )
 
     def _list(self, painter: ThemedPainter) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         fits = max(1, int((self.height() - 10.5 * u) / (ROW_HEIGHT * u)))
         room = QRectF(1.6 * u, 8.0 * u, self.width() - 3.2 * u, fits * ROW_HEIGHT * u)
         room = self.draw_scroll_keys(painter, room, fits, len(self._entries), self._row)
@@ -210,7 +210,7 @@ class FilePrompt(RowPanel):
             self.add_target(box, partial(self._try, str(entry.path)), kind="row", is_on=marked)
 
     def _not_found(self, painter: ThemedPainter) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         box = QRectF(1.6 * u, 10 * u, self.width() - 3.2 * u, 7 * u)
         painter.fill_rect(box, "alarm")
-        painter.draw_text_line(box, FILE_NOT_FOUND, 2.8, "on_state", at=ALIGN_CENTER, margin=2)
+        painter.draw_text_line(box, FILE_NOT_FOUND_TEXT, 2.8, "on_state", at=ALIGN_CENTER, margin=2)

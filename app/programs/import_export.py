@@ -25,7 +25,7 @@ from app.programs.atomic_files import (
     read_if_exists,
     write_program_file,
 )
-from app.programs.program_commands import COMMAND_IN_PROGRESS, check_name, find_same_name
+from app.programs.program_commands import COMMAND_IN_PROGRESS, complete_name, find_same_name
 from app.programs.removable_media import FolderChooser, TargetMedium, describe_media_error, make_chooser_table
 from core.access.access_table import ProtectedChange
 from core.input_file import TooLargeError, read_input_bytes
@@ -52,7 +52,7 @@ class TransferResult:
 
     copied_names: tuple[str, ...] = ()
     different_names: tuple[str, ...] = ()
-    findings: tuple[str, ...] = ()
+    proof_errors: tuple[str, ...] = ()
 
 
 def import_programs(
@@ -71,7 +71,7 @@ def import_programs(
     content exists, unless ``may_overwrite`` is set. Raise FileOperationError on failure.
     """
     texts = {
-        check_name(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
+        complete_name(path.name, path, lambda name: is_program_name(name) or is_drawing(name)): (
             _bytes(path) if is_drawing(path.name) else _read_program(path)
         )
         for path in sources
@@ -239,12 +239,14 @@ class ImportExport:
         self.is_open, self._asked = False, ()
 
     def _look(self) -> None:
-        self.worker.enqueue(self.folder_chooser.list_lines, self.folder_chooser.show_lines, self._unread)
+        self.worker.enqueue_work(self.folder_chooser.list_lines, self.folder_chooser.show_lines, self._unread)
 
     def _unread(self, why: str) -> None:
         self.desk.show_refusal(why)
         self.folder_chooser.current_folder = self.folder_chooser.top_folder = None
-        self.worker.enqueue(self.folder_chooser.list_lines, self.folder_chooser.show_lines, self.desk.say)
+        self.worker.enqueue_work(
+            self.folder_chooser.list_lines, self.folder_chooser.show_lines, self.desk.say
+        )
 
     def make_table(self) -> TableContent:
         """Return the table of the open folder."""
@@ -253,7 +255,7 @@ class ImportExport:
             self.folder_chooser, Message("EXPORT {name}", name=name) if self.is_export else "IMPORT"
         )
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for copying and refreshing."""
         if self.is_export:
             return {
@@ -283,7 +285,7 @@ class ImportExport:
         """Select a line of the chooser."""
         self._asked = ()
         self.desk.clear_prompt_line()
-        self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.lines) - 1, row))
+        self.folder_chooser.selected_row = max(0, min(len(self.folder_chooser.listed_lines) - 1, row))
 
     def touch_line(self, row: int) -> None:
         """Select the touched line.
@@ -363,7 +365,7 @@ class ImportExport:
                 is_drawing=self.desk.program_choice.program_folders.is_drawing_name,
                 report_progress=report_progress,
             )
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             partial(self._run_transfer, work, self.folder_chooser.medium), self._done, self._failed
         )
 
@@ -410,17 +412,17 @@ class ImportExport:
                     count=count,
                 )
             )
-        elif carried.findings:
+        elif carried.proof_errors:
             words = tr(
                 Message(
                     "PROGRAMS IMPORTED: {count}. AT LEAST ONE HAS ERRORS: {value}",
                     count=count,
-                    value=carried.findings[0],
+                    value=carried.proof_errors[0],
                 )
             )
         else:
             words = tr(Message("PROGRAMS IMPORTED AND PROVED WITHOUT ERRORS: {count}", count=count))
-        (self.desk.say if carried.findings else self.desk.show_success)(words)
+        (self.desk.say if carried.proof_errors else self.desk.show_success)(words)
         self._look()
         self.on_finished()
 

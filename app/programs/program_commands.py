@@ -29,7 +29,7 @@ COMMAND_IN_PROGRESS = "STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE"
 COPY, RENAME = "NAME FOR THE COPY?", "NEW NAME?"
 
 
-def check_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
+def complete_name(name: str, reference_name: Path, accepts_name: AcceptsName = is_program_name) -> str:
     """Return ``name``, and add the extension of ``reference_name`` if it has no extension.
 
     Raise FileOperationError for an invalid name.
@@ -73,7 +73,7 @@ def copy_program(source: Path, folder: Path, name: str, accepts_name: AcceptsNam
 
     Raise FileOperationError on failure.
     """
-    name = check_name(name, source, accepts_name)
+    name = complete_name(name, source, accepts_name)
     _free(folder, name)
     write_program_file(folder / name, _read(source))
     return name
@@ -86,14 +86,14 @@ def rename_program(
 
     Raise FileOperationError on failure.
     """
-    name = check_name(name, source, accepts_name)
+    name = complete_name(name, source, accepts_name)
     if name == source.name:
         raise FileOperationError(Message("THE PROGRAM IS ALREADY NAMED {name}", name=name))
     if name.lower() != source.name.lower():
         _free(source.parent, name)
     try:
         source.rename(source.with_name(name))
-        persistence.move_program_data(source.name, name)
+        persistence.rename_program(source.name, name)
     except OSError as error:
         raise FileOperationError(
             Message("{source} CANNOT BE RENAMED: {cause}", source=source.name, cause=error.strerror)
@@ -240,4 +240,4 @@ class ProgramCommands:
             )
             self.on_changed(name)
 
-        self.worker.enqueue(work, done, self.desk.show_refusal)
+        self.worker.enqueue_work(work, done, self.desk.show_refusal)

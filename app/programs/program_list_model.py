@@ -68,7 +68,7 @@ class ProgramListModel:
         )
 
     @property
-    def question(self) -> str:
+    def name_question(self) -> str:
         """Return the question about a name, or an empty string."""
         return self.program_commands.question
 
@@ -92,14 +92,14 @@ class ProgramListModel:
         work = partial(
             list_programs, self.desk.program_choice.program_folders, self.own_folder, self.persistence
         )
-        self.worker.enqueue(work, self._found, self.desk.show_refusal)
+        self.worker.enqueue_work(work, self._found, self.desk.show_refusal)
 
     def poll(self) -> None:
         """Process the results of the worker.
 
         This is called once a frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
 
     def _found(self, found: tuple[ListedFile, ...]) -> None:
         name = self._after or (self.selected_program.name if self.selected_program else "")
@@ -126,10 +126,10 @@ class ProgramListModel:
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
         if self.import_export.is_open:
-            return self.import_export.function_keys()
+            return self.import_export.make_function_keys()
         return {
             "F2": FunctionKey("SORT", self.select_next_order),
             "F4": FunctionKey("COPY", lambda: self.program_commands.ask_name(COPY)),
@@ -159,13 +159,13 @@ class ProgramListModel:
         """
         if self.import_export.is_open:
             return self.import_export.handle_key(key)
-        if key in ROW_STEPS and not self.question:
+        if key in ROW_STEPS and not self.name_question:
             self.select_row(self.selected_row + ROW_STEPS[key])
         elif key == "Enter":
-            self.program_commands.execute_with_name() if self.question else self.load_selected()
-        elif (self.name_field if self.question else self.search_field).handle_key(key):
+            self.program_commands.execute_with_name() if self.name_question else self.load_selected()
+        elif (self.name_field if self.name_question else self.search_field).handle_key(key):
             self.desk.clear_prompt_line()
-            if not self.question:
+            if not self.name_question:
                 self._narrow(self.selected_program.name if self.selected_program else "")
         else:
             return False
@@ -173,7 +173,7 @@ class ProgramListModel:
 
     def select_row(self, row: int) -> None:
         """Select a row of the list."""
-        if not self.question and self.listed_programs:
+        if not self.name_question and self.listed_programs:
             self.desk.clear_prompt_line()
             self.selected_row = max(0, min(len(self.listed_programs) - 1, row))
 
@@ -186,7 +186,7 @@ class ProgramListModel:
             self.desk.clear_prompt_line()
         elif self.import_export.is_open:
             self.import_export.handle_escape()
-        elif self.question:
+        elif self.name_question:
             self.program_commands.question = ""
         elif self.search_field.text:
             self.search_field.text = ""
@@ -253,7 +253,7 @@ class ProgramListModel:
         """Return the prompt for the keys that are available now."""
         if self.import_export.is_open:
             return self.import_export.prompt_text()
-        if self.question:
+        if self.name_question:
             return "TYPE A NAME   BACKSPACE: EDIT   ENTER: ACCEPT   ESC: CANCEL"
         if self.search_field.text and not self.listed_programs:
             return tr("NO PROGRAM NAME CONTAINS THIS TEXT. F3: NEW PROGRAM")
@@ -286,7 +286,7 @@ def make_program_table(model: ProgramListModel) -> TableContent:
         if model.search_field.text
         else Message("{rows_count} PROGRAMS", rows_count=len(rows))
     )
-    question, text = model.question, model.name_field.text
+    question, text = model.name_question, model.name_field.text
     if not question:
         question, text = "NAME TO FIND OR CREATE", model.search_field.text
     return TableContent(
@@ -307,7 +307,7 @@ def _row(program: ListedFile) -> TableRow:
     best = formats.format_duration(run.best) if run.best is not None else formats.NO_VALUE
     cells = (
         program.name,
-        format_file_time(program.modified_at),
+        format_file_time(program.modified_time_s),
         format_store_time(run.started),
         str(run.parts),
         best,

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from app.desk.background_work import LatestRequestWorker, ProgressCallback
 from app.desk.persistence import Persistence
-from app.desk.programs.program_folder import MAX_LISTED, ProgramFolders
+from app.desk.programs.program_folder import MAX_PROGRAM_COUNT, ProgramFolders
 from app.desk.programs.program_loading import LoadingSteps
 from app.desk.status import formats
 from core.executor.job import Job
@@ -35,7 +35,7 @@ class ListedFile:
     name: str
     path: Path
     size_bytes: int
-    modified_at: float
+    modified_time_s: float
     is_sample: bool
     run_row: RunRow
     is_drawing: bool = False  # a drawing from which a program can be made
@@ -46,11 +46,11 @@ class ListedFile:
 
         Previews remain valid until the key changes.
         """
-        return str(self.path), self.modified_at, self.size_bytes
+        return str(self.path), self.modified_time_s, self.size_bytes
 
 
 def list_programs(
-    program_folders: ProgramFolders, own: Path, persistence: Persistence
+    program_folders: ProgramFolders, own_folder: Path, persistence: Persistence
 ) -> tuple[ListedFile, ...]:
     """Return all programs and drawings of the folders, each with the record of its text.
 
@@ -64,12 +64,12 @@ def list_programs(
             path, drawing = entry.path, program_folders.is_drawing_name(entry.name)
             key = "" if drawing else _find_run_row(path, status.st_mtime_ns, status.st_size)
             run = runs.get(key, RunRow(entry.name))
-            sample = path.parent != own
+            sample = path.parent != own_folder
             found.append(ListedFile(entry.name, path, status.st_size, status.st_mtime, sample, run, drawing))
     return tuple(found)
 
 
-@lru_cache(maxsize=2 * MAX_LISTED)
+@lru_cache(maxsize=2 * MAX_PROGRAM_COUNT)
 def _find_run_row(path: Path, _changed: int, _size: int) -> str:
     """Return the record key of the text in a file, or an empty string if the file is not program text."""
     try:
@@ -90,7 +90,7 @@ SortOrder = Callable[[ListedFile], SortKey]
 # Newest and largest first; equal programs are sorted by name.
 SORT_ORDERS: Mapping[str, SortOrder] = {
     "NAME": lambda p: (0.0, p.name.lower()),
-    "DATE": lambda p: (-p.modified_at, p.name.lower()),
+    "DATE": lambda p: (-p.modified_time_s, p.name.lower()),
     "LAST RUN": lambda p: (_backwards(p.run_row.started), p.name.lower()),
     "PARTS": lambda p: (-p.run_row.parts, p.name.lower()),
     "SIZE": lambda p: (-p.size_bytes, p.name.lower()),
@@ -108,7 +108,7 @@ def sort_programs(order: str, programs: Sequence[ListedFile]) -> tuple[ListedFil
 
 def format_store_time(utc_time: str | None) -> str:
     """Return a time of the store in local time to the minute, or a dash if there is no time."""
-    return formats.format_local_time(utc_time, seconds=False) if utc_time else formats.NO_VALUE
+    return formats.format_local_time(utc_time, with_seconds=False) if utc_time else formats.NO_VALUE
 
 
 def format_file_time(unix_time_s: float) -> str:
@@ -157,12 +157,12 @@ class ProgramPreview:
 
         This is called once a frame. A request for another program cancels the previous drawing.
         """
-        self._worker.poll()
+        self._worker.deliver_results()
         self.error_text = ""
         key = program.content_key if program is not None else None
         if key != self.wanted_key:
             self.wanted_key = key
-            self._worker.cancel()
+            self._worker.cancel_request()
         if program is None:
             return None
         made = self._made.get(program.content_key)
@@ -178,17 +178,17 @@ class ProgramPreview:
 
         This is called once a frame. The thumbnail is drawn after the path.
         """
-        self._drawing.poll()
+        self._drawing.deliver_results()
         key = program.content_key if program is not None else None
         if key != self._asked and self._drawing.is_busy:
-            self._drawing.cancel()
+            self._drawing.cancel_request()
         if program is None or key is None or self.draw_thumbnail is None:
             return None
         drawn = not isinstance(self._made.get(key), str | None)
         if key not in self._parts and drawn and not self._drawing.is_busy:
             self._asked = key
             work = partial(self._draw_part, self.draw_thumbnail, program)
-            self._drawing.request(
+            self._drawing.request_work(
                 work, partial(self._keep_part, key), lambda _why: self._keep_part(key, None)
             )
         return self._parts.get(key)
@@ -205,7 +205,7 @@ class ProgramPreview:
             self._parts.popitem(last=False)
 
     @property
-    def is_drawing(self) -> bool:
+    def is_busy(self) -> bool:
         """Return whether the requested picture is still being drawn."""
         return self.wanted_key is not None and self.wanted_key not in self._made
 
@@ -214,7 +214,7 @@ class ProgramPreview:
         if program.size_bytes > MAX_PREVIEW_BYTES:
             done("TOO LARGE FOR A PREVIEW")
         else:
-            self._worker.request(partial(self._draw, program), done, done)
+            self._worker.request_work(partial(self._draw, program), done, done)
 
     def _draw(self, program: ListedFile, watch: ProgressCallback) -> ProgramPicture:
         source = self.loading_steps.read_source(program.path)

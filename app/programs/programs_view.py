@@ -56,7 +56,7 @@ class ProgramDetailPanel(Panel):
 
         If the preview has an error, the details include the error.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         rows = list(make_details(self.program)) if self.program is not None else []
         preview_row_count = len(rows) - FULL_WIDTH_ROWS
         if self.error_text:
@@ -115,24 +115,24 @@ class ProgramsPage(ListPage):
         self._with_letters = False
         self.table_panel.on_entry_touched = self._turn_letters
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of the list, and F3 while the editor cannot be opened."""
         closed = not self.model.import_export.is_open and find_editor_refusal(self.desk.read_snapshot())
-        return super().disabled_keys() | ({"F3"} if closed else set())
+        return super().find_disabled_keys() | ({"F3"} if closed else set())
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
-        return self.model.function_keys()
+        return self.model.make_function_keys()
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the list or of the folder chooser."""
         added = {name: key.label for name, key in self.desk.page_registry.program_keys.items()}
         own = {} if self.model.import_export.is_open else {"F3": "EDIT", **added}
-        return self.make_labels(own, self.function_keys())
+        return self.make_function_key_labels(own, self.make_function_keys())
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of the list or of the folder chooser."""
-        keys = self.function_keys()
+        keys = self.make_function_keys()
         added = {
             name: partial(self._use_program_key, key)
             for name, key in self.desk.page_registry.program_keys.items()
@@ -141,12 +141,12 @@ class ProgramsPage(ListPage):
         return {**own, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.function_keys()[name].action()
+        self.make_function_keys()[name].action()
 
     def _open_editor(self) -> None:
         """Edit the selected program without loading it, or edit a new program with the typed name."""
         here = self.model.selected_program
-        editor = self.desk.page_registry.find(EditorModel)
+        editor = self.desk.page_registry.find_model(EditorModel)
         if here is None and editor is not None and self.model.search_field.text:
             editor.pending_name = self.model.search_field.text
             self.host.open_page(page_table.EDITOR)
@@ -164,7 +164,7 @@ class ProgramsPage(ListPage):
         here = self.model.selected_program
         if here is None or here.is_drawing:
             self.desk.say(NO_SELECTION)
-        elif self.host.open_page(key.page):
+        elif self.host.open_page(key.page_name):
             key.use(here.name)
 
     def _chosen(self, row: int) -> None:
@@ -182,7 +182,7 @@ class ProgramsPage(ListPage):
         Enter on a program loads the program and opens the Automatic page.
         """
         model = self.model
-        if key == "Enter" and not model.import_export.is_open and not model.question:
+        if key == "Enter" and not model.import_export.is_open and not model.name_question:
             # The page changes first, because a question about an interrupted job belongs to the new page.
             if model.can_load() and self.host.open_page(page_table.AUTOMATIC):
                 model.load_selected()
@@ -204,14 +204,14 @@ class ProgramsPage(ListPage):
         self.table_panel.show_table(model.make_table())
         here = model.selected_program
         self._show_picture(model.preview.find_picture(None if here is not None and here.is_drawing else here))
-        lettered = (bool(model.question) or self._with_letters) and not model.import_export.is_open
+        lettered = (bool(model.name_question) or self._with_letters) and not model.import_export.is_open
         if lettered is self.letter_pad.isHidden():
             self.letter_pad.setVisible(lettered)
             self._lay_out()
         self.detail_panel.program = here
         self.detail_panel.part_thumbnail = model.preview.find_thumbnail(here)
         self.detail_panel.error_text = (
-            "DRAWING THE PREVIEW …" if model.preview.is_drawing else model.preview.error_text
+            "DRAWING THE PREVIEW …" if model.preview.is_busy else model.preview.error_text
         )
 
     def _show_picture(self, picture: ProgramPicture | None) -> None:
@@ -239,7 +239,7 @@ class ProgramsPage(ListPage):
         super().on_open()
 
     def _lay_out(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         gap = max(4, round(0.7 * u))
         left, low = round(SHARE * self.width()), round(RECORD * u)
         right = self.width() - left - gap

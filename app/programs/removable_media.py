@@ -219,7 +219,7 @@ class FolderChooser:
     accepts_name: AcceptsName = is_program_name
     current_folder: Path | None = None
     top_folder: Path | None = None  # folder of the open place, where going up ends
-    lines: tuple[FolderLine, ...] = ()
+    listed_lines: tuple[FolderLine, ...] = ()
     selected_row: int = 0
     medium: TargetMedium | None = None  # the open place at the time of opening
     error_text: str = field(default="")
@@ -248,7 +248,7 @@ class FolderChooser:
 
     def show_lines(self, lines: tuple[FolderLine, ...]) -> None:
         """Show the lines that ``list_lines`` has returned."""
-        self.lines, self.error_text = lines, ""
+        self.listed_lines, self.error_text = lines, ""
         self.selected_row = min(self.selected_row, max(0, len(lines) - 1))
 
     def open_line(self, line: FolderLine) -> None:
@@ -267,12 +267,12 @@ class FolderChooser:
     @property
     def selected_line(self) -> FolderLine | None:
         """Return the selected line, or None if no line is selected."""
-        return self.lines[self.selected_row] if self.selected_row < len(self.lines) else None
+        return self.listed_lines[self.selected_row] if self.selected_row < len(self.listed_lines) else None
 
     @property
     def program_paths(self) -> tuple[Path, ...]:
         """Return the paths of the programs in the open folder."""
-        return tuple(line.path for line in self.lines if not line.is_folder)
+        return tuple(line.path for line in self.listed_lines if not line.is_folder)
 
 
 def _inside(folder: Path, takes: AcceptsName) -> list[FolderLine]:
@@ -293,7 +293,7 @@ def make_chooser_table(chooser: FolderChooser, title: str) -> TableContent:
                 formats.format_file_size(line.size_bytes) if line.size_bytes else "",
             )
         )
-        for line in chooser.lines
+        for line in chooser.listed_lines
     )
     where = str(chooser.current_folder) if chooser.current_folder else "LOCATIONS"
     return TableContent(

@@ -20,7 +20,7 @@ from core.store.store_errors import StoreError
 COMPLETE, UNCOUNTED, GIVEN_UP, ESTOP = "COMPLETE", "NOT COUNTED", "GIVEN UP", "E-STOP"
 INTERRUPTED_OUTCOME = "CUT OFF"  # the control stopped during the run, as detected at the next start
 _RUNNING_STATES = (
-    frozenset({MachineState.RUN, MachineState.HOLDING, MachineState.WAIT}) | prompt_line.INTERRUPTED_STATES
+    frozenset({MachineState.RUN, MachineState.STOPPING, MachineState.WAIT}) | prompt_line.INTERRUPTED_STATES
 )
 _FINAL_PHASES = frozenset({LoadingPhase.READY, LoadingPhase.REFUSED})
 
@@ -130,10 +130,10 @@ class PartCounter:
     """
 
     persistence: Persistence = field(default_factory=Persistence)
-    program: str = ""
+    program_name: str = ""
     count: int = 0
-    target: int = 0
-    job_target: int = 0  # count at which the active job is done; has priority over the target
+    target_count: int = 0
+    job_target_count: int = 0  # count at which the active job is done; has priority over the target
     _seen: int | None = None
     _announced: int = -1
     _made: int = -1  # count that was last sent to the executor
@@ -150,7 +150,7 @@ class PartCounter:
 
         This is the target of the active job if there is one, and otherwise the target of the program.
         """
-        return self.job_target or self.target
+        return self.job_target_count or self.target_count
 
     @property
     def is_complete(self) -> bool:
@@ -170,24 +170,24 @@ class PartCounter:
         ``text_digest`` is the digest of the loaded program text.
         """
         name = Path(snapshot.program).name
-        if name != self.program or text_digest != self.text_digest:
+        if name != self.program_name or text_digest != self.text_digest:
             self._load(name)
             self.text_digest = text_digest
             self._seen = snapshot.parts
         if self._seen is not None and snapshot.parts > self._seen:
             self.count += snapshot.parts - self._seen
             if (
-                self.is_complete and not self.job_target
+                self.is_complete and not self.job_target_count
             ):  # The end of a job is reported together with the next job.
                 words = tr("TARGET REACHED: {count} OF {target} PARTS")
-                show_message(tr(Message(words, count=self.count, target=self.target)))
+                show_message(tr(Message(words, count=self.count, target=self.target_count)))
         self._seen = snapshot.parts
         self._send_count(snapshot, post_command)
         self._stop_at(snapshot, post_command, show_message)
 
     def _send_count(self, snapshot: Snapshot, post: Callable[[Command], None]) -> None:
         """Send the count to the executor, which numbers the parts."""
-        if self.program and self.count not in {snapshot.made, self._made}:
+        if self.program_name and self.count not in {snapshot.made, self._made}:
             post(SetPartCount(self.count))
         self._made = self.count
 
@@ -206,7 +206,7 @@ class PartCounter:
             say("THIS PART REACHES THE TARGET. CYCLE REPEAT IS NOW OFF")
 
     def _load(self, name: str) -> None:
-        self.program, self.count, self.target, self._announced = name, 0, 0, -1
+        self.program_name, self.count, self.target_count, self._announced = name, 0, 0, -1
         if not name:
             return
         try:
@@ -214,25 +214,25 @@ class PartCounter:
             kept = self.persistence.read_setting(_key(name))
         except StoreError:
             return  # TurnDesk itself reports that nothing is stored.
-        self.target = kept if isinstance(kept, int) and 0 < kept <= MAX_COUNT else 0
+        self.target_count = kept if isinstance(kept, int) and 0 < kept <= MAX_COUNT else 0
 
     def reload(self) -> None:
         """Reload the count and the target, for example after a restore."""
-        self._load(self.program)
+        self._load(self.program_name)
 
-    def set_target(self, target: int) -> None:
+    def set_target(self, target_count: int) -> None:
         """Set the target number of parts, or 0 for no target.
 
         Raise StoreError if the target cannot be stored.
         """
-        before, self.target, self._announced = self.target, target, -1
-        self.persistence.save_setting(_key(self.program), target or None)
+        before, self.target_count, self._announced = self.target_count, target_count, -1
+        self.persistence.save_setting(_key(self.program_name), target_count or None)
         self.persistence.log_change(
             Message(
                 "part target of {program}: {before} → {target}",
-                program=self.program,
+                program=self.program_name,
                 before=before,
-                target=target,
+                target=target_count,
             )
         )
 
@@ -242,11 +242,11 @@ class PartCounter:
         Raise StoreError if the count cannot be stored.
         """
         self.count, self._announced = self.count + change, -1
-        self.persistence.runs.add_parts(self.program, change)
+        self.persistence.runs.add_parts(self.program_name, change)
         self.persistence.log_change(
             Message(
                 "part count of {program}: {count} → {count2}",
-                program=self.program,
+                program=self.program_name,
                 count=self.count - change,
                 count2=self.count,
             )
@@ -258,9 +258,9 @@ class PartCounter:
         Raise StoreError if the count cannot be stored.
         """
         before, self.count, self._announced = self.count, 0, -1
-        self.persistence.runs.reset_parts(self.program)
+        self.persistence.runs.reset_parts(self.program_name)
         self.persistence.log_change(
-            Message("part count of {program}: {before} → 0", program=self.program, before=before)
+            Message("part count of {program}: {before} → 0", program=self.program_name, before=before)
         )
 
 

@@ -127,12 +127,12 @@ def make_pair_table(rows: Iterable[tuple[str, str]]) -> str:
     return f'<table class="facts">{lines}</table>'
 
 
-def make_table(column_heads: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
+def make_table(column_headings: Iterable[str], rows: Iterable[Sequence[str]]) -> str:
     """Return a table.
 
     The cells must be HTML.
     """
-    top = "".join(f"<th>{escape(each)}</th>" for each in column_heads)
+    top = "".join(f"<th>{escape(each)}</th>" for each in column_headings)
     lines = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     return f"<table><tr>{top}</tr>{lines}</table>"
 

@@ -32,7 +32,7 @@ class SvgDrawing:
     _parts: list[str] = field(default_factory=list)
 
     @property
-    def scale(self) -> float:
+    def pixels_per_mm(self) -> float:
         """Return the scale in pixels per millimeter."""
         wide, high = self.upper_corner[0] - self.lower_corner[0], self.upper_corner[1] - self.lower_corner[1]
         return min(self.max_width_px / wide, self.max_height_px / high)
@@ -68,7 +68,7 @@ class SvgDrawing:
 
         ``title`` is the alternative text.
         """
-        scale = self.scale
+        scale = self.pixels_per_mm
         wide, high = (
             (self.upper_corner[0] - self.lower_corner[0]) * scale,
             (self.upper_corner[1] - self.lower_corner[1]) * scale,
@@ -87,7 +87,7 @@ class SvgDrawing:
         return " ".join(f"{x:g},{y:g}" for x, y in placed)
 
     def _place(self, point: PointMm) -> tuple[float, float]:
-        scale = self.scale
+        scale = self.pixels_per_mm
         return round((point[0] - self.lower_corner[0]) * scale, 1), round(
             (self.upper_corner[1] - point[1]) * scale, 1
         )
@@ -113,11 +113,14 @@ _MAX_MARGIN_MM = 12.0  # maximum mm of material around a finding
 _PATH_MARGIN_MM = 6.0  # mm of path drawn in front of and around the stock
 
 
-SectionSides = tuple[PartedPiece, PartedPiece]
+MilledSides = tuple[PartedPiece, PartedPiece]
 
 
 def draw_section(
-    stock: Stock, after: PartedPiece | None, clamping: Clamping | None, sides: SectionSides | None = None
+    stock: Stock,
+    finished_part: PartedPiece | None,
+    clamping: Clamping | None,
+    sides: MilledSides | None = None,
 ) -> str:
     """Return the drawing of the section of the stock and the finished part.
 
@@ -126,14 +129,14 @@ def draw_section(
     drawing = _framed(stock, clamping)
     _chuck(drawing, clamping)
     _draw_material(drawing, stock.outside_profile, stock.bore_profile or None, "stock")
-    _part(drawing, after, sides, "part")
+    _part(drawing, finished_part, sides, "part")
     drawing.add_center_line()
     return drawing.make_svg("Section: stock and finished part")
 
 
 def path(
     stock: Stock, after: PartedPiece | None, clamping: Clamping | None, moves: Sequence[TipMove],
-    sides: SectionSides | None = None,
+    sides: MilledSides | None = None,
 ) -> str:  # fmt: skip
     """Return the drawing of the tool paths, with cuts as solid lines and rapids as dashed lines."""
     drawing = _framed(stock, clamping)
@@ -219,7 +222,7 @@ def _chuck(drawing: SvgDrawing, clamping: Clamping | None) -> None:
     drawing.add_polygon([(z, -r) for z, r in upper], "chuck")
 
 
-def _part(drawing: SvgDrawing, after: PartedPiece | None, sides: SectionSides | None, look: str) -> None:
+def _part(drawing: SvgDrawing, after: PartedPiece | None, sides: MilledSides | None, look: str) -> None:
     if sides is not None:
         for piece, across in zip(sides, (1.0, -1.0), strict=True):
             _half(drawing, piece.outside_profile, piece.bore_profile, look, across)

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from core.message import Message
-from core.own_process import module_environment
+from core.process_environment import make_module_environment
 
 _TIMEOUT_S = 120.0  # seconds
 
@@ -32,7 +32,7 @@ def make_pdf(html: str, title: str, paper: PaperSize) -> bytes:
     with TemporaryDirectory(prefix="turndesk-") as folder:
         path = Path(folder) / "sheet.pdf"
         command = [sys.executable, "-m", "app.screen.pdf_pages", str(path), title, paper.value]
-        around = module_environment(QT_QPA_PLATFORM="offscreen")
+        around = make_module_environment(QT_QPA_PLATFORM="offscreen")
         try:
             done = subprocess.run(
                 command, input=html.encode(), capture_output=True, timeout=_TIMEOUT_S, check=False, env=around

@@ -218,7 +218,7 @@ class ProgramReport:
 
     def _tool(self, number: int, shape: ToolShape | None) -> tuple[str, ...]:
         time = self._record.tool_times.get(number)
-        seconds = (time.cutting_s, time.rapid_s, time.rest_s) if time is not None else (0.0, 0.0, 0.0)
+        seconds = (time.cutting_s, time.rapid_s, time.other_s) if time is not None else (0.0, 0.0, 0.0)
         name = format_edge_name(number) if number else "no tool"
         said = "" if shape == self._record.part_setting.shapes.get(number) else " (assumed)"
         words = escape(self._describe_shape(shape) + said)
@@ -240,7 +240,12 @@ class ProgramReport:
 
     def _stops(self) -> str:
         rows = [
-            (f"M0{int(stop.is_optional)}", str(stop.line), format_minutes(stop.time_s), escape(stop.message))
+            (
+                f"M0{int(stop.is_optional)}",
+                str(stop.line_number),
+                format_minutes(stop.time_s),
+                escape(stop.message),
+            )
             for stop in self._record.program_stops
         ]
         head = ("Stop", "Line", "After", "Message to the operator")
@@ -288,9 +293,9 @@ def make_unproved_section(reason: str) -> str:
     return make_result_line("bad", "Not proved") + f"<p>{escape(reason)}</p>"
 
 
-def make_comparison(lines: str) -> str:
+def make_offset_comparison(comparison_text: str) -> str:
     """Return the effect of other offsets as HTML, in the text format of the command line."""
-    return f"<h3>With different offsets</h3><pre>{escape(lines)}</pre>"
+    return f"<h3>With different offsets</h3><pre>{escape(comparison_text)}</pre>"
 
 
 def _many(count: int, what: str) -> str:

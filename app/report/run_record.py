@@ -19,17 +19,17 @@ _MAX_STOPS = 500
 
 
 @dataclass(slots=True)
-class ToolTime:
+class ToolTimes:
     """Times of one tool in seconds, divided into cutting, rapid and remaining time."""
 
     cutting_s: float = 0.0
     rapid_s: float = 0.0
-    rest_s: float = 0.0
+    other_s: float = 0.0
 
     @property
     def total_s(self) -> float:
         """Return the total time in seconds."""
-        return self.cutting_s + self.rapid_s + self.rest_s
+        return self.cutting_s + self.rapid_s + self.other_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ class PlannedStop:
     It has a line, a time in seconds and a message to the operator.
     """
 
-    line: int
+    line_number: int
     time_s: float
     is_optional: bool
     message: str
@@ -51,7 +51,7 @@ class RunRecorder:
 
     part_setting: PartSettings
     moves: list[TipMove] = field(default_factory=list)
-    tool_times: dict[int, ToolTime] = field(default_factory=dict)
+    tool_times: dict[int, ToolTimes] = field(default_factory=dict)
     program_stops: list[PlannedStop] = field(default_factory=list)
     used_secondary: set[int] = field(default_factory=set)  # D numbers that are called
     used_zero_offsets: set[int] = field(default_factory=set)  # zero offsets that are called, 54 to 59
@@ -79,11 +79,11 @@ class RunRecorder:
         elif span.block is not None:
             list(self._steps.convert_blocks([span.block]))
         else:
-            self._time.rest_s += span.end_time_s - span.start_time_s
+            self._time.other_s += span.end_time_s - span.start_time_s
 
     @property
-    def _time(self) -> ToolTime:
-        return self.tool_times.setdefault(self._tool, ToolTime())
+    def _time(self) -> ToolTimes:
+        return self.tool_times.setdefault(self._tool, ToolTimes())
 
     def _count(self, block: Block, seconds: float) -> None:
         modal = block.modal
@@ -94,7 +94,7 @@ class RunRecorder:
             self.blank_corners = block.swivel.system.blank_corners
         time = self._time
         if not block.moves:
-            time.rest_s += seconds
+            time.other_s += seconds
         elif block.rapid:
             time.rapid_s += seconds
         else:
@@ -116,6 +116,6 @@ class RunRecorder:
                 elif isinstance(step, LiveToolStep):
                     self.moves.append(make_live_tool_move(step))
 
-    def find_material(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
+    def find_material(self, block_numbers: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of these blocks in which a tool moves in X and Z."""
-        return self._part.material_before_blocks(blocks)
+        return self._part.find_material_before_blocks(block_numbers)

@@ -17,13 +17,13 @@ class CurvePoints:
     """Points of a curve.
 
     ``times`` are in seconds of the record's clock. If ``has_line_pairs`` is set, each pair of points is one
-    line. Otherwise ``is_joined`` marks the points that are connected to the next point.
+    line. Otherwise ``is_joined_to_next`` marks the points that are connected to the next point.
     """
 
-    times: FloatArray
+    times_s: FloatArray
     values: FloatArray
     has_line_pairs: bool = False
-    is_joined: npt.NDArray[np.bool_] | None = None  # None: all points are connected
+    is_joined_to_next: npt.NDArray[np.bool_] | None = None  # None: all points are connected
 
 
 @dataclass(slots=True)
@@ -38,7 +38,7 @@ class CurveColumns:
     minima: FloatArray
     maxima: FloatArray
     preceding_samples: FloatArray  # sample before each column, or nan after a gap
-    last_sample: float = np.nan  # sample before the next one
+    last_value: float = np.nan  # sample before the next one
 
     @classmethod
     def make_empty(cls, width_s: float) -> CurveColumns:
@@ -53,7 +53,7 @@ class CurveColumns:
         """
         if not len(values):
             return
-        last, self.last_sample = self.last_sample, float(values[-1])
+        last, self.last_value = self.last_value, float(values[-1])
         finite_index = np.flatnonzero(np.isfinite(values))
         if not len(finite_index):
             return
@@ -108,7 +108,9 @@ def make_points(times: FloatArray, values: FloatArray, pixel_width_s: float) -> 
         index = np.flatnonzero(np.isfinite(values))
         if len(index) == len(values):
             return CurvePoints(times, values)
-        return CurvePoints(times[index], values[index], is_joined=np.diff(index, append=index[-1:] + 2) == 1)
+        return CurvePoints(
+            times[index], values[index], is_joined_to_next=np.diff(index, append=index[-1:] + 2) == 1
+        )
     columns = CurveColumns.make_empty(pixel_width_s)
     columns.append_samples(times, values)
     return columns.make_points()

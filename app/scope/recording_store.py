@@ -22,7 +22,7 @@ from core.records.record import ScopeRecord
 from core.records.record_file import RECORD_SUFFIX
 
 ALARM_TIME_KEY = "alarm time"  # key of an alarm record: the alarm's time on the clock of the samples
-INSTANT_KEY = "instant"  # key of a record: seconds from its first sample to the trigger or the alarm
+ZERO_INSTANT_KEY = "instant"  # key of a record: seconds from its first sample to the trigger or the alarm
 MAX_FILES = 500
 _RESERVED_BYTES = 20_000_000  # bytes of disk space reserved for the store and the log
 
@@ -38,7 +38,7 @@ class RecordingFile(NamedTuple):
     """Record file with its path, modification time and size in bytes."""
 
     path: Path
-    modified_at: float
+    modified_time_s: float
     size: int
 
     @property
@@ -47,7 +47,7 @@ class RecordingFile(NamedTuple):
 
         The year is in the file name.
         """
-        return time.strftime("%m-%d %H:%M:%S", time.localtime(self.modified_at))
+        return time.strftime("%m-%d %H:%M:%S", time.localtime(self.modified_time_s))
 
     @property
     def size_text(self) -> str:
@@ -87,7 +87,7 @@ class RecordingStore:
                     if entry.name.endswith(RECORD_SUFFIX) and entry.is_file():
                         file_stat = entry.stat()
                         found.append(RecordingFile(Path(entry.path), file_stat.st_mtime, file_stat.st_size))
-        return tuple(sorted(found, key=lambda each: -each.modified_at)[:MAX_FILES])
+        return tuple(sorted(found, key=lambda each: -each.modified_time_s)[:MAX_FILES])
 
     def save_named(self, record: ScopeRecord, name_stem: str = "scope") -> Path:
         """Save a record under a name with date and time, and return its path.
@@ -135,7 +135,7 @@ class RecordingStore:
         """
         return self._run_reporting(path, lambda: self.open_recording(path))
 
-    def delete(self, path: Path) -> None:
+    def delete_recording(self, path: Path) -> None:
         """Delete a record file.
 
         Raise RecordingFileError on failure.
@@ -198,7 +198,7 @@ def find_zero_instant(record: ScopeRecord) -> float:
 
     This is the trigger or alarm, or the last sample if there is neither.
     """
-    instant_text = record.about.get(INSTANT_KEY, "")
+    instant_text = record.about.get(ZERO_INSTANT_KEY, "")
     if not len(record.times_s):
         return 0.0
     try:

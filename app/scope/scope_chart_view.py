@@ -76,7 +76,7 @@ class ScopeChart(Chart):
         values = points.values
         if curve.signal.quantity is Quantity.LOGIC_LEVEL:
             values = values * _HIGH + down
-        set_curve_points(item, points.times, values, _connect(points))
+        set_curve_points(item, points.times_s, values, _connect(points))
 
     def _prepare_lanes(self, sight: ScopePicture) -> bool:
         """Return whether lanes and curves match the picture.
@@ -108,11 +108,11 @@ class ScopeChart(Chart):
                 self._curves[each.signal.key, earlier] = plot.add_curve(
                     make_line_pen(self._ink(each, earlier))
                 )
-        self.set_left_width(_LEFT_AXIS_WIDTH)
+        self.set_left_axis_width(_LEFT_AXIS_WIDTH)
 
     def _ink(self, curve: ScopeCurve, earlier: bool) -> QColor:
         full = find_curve_color(self.theme, self.curve_colors.get(curve.signal.key, 0))
-        return mix_colors(full, self.theme.color("panel"), _OVERLAY_COLOR_SHARE) if earlier else full
+        return mix_colors(full, self.theme.get_color("panel"), _OVERLAY_COLOR_SHARE) if earlier else full
 
     def apply_theme(self) -> None:
         """Apply the current colors and fonts.
@@ -162,8 +162,8 @@ class ScopeChart(Chart):
             return
         for quantity, plot in self._lanes.items():
             self._lane(painter, quantity, plot.find_curve_area())
-        sight, room, u = self.picture, self.curve_area, self.theme.u
-        painter.setPen(self.theme.color("soft"))
+        sight, room, u = self.picture, self.curve_area, self.theme.unit_px
+        painter.setPen(self.theme.get_color("soft"))
         painter.drawText(
             QRectF(room.right() - 2 * u, room.bottom() + 0.4 * u, 2 * u, 2 * u), _ALIGN_RIGHT, "s"
         )
@@ -173,11 +173,11 @@ class ScopeChart(Chart):
             for number, (time, word) in enumerate(zip(self.cursors.times_s, "AB", strict=True)):
                 if room.x() <= self.find_column(time) <= room.right():
                     self._upright(
-                        painter, time, "accent" if number == self.cursors.active_cursor else "soft", word
+                        painter, time, "accent" if number == self.cursors.active_index else "soft", word
                     )
 
     def _lane(self, painter: QPainter, quantity: Quantity, room: QRectF) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.setFont(self.theme.make_font(_TEXT_SIZE, is_bold=True))
         if quantity is Quantity.LOGIC_LEVEL:
             logic = [each for each in self.picture.curves if each.signal.quantity is quantity]
@@ -193,12 +193,12 @@ class ScopeChart(Chart):
         self.name(painter, text, room)
 
     def _upright(self, painter: QPainter, time: float, ink: str, word: str) -> None:
-        u, room, x = self.theme.u, self.curve_area, round(self.find_column(time))
-        painter.setPen(make_line_pen(self.theme.color(ink)))
+        u, room, x = self.theme.unit_px, self.curve_area, round(self.find_column(time))
+        painter.setPen(make_line_pen(self.theme.get_color(ink)))
         painter.drawLine(x, round(room.y()), x, round(room.bottom()))
         box = QRectF(x - 1.0 * u, room.y(), 2.0 * u, 2.2 * u)
-        painter.fillRect(box, self.theme.color(ink))
-        painter.setPen(self.theme.color("panel"))
+        painter.fillRect(box, self.theme.get_color(ink))
+        painter.setPen(self.theme.get_color("panel"))
         painter.setFont(self.theme.make_font(_TEXT_SIZE, is_bold=True))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, word)
 
@@ -212,10 +212,10 @@ def _quantities(sight: ScopePicture) -> list[Quantity]:
 def _connect(points: CurvePoints) -> object:
     if points.has_line_pairs:
         return "pairs"
-    return "all" if points.is_joined is None else points.is_joined
+    return "all" if points.is_joined_to_next is None else points.is_joined_to_next
 
 
-def mix_colors(foreground: QColor, background: QColor, fraction: float) -> QColor:
+def mix_colors(foreground: QColor, background: QColor, foreground_fraction: float) -> QColor:
     """Return a mix of two colors.
 
     Opaque lines are drawn faster than transparent lines.
@@ -225,4 +225,4 @@ def mix_colors(foreground: QColor, background: QColor, fraction: float) -> QColo
         (foreground.green(), background.green()),
         (foreground.blue(), background.blue()),
     )
-    return QColor(*(round(fraction * a + (1.0 - fraction) * b) for a, b in parts))
+    return QColor(*(round(foreground_fraction * a + (1.0 - foreground_fraction) * b) for a, b in parts))

@@ -45,10 +45,12 @@ class LiveSamples(Protocol):
         """Return the length of the ring buffer in seconds."""
         ...
 
-    def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+    def read_between(
+        self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
+    ) -> ScopeRecord:
         """Return the samples from ``start_s`` to ``end_s``, both included.
 
-        ``names`` restricts the channels.
+        ``channel_names`` restricts the channels.
         """
         ...
 
@@ -83,7 +85,7 @@ class ScopePicture:
     is_metric: bool = False
     lane_ranges: Mapping[Quantity, ValueRange] = field(default_factory=dict)
     cursor_values: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    trigger_time: float | None = None  # trigger time in seconds of the clock
+    trigger_time_s: float | None = None  # trigger time in seconds of the clock
     constant_values: tuple[float, ...] | None = None  # values of live curves if all are constant
 
 
@@ -116,12 +118,14 @@ class PictureRequest:
         return self.span_s / max(1, self.width_px)
 
 
-def convert_to_displayed(points: CurvePoints, scale: float, zero: float) -> CurvePoints:
-    """Return the points in displayed units, with times relative to ``zero``."""
-    return CurvePoints(points.times - zero, points.values * scale, points.has_line_pairs, points.is_joined)
+def convert_to_displayed(points: CurvePoints, scale: float, zero_s: float) -> CurvePoints:
+    """Return the points in displayed units, with times relative to ``zero_s``."""
+    return CurvePoints(
+        points.times_s - zero_s, points.values * scale, points.has_line_pairs, points.is_joined_to_next
+    )
 
 
-def find_ranges(
+def find_lane_ranges(
     curves: Sequence[ScopeCurve], present_ranges: Mapping[Quantity, ValueRange], request: PictureRequest
 ) -> dict[Quantity, ValueRange]:
     """Return the range of each lane.
@@ -145,7 +149,7 @@ def find_ranges(
 
 
 def find_constant_values(
-    curves: Sequence[ScopeCurve], begin: float, width: float
+    curves: Sequence[ScopeCurve], begin_s: float, pixel_width_s: float
 ) -> tuple[float, ...] | None:
     """Return the values of the curves if each curve is constant across the window, or None otherwise.
 
@@ -153,10 +157,12 @@ def find_constant_values(
     """
     levels = []
     for curve in curves:
-        times, values = curve.points.times, curve.points.values
+        times, values = curve.points.times_s, curve.points.values
         if not len(values):
             levels.append(np.nan)
-        elif times[0] <= begin + max(_REST_INTERVAL_S, 2.0 * width) and values.min() == values.max():
+        elif (
+            times[0] <= begin_s + max(_REST_INTERVAL_S, 2.0 * pixel_width_s) and values.min() == values.max()
+        ):
             levels.append(float(values[0]))
         else:
             return None
@@ -212,7 +218,7 @@ class RecordingCurves:
         earlier = overlay.make_curves(request) if overlay is not None else ()
         if self._metric is not request.metric:
             self._ranges, self._metric = {}, request.metric
-        ranges = find_ranges((*curves, *earlier), self._ranges, request)
+        ranges = find_lane_ranges((*curves, *earlier), self._ranges, request)
         self._ranges = ranges
         at = {}
         if request.cursors is not None:
@@ -294,7 +300,7 @@ class LiveCurves:
             latest = self._latest.get(signal.key, np.nan) * scale
             curves.append(ScopeCurve(signal, convert_to_displayed(columns.make_points(), scale, end), latest))
         earlier = overlay.make_curves(request) if overlay is not None else ()
-        self._ranges = find_ranges((*curves, *earlier), self._ranges, request)
+        self._ranges = find_lane_ranges((*curves, *earlier), self._ranges, request)
         released = self._find_trigger_time(request, newest)
         begin = -request.span_s
         return ScopePicture(

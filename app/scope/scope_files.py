@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.desk.translation import tr
-from app.scope.recording_store import INSTANT_KEY, RecordingFile, find_zero_instant
+from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingFile, find_zero_instant
 from app.scope.scope_curves import RecordingCurves
-from app.scope.scope_model import CURVES_ARE_LIVE, ScopeModel, SidePanel
+from app.scope.scope_model import CURVES_ARE_LIVE_MESSAGE, ScopeModel, SidePanel
 from core.access.access_table import ProtectedChange
 from core.message import Message
 from core.records.record import ScopeRecord
@@ -24,7 +24,7 @@ class ScopeFiles:
         """Return the record of the visible window, or None with a message while the curves are live."""
         frozen = self.scope_model.frozen_curves
         if frozen is None:
-            self.scope_model.desk.say(CURVES_ARE_LIVE)
+            self.scope_model.desk.say(CURVES_ARE_LIVE_MESSAGE)
             return None
         begin, end = (
             frozen.zero_s + self.scope_model.time_window.begin_s,
@@ -34,14 +34,14 @@ class ScopeFiles:
         if not len(cut.times_s):
             self.scope_model.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return None
-        told = {**cut.about, INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
+        told = {**cut.about, ZERO_INSTANT_KEY: f"{frozen.zero_s - float(cut.times_s[0]):.6f}"}
         return replace(cut, about=told)
 
     def save_visible(self) -> None:
         """Save the visible window as a record."""
         record = self.make_visible_record()
         if record is not None:
-            self.scope_model.file_worker.enqueue(
+            self.scope_model.file_worker.enqueue_work(
                 lambda: self.scope_model.recording_store.save_named(record),
                 self._written,
                 self.scope_model.desk.show_refusal,
@@ -51,7 +51,7 @@ class ScopeFiles:
         """Write the visible window as a CSV table."""
         record = self.make_visible_record()
         if record is not None:
-            self.scope_model.file_worker.enqueue(
+            self.scope_model.file_worker.enqueue_work(
                 lambda: self.scope_model.recording_store.write_csv(record),
                 self._written,
                 self.scope_model.desk.show_refusal,
@@ -63,7 +63,7 @@ class ScopeFiles:
 
     def reload_files(self) -> None:
         """Update the list of files."""
-        self.scope_model.file_worker.enqueue(
+        self.scope_model.file_worker.enqueue_work(
             self.scope_model.recording_store.list_files, self._listed, self.scope_model.desk.show_refusal
         )
 
@@ -86,7 +86,7 @@ class ScopeFiles:
         def done(record: ScopeRecord) -> None:
             self.scope_model.show_recording(record, name)
 
-        self.scope_model.file_worker.enqueue(work, done, self.scope_model.desk.show_refusal)
+        self.scope_model.file_worker.enqueue_work(work, done, self.scope_model.desk.show_refusal)
 
     def open_file(self, file: RecordingFile) -> None:
         """Open a record from the disk."""
@@ -96,7 +96,7 @@ class ScopeFiles:
             self.scope_model.side_panel = SidePanel.READINGS
             self.scope_model.show_recording(record, path.name)
 
-        self.scope_model.file_worker.enqueue(
+        self.scope_model.file_worker.enqueue_work(
             lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
         )
 
@@ -117,7 +117,7 @@ class ScopeFiles:
                 path.name,
             )
 
-        self.scope_model.file_worker.enqueue(
+        self.scope_model.file_worker.enqueue_work(
             lambda: shelf.read_recording(path), done, self.scope_model.desk.show_refusal
         )
 
@@ -134,8 +134,8 @@ class ScopeFiles:
             self.reload_files()
 
         def yes() -> None:
-            self.scope_model.file_worker.enqueue(
-                lambda: self.scope_model.recording_store.delete(file.path),
+            self.scope_model.file_worker.enqueue_work(
+                lambda: self.scope_model.recording_store.delete_recording(file.path),
                 gone,
                 self.scope_model.desk.show_refusal,
             )
@@ -146,6 +146,6 @@ class ScopeFiles:
     def write_picture(self, render_png: Callable[[], bytes]) -> None:
         """Save a picture of the page on a worker. ``render_png`` returns its bytes."""
         shelf = self.scope_model.recording_store
-        self.scope_model.file_worker.enqueue(
+        self.scope_model.file_worker.enqueue_work(
             lambda: shelf.write_picture(render_png()), self._written, self.scope_model.desk.show_refusal
         )

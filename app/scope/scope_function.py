@@ -24,7 +24,7 @@ class ScopeFunction(PageFunction):
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows with the recorded duration and the number of channels."""
-        scope = self.desk.page_registry.find(ScopeModel)
+        scope = self.desk.page_registry.find_model(ScopeModel)
         live = scope.live_samples if scope is not None else None
         if live is None:
             return (TableRow((tr("RECORDED"), tr("NO SCOPE DATA RECORDED ON THIS MACHINE"))),)

@@ -15,7 +15,7 @@ import numpy as np
 from app.desk.background_work import LatestRequestWorker
 from app.desk.desk import Desk
 from app.desk.translation import tr
-from app.scope.recording_store import INSTANT_KEY, RecordingStore, find_zero_instant
+from app.scope.recording_store import ZERO_INSTANT_KEY, RecordingStore, find_zero_instant
 from app.scope.scope_curves import (
     LiveCurves,
     LiveSamples,
@@ -25,7 +25,7 @@ from app.scope.scope_curves import (
     ValueRange,
 )
 from app.scope.signals import Quantity, ScopeSignal, find_default_keys, list_signals
-from app.scope.time_window import PAN_STEP_SHARE, TimeCursors, TimeWindow, Trigger, TriggerEvent
+from app.scope.time_window import PAN_STEP_FRACTION, TimeCursors, TimeWindow, Trigger, TriggerEvent
 from core.executor.snapshot import Snapshot
 from core.message import Message
 from core.records.record import ScopeRecord
@@ -35,8 +35,8 @@ MAX_LOGIC_CURVES = 12
 MIN_FROZEN_TIME_S = 60.0  # minimum seconds that are frozen; otherwise three windows
 CONSTANT_UPDATE_S = 1.0  # seconds after which constant curves are updated even without a change
 ZOOM_STEP = 1.5  # factor of one step of a lane's range
-CURVES_ARE_LIVE = tr("CURVES ARE LIVE. F2: FREEZE THEM FIRST")
-NO_SAMPLES = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD")
+CURVES_ARE_LIVE_MESSAGE = tr("CURVES ARE LIVE. F2: FREEZE THEM FIRST")
+NO_SAMPLES_MESSAGE = tr("NO SCOPE DATA ON THIS MACHINE. F9: OPEN A SCOPE RECORD")
 
 
 class SidePanel(Enum):
@@ -86,7 +86,7 @@ class ScopeModel:
         if self.live_samples is not None:
             self._carried = LiveCurves(self.live_samples)
             self.signals = list_signals(self.live_samples.channels)
-            self.time_window.limits = (-self.live_samples.buffer_length_s, 0.0)
+            self.time_window.limits_s = (-self.live_samples.buffer_length_s, 0.0)
         self.selected_keys = find_default_keys(self.signals)
 
     @property
@@ -117,8 +117,8 @@ class ScopeModel:
 
         This is called once a frame.
         """
-        self.worker.poll()
-        self.file_worker.poll()
+        self.worker.deliver_results()
+        self.file_worker.deliver_results()
         if self.worker.is_busy:
             return
         wanted = self._wanted()
@@ -127,7 +127,7 @@ class ScopeModel:
         elif (self.frozen_curves, self.overlay_curves, wanted) != self._drawn:
             self._drawn = (self.frozen_curves, self.overlay_curves, wanted)
             frozen, overlay = self.frozen_curves, self.overlay_curves
-            self.worker.request(
+            self.worker.request_work(
                 lambda _: frozen.make_picture(wanted, overlay), self._accept_picture, self.desk.say
             )
 
@@ -156,7 +156,7 @@ class ScopeModel:
         released = self._released
         if (
             released is not None
-            and live.newest_time_s >= released + (1.0 - self.trigger.share_before) * wanted.span_s
+            and live.newest_time_s >= released + (1.0 - self.trigger.fraction_before) * wanted.span_s
         ):
             self._released = None
             self._freeze_window(released, wanted.span_s)
@@ -164,7 +164,7 @@ class ScopeModel:
         if not self._is_unchanged(wanted):
             self._asked = wanted, self.desk.read_snapshot(), self.desk.clock.read_seconds()
             taken = partial(self._accept_picture, of=(wanted.trigger, wanted.armed))
-            self.worker.request(lambda _: carried.make_picture(wanted, overlay), taken, self.desk.say)
+            self.worker.request_work(lambda _: carried.make_picture(wanted, overlay), taken, self.desk.say)
 
     def _is_unchanged(self, wanted: PictureRequest) -> bool:
         """Return whether the picture of constant curves is still valid.
@@ -186,7 +186,7 @@ class ScopeModel:
             return  # requested before the change between live and frozen
         self.picture = sight
         if self.is_armed and self._released is None and of == (self.trigger, self._armed_at):
-            self._released = sight.trigger_time
+            self._released = sight.trigger_time_s
 
     # --- live and frozen -----------------------------------------------------------------------------
 
@@ -202,19 +202,19 @@ class ScopeModel:
         if self.frozen_curves is not None:
             self.return_to_live()
         elif not self.has_samples:
-            self.desk.say(NO_SAMPLES)
+            self.desk.say(NO_SAMPLES_MESSAGE)
         else:
             self._freeze_window(None, self.time_window.span_s)
 
     def return_to_live(self) -> None:
         """Return to live curves, and rearm the trigger."""
         if self.live_samples is None:
-            self.desk.say(NO_SAMPLES)
+            self.desk.say(NO_SAMPLES_MESSAGE)
             return
         span = self.time_window.span_s
         self.frozen_curves, self.recording_name, self._drawn, self._released = None, "", None, None
-        self.cursors.active_cursor = -1
-        self.time_window.limits = (-self.live_samples.buffer_length_s, 0.0)
+        self.cursors.active_index = -1
+        self.time_window.limits_s = (-self.live_samples.buffer_length_s, 0.0)
         self.time_window.end_s = 0.0
         self.time_window.begin_s = -min(span, self.live_samples.buffer_length_s)
         self._arm_trigger()
@@ -234,18 +234,18 @@ class ScopeModel:
             record = live.read_between(end - most, end)
             if instant is None or not len(record.times_s):
                 return record
-            metadata = {**record.about, INSTANT_KEY: f"{instant - float(record.times_s[0]):.6f}"}
+            metadata = {**record.about, ZERO_INSTANT_KEY: f"{instant - float(record.times_s[0]):.6f}"}
             return replace(record, about=metadata)
 
         def done(record: ScopeRecord) -> None:
-            before = 1.0 if instant is None else self.trigger.share_before
+            before = 1.0 if instant is None else self.trigger.fraction_before
             self.is_armed = False
             self.show_recording(record, "", (-before * span, (1.0 - before) * span))
 
-        self.worker.request(take, done, self.desk.say)
+        self.worker.request_work(take, done, self.desk.say)
 
     def show_recording(
-        self, record: ScopeRecord, name: str, window: tuple[float, float] | None = None
+        self, record: ScopeRecord, recording_name: str, window: tuple[float, float] | None = None
     ) -> None:
         """Show a record.
 
@@ -255,10 +255,14 @@ class ScopeModel:
             self.desk.say(tr("THE RECORD CONTAINS NO SAMPLES FOR THIS TIME RANGE"))
             return
         zero = find_zero_instant(record)
-        self.frozen_curves, self.recording_name, self._drawn = RecordingCurves(record, zero), name, None
+        self.frozen_curves, self.recording_name, self._drawn = (
+            RecordingCurves(record, zero),
+            recording_name,
+            None,
+        )
         self.is_armed, self._released = False, None
-        self.cursors.active_cursor = -1
-        self.time_window.limits = (float(record.times_s[0]) - zero, float(record.times_s[-1]) - zero)
+        self.cursors.active_index = -1
+        self.time_window.limits_s = (float(record.times_s[0]) - zero, float(record.times_s[-1]) - zero)
         self.time_window.show_all()
         if window is not None:
             self.time_window.begin_s, self.time_window.end_s = window
@@ -289,9 +293,9 @@ class ScopeModel:
             return
         self.selected_keys = (*self.selected_keys, signal.key)
 
-    def mark(self, number: int) -> None:
+    def mark(self, index: int) -> None:
         """Select the curve on which the keys act."""
-        self.marked = max(0, min(number, len(self.shown) - 1))
+        self.marked = max(0, min(index, len(self.shown) - 1))
 
     def stretch_lane(self, steps: int, quantity: Quantity | None = None) -> None:
         """Magnify the lane of the selected curve around its middle by a number of steps.
@@ -308,7 +312,7 @@ class ScopeModel:
         """Move the range of a lane up by a number of steps of 10 %."""
 
         def change(low: float, high: float) -> ValueRange:
-            by = PAN_STEP_SHARE * steps * (high - low)
+            by = PAN_STEP_FRACTION * steps * (high - low)
             return low + by, high + by
 
         self._change_range(quantity, change)
@@ -321,7 +325,7 @@ class ScopeModel:
         now = self._ranges.get(quantity, self.picture.lane_ranges[quantity])
         self._ranges[quantity] = change(*now)
 
-    def fit_all(self) -> None:
+    def show_all(self) -> None:
         """Show the whole record, with all lanes scaled to their curves."""
         self.desk.clear_prompt_line()
         self._ranges.clear()
@@ -333,7 +337,7 @@ class ScopeModel:
     def zoom_window(self, steps: int, time_s: float | None = None) -> None:
         """Zoom in or out by a number of steps, around a time, the selected cursor or the middle."""
         if time_s is None and self.cursors.shown:
-            time_s = self.cursors.times_s[self.cursors.active_cursor]
+            time_s = self.cursors.times_s[self.cursors.active_index]
         self.time_window.zoom_window(steps, 0.0 if self.is_live else time_s)
 
     def magnify_window(self, factor: float, time_s: float) -> None:
@@ -350,9 +354,9 @@ class ScopeModel:
             return
         self.time_window.pan_window(shift_s)
 
-    def pan_steps(self, steps: int) -> None:
+    def pan_by_steps(self, step_count: int) -> None:
         """Move the window by a number of steps of 10 %."""
-        self.pan_window(steps * PAN_STEP_SHARE * self.time_window.span_s)
+        self.pan_window(step_count * PAN_STEP_FRACTION * self.time_window.span_s)
 
     # --- cursors -------------------------------------------------------------------------------------
 
@@ -360,21 +364,21 @@ class ScopeModel:
         """Handle F5: show or hide the two cursors on frozen curves."""
         self.desk.clear_prompt_line()
         if self.cursors.shown:
-            self.cursors.active_cursor = -1
+            self.cursors.active_index = -1
         elif self.is_live:
-            self.desk.say(CURVES_ARE_LIVE)
+            self.desk.say(CURVES_ARE_LIVE_MESSAGE)
         else:
-            self.cursors.place_in(self.time_window)
+            self.cursors.place_in_window(self.time_window)
 
     def step_cursor(self, step_px: int) -> None:
         """Move the selected cursor by a number of pixels.
 
         The window then moves as far as necessary to show the cursor.
         """
-        now = self.cursors.times_s[self.cursors.active_cursor]
+        now = self.cursors.times_s[self.cursors.active_index]
         to = now + step_px * self.time_window.span_s / max(1, self.width_px)
-        self.cursors.move_cursor(max(self.time_window.limits[0], min(to, self.time_window.limits[1])))
-        self.time_window.show_time(self.cursors.times_s[self.cursors.active_cursor])
+        self.cursors.move_cursor(max(self.time_window.limits_s[0], min(to, self.time_window.limits_s[1])))
+        self.time_window.show_time(self.cursors.times_s[self.cursors.active_index])
 
     # --- trigger -------------------------------------------------------------------------------------
 

@@ -35,10 +35,10 @@ class ScopeReadings(RowPanel):
     mark: RedrawingAttribute[object] = RedrawingAttribute(None)
 
     def __init__(
-        self, theme: ScreenTheme, scope_model: ScopeModel, on_select: Callable[[int], None], parent: QWidget
+        self, theme: ScreenTheme, scope_model: ScopeModel, select_cell: Callable[[int], None], parent: QWidget
     ) -> None:
         super().__init__(theme, parent)
-        self.scope_model, self._choose = scope_model, on_select
+        self.scope_model, self._choose = scope_model, select_cell
         self.picture = ScopePicture()
         self._known: object = None
         self.value_texts: tuple[tuple[str, ...], ...] = ()
@@ -88,7 +88,7 @@ class ScopeReadings(RowPanel):
     @property
     def row_height_px(self) -> float:
         """Return the height of a row in pixels, which is at least that of a fingertip."""
-        return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.u)
+        return max(float(FINGERTIP_PX), _ROW_HEIGHT * self.theme.unit_px)
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw one row per curve, or a message if no curve is selected.
@@ -96,7 +96,7 @@ class ScopeReadings(RowPanel):
         If the cursors are shown, the time between them is drawn above the rows.
         """
         room, shown = self.inside(), self.scope_model.shown
-        u = self.theme.u
+        u = self.theme.unit_px
         if self.scope_model.cursors.shown:
             room = self._draw_between(painter, room)
         if not shown:
@@ -113,7 +113,7 @@ class ScopeReadings(RowPanel):
 
     def _draw_between(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the time between the cursors, and return the area below it."""
-        u, apart = self.theme.u, self.scope_model.cursors.distance_s
+        u, apart = self.theme.unit_px, self.scope_model.cursors.distance_s
         hertz = Message("{item} Hz", item=f"{1.0 / abs(apart):.4g}") if apart else formats.NO_VALUE
         row = QRectF(area.x(), area.y(), area.width(), 2.6 * u)
         painter.draw_text_line(
@@ -130,7 +130,7 @@ class ScopeReadings(RowPanel):
     def _row(
         self, painter: ThemedPainter, box: QRectF, number: int, signal: ScopeSignal, *, here: bool
     ) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         colours = CURVE_COLORS[self.theme.palette.name]
         painter.fill_rect(box, "here" if here else "key")
         patch = QRectF(box.x(), box.y(), 2.4 * u, box.height())

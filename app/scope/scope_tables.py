@@ -10,7 +10,7 @@ from app.desk.pages.table_content import ROW_STEPS, FunctionKey, InputField, Tab
 from app.desk.status import formats
 from app.desk.translation import tr
 from app.scope.scope_files import ScopeFiles
-from app.scope.scope_model import NO_SAMPLES, ScopeModel, SidePanel
+from app.scope.scope_model import NO_SAMPLES_MESSAGE, ScopeModel, SidePanel
 from app.scope.signals import ScopeSignal
 from app.scope.time_window import TriggerEvent
 
@@ -94,12 +94,12 @@ class ScopeTables:
                 trigger.level * quantity.find_scale(scope.metric), quantity.places(scope.metric)
             )
         elif trigger.event is TriggerEvent.LINE:
-            what = str(trigger.line)
+            what = str(trigger.line_number)
         rows = (
             TableRow(("TRIGGER EVENT", tr(trigger.event.value))),
             TableRow(("SIGNAL", signal.title if trigger.event.needs_level and signal is not None else "")),
             TableRow(("LINE" if trigger.event is TriggerEvent.LINE else "LEVEL", f"{what} {unit}".strip())),
-            TableRow(("TRIGGER POSITION IN WINDOW", formats.format_percent(trigger.share_before))),
+            TableRow(("TRIGGER POSITION IN WINDOW", formats.format_percent(trigger.fraction_before))),
         )
         asked = self.selected_row == _LEVEL and bool(what)
         return TableContent(
@@ -142,7 +142,7 @@ class ScopeTables:
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys while the records are listed."""
         if self.scope_model.side_panel is not SidePanel.FILES:
             return {}
@@ -167,20 +167,20 @@ class ScopeTables:
             self.scope_files.delete_file(self.scope_model.recording_store.recording_files[self.selected_row])
 
     @property
-    def is_value_asked(self) -> bool:
+    def needs_value(self) -> bool:
         """Return whether the operator has to enter a value."""
         return self.scope_model.side_panel is SidePanel.TRIGGER and bool(self._trigger().question)
 
     def accepts_key(self, key: str) -> bool:
         """Return whether a character can be entered as part of a value."""
-        return self.is_value_asked and self.input_field.accepts_key(key)
+        return self.needs_value and self.input_field.accepts_key(key)
 
     def handle_key(self, key: str) -> bool:
         """Handle a key.
 
         Arrow keys select a row, Enter executes the row, and digits edit the entry.
         """
-        if self.is_value_asked and self.input_field.handle_key(key):
+        if self.needs_value and self.input_field.handle_key(key):
             self.scope_model.desk.clear_prompt_line()
             return True
         if key in ROW_STEPS and self.row_count:
@@ -232,10 +232,10 @@ class ScopeTables:
             names = [each.key for each in self.scope_model.shown]
             at = names.index(trigger.signal_key) if trigger.signal_key in names else -1
             self.scope_model.set_trigger(replace(trigger, signal_key=names[(at + 1) % len(names)]))
-        elif row == _LEVEL and self.is_value_asked and self.input_field.text:
+        elif row == _LEVEL and self.needs_value and self.input_field.text:
             self._handle_enter()
         elif row == _PLACE:
-            self.scope_model.set_trigger(trigger.with_next_share())
+            self.scope_model.set_trigger(trigger.with_next_position())
 
     def _handle_enter(self) -> None:
         """Accept the typed value, or report why the value is invalid."""
@@ -248,7 +248,7 @@ class ScopeTables:
                     tr("enter the number of the program line as a whole number, 1 or more")
                 )
                 return
-            scope.set_trigger(replace(trigger, line=line))
+            scope.set_trigger(replace(trigger, line_number=line))
             self.input_field.text = ""
             return
         signal = self._signal
@@ -274,7 +274,7 @@ class ScopeTables:
         elif scope.side_panel is not SidePanel.READINGS:
             scope.side_panel = SidePanel.READINGS
         elif scope.cursors.shown:
-            scope.cursors.active_cursor = -1
+            scope.cursors.active_index = -1
         else:
             return False
         return True
@@ -285,7 +285,7 @@ class ScopeTables:
             if self.scope_model.cursors.shown:
                 return tr("ARROWS: MOVE CURSOR   TAB: OTHER CURSOR   CTRL+ARROWS: PAN")
             if not self.scope_model.has_samples:
-                return NO_SAMPLES
+                return NO_SAMPLES_MESSAGE
             return tr("UP/DOWN: SELECT CURVE   Z: ZOOM   CTRL+ARROWS: PAN, STRETCH")
         if self.scope_model.side_panel is SidePanel.CURVES:
             return tr("ENTER: SHOW OR HIDE CURVE   ESC: BACK TO CURVES")

@@ -17,7 +17,7 @@ from app.desk.status import formats
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import tr
 from app.scope.scope_curves import ScopePicture
-from app.scope.scope_model import NO_SAMPLES, ScopeModel, SidePanel
+from app.scope.scope_model import NO_SAMPLES_MESSAGE, ScopeModel, SidePanel
 from app.scope.scope_readings_view import ScopeReadings
 from app.scope.scope_tables import ScopeTables
 from app.screen import page_table
@@ -46,16 +46,16 @@ def _import_chart_class() -> type[ScopeChart]:
     return ScopeChart
 
 
-class ScopeHeadLine(Panel):
+class ScopeHeader(Panel):
     """Header line with sample rate, window, displayed data and trigger."""
 
-    ground_color = "panel"
-    head_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
+    background_color = "panel"
+    header_texts: RedrawingAttribute[tuple[str, str, bool]] = RedrawingAttribute(("", "", False))
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the texts of the header line, with a warning in a different color."""
-        u = self.theme.u
-        left, right, warn = self.head_texts
+        u = self.theme.unit_px
+        left, right, warn = self.header_texts
         room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
         half = room.width() * (0.66 if right else 1.0)
         painter.draw_text_line(QRectF(room.x(), room.y(), half, room.height()), left, 1.8, "text", raw=True)
@@ -136,7 +136,7 @@ class CurveArea(QWidget):
             away = [abs(self.chart.find_column(time) - at.x()) for time in cursors.times_s]
             nearest = away.index(min(away))
             if away[nearest] < _NEAR:
-                self._cursor = cursors.active_cursor = nearest
+                self._cursor = cursors.active_index = nearest
 
     def _move(self, at: QPointF) -> None:
         chart = self.chart
@@ -182,7 +182,7 @@ class ScopePage(ListPage):
         self.scope_model = scope
         self.scope_tables = ScopeTables(scope)
         super().__init__(host, _ScopeKeys(scope, self.scope_tables), parent)
-        self.head_line = ScopeHeadLine(self.theme, self)
+        self.head_line = ScopeHeader(self.theme, self)
         self.curve_area = CurveArea(self.theme, scope, self)
         self.readings = ScopeReadings(self.theme, scope, self._marked, self)
         self.table_panel = TablePanel(self.theme, self.scope_tables.touch_row, self)
@@ -190,7 +190,7 @@ class ScopePage(ListPage):
         self._laid: object = None
         self._drawn: object = None
         self._undrawn = True  # the present picture is not drawn yet
-        scope.file_worker.enqueue(_import_chart_class, self._create_chart, self.desk.say)
+        scope.file_worker.enqueue_work(_import_chart_class, self._create_chart, self.desk.say)
 
     def _create_chart(self, chart_class: type[ScopeChart]) -> None:
         """Insert the chart after its class has been loaded."""
@@ -204,7 +204,7 @@ class ScopePage(ListPage):
 
         Return whether work remains.
         """
-        self.scope_model.file_worker.poll()
+        self.scope_model.file_worker.deliver_results()
         chart = self.curve_area.chart
         return chart is None or not chart.prepare_plots(_LANES_AHEAD)
 
@@ -213,11 +213,11 @@ class ScopePage(ListPage):
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the displayed table."""
-        return self.make_labels({}, self.function_keys())
+        return self.make_function_key_labels({}, self.make_function_keys())
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the scope, or of the list of records if the list is open.
 
         F8 is included only if the ANALYSES page exists.
@@ -228,7 +228,7 @@ class ScopePage(ListPage):
                 "F6": FunctionKey("PICTURE", self._save_picture),
                 "F9": FunctionKey("BACK", partial(open_, SidePanel.FILES)),
             }
-            return {**self.scope_tables.function_keys(), **pictured}
+            return {**self.scope_tables.make_function_keys(), **pictured}
         return {
             "F2": FunctionKey(
                 "FREEZE" if scope.is_live else "LIVE", scope.toggle_frozen, barred=not scope.has_samples
@@ -236,7 +236,7 @@ class ScopePage(ListPage):
             "F3": FunctionKey("TRIGGER", partial(open_, SidePanel.TRIGGER)),
             "F4": FunctionKey("CURVES", partial(open_, SidePanel.CURVES)),
             "F5": FunctionKey("CURSORS", scope.toggle_cursors, barred=scope.is_live),
-            "F6": FunctionKey("FIT", scope.fit_all),
+            "F6": FunctionKey("FIT", scope.show_all),
             **(
                 {"F8": FunctionKey("ANALYZE", self._analyse)}
                 if page_table.has_page(page_table.ANALYSES)
@@ -245,20 +245,20 @@ class ScopePage(ListPage):
             "F9": FunctionKey("RECORDS", partial(open_, SidePanel.FILES)),
         }
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions, including zoom and pan."""
         scope = self.scope_model
         return {
-            **{name: key.action for name, key in self.function_keys().items()},
+            **{name: key.action for name, key in self.make_function_keys().items()},
             "Zoom in": partial(scope.zoom_window, 1),
             "Zoom out": partial(scope.zoom_window, -1),
-            "Pan left": partial(scope.pan_steps, -1),
-            "Pan right": partial(scope.pan_steps, 1),
+            "Pan left": partial(scope.pan_by_steps, -1),
+            "Pan right": partial(scope.pan_by_steps, 1),
             "Pan up": partial(scope.stretch_lane, 1),
             "Pan down": partial(scope.stretch_lane, -1),
             "Page up": partial(scope.shift_lane, 1),
             "Page down": partial(scope.shift_lane, -1),
-            "Follow": scope.fit_all,
+            "Follow": scope.show_all,
         }
 
     def is_animating(self) -> bool:
@@ -272,7 +272,7 @@ class ScopePage(ListPage):
 
     def has_text_field(self) -> bool:
         """Return whether the operator has to enter a level or a line number."""
-        return self.scope_tables.is_value_asked
+        return self.scope_tables.needs_value
 
     def handle_escape(self) -> bool:
         """Go back one step.
@@ -301,12 +301,12 @@ class ScopePage(ListPage):
             scope.width_px = round(chart.curve_area.width())
         scope.poll()
         self._lay_out_if()
-        self.head_line.head_texts = self._words()
+        self.head_line.header_texts = self._words()
         if not self.readings.isHidden():
             self.readings.show_picture(scope.picture)
         if not self.table_panel.isHidden():
             self.table_panel.show_table(self.scope_tables.make_table())
-        shown = (_find_view_key(scope.picture), scope.cursors.times_s, scope.cursors.active_cursor)
+        shown = (_find_view_key(scope.picture), scope.cursors.times_s, scope.cursors.active_index)
         if chart is not None and shown != self._drawn and chart.show_picture(scope.picture, scope.cursors):
             self._drawn = shown
         self._undrawn = chart is None or shown != self._drawn
@@ -314,7 +314,7 @@ class ScopePage(ListPage):
     def _words(self) -> tuple[str, str, bool]:
         scope, sight = self.scope_model, self.scope_model.picture
         if scope.live_samples is None and scope.is_live:
-            return NO_SAMPLES, "", True
+            return NO_SAMPLES_MESSAGE, "", True
         if self.curve_area.chart is None:
             return tr("OPENING …"), "", False
         rate = tr(Message("{rate} samples per second", rate=f"{sight.sample_rate_hz:g}"))
@@ -338,14 +338,14 @@ class ScopePage(ListPage):
         self.apply_theme()
 
     def _lay_out_if(self) -> None:
-        known = (self.size(), self.scope_model.side_panel, self.scope_tables.is_value_asked)
+        known = (self.size(), self.scope_model.side_panel, self.scope_tables.needs_value)
         if known != self._laid:
             self._laid = known
             self._lay_out()
 
     def _lay_out(self) -> None:
-        u, reading = self.theme.u, self.scope_model.side_panel is SidePanel.READINGS
-        gap, asks = max(4, round(0.7 * u)), self.scope_tables.is_value_asked
+        u, reading = self.theme.unit_px, self.scope_model.side_panel is SidePanel.READINGS
+        gap, asks = max(4, round(0.7 * u)), self.scope_tables.needs_value
         side = round((_READINGS if reading else _TABLE) * u)
         left = self.width() - side - gap
         self.readings.setVisible(reading)
@@ -374,7 +374,7 @@ class _ScopeKeys:
             scope.step_cursor(1 if key == "Right" else -1)
             return True
         if scope.cursors.shown and key == "Tab":
-            scope.cursors.activate_other()
+            scope.cursors.activate_other_cursor()
             return True
         if scope.side_panel is SidePanel.READINGS and key in {"Page up", "Page down"}:
             return False  # These keys shift the lane.

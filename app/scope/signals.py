@@ -60,21 +60,21 @@ class Quantity(Enum):
         """Return whether the unit depends on the choice of millimeters or inches."""
         return self.unit(True) != self.unit(False)
 
-    def unit(self, metric: bool) -> str:
+    def unit(self, is_metric: bool) -> str:
         """Return the display unit in the operator's language."""
-        return tr(self.value[1] if metric else self.value[2])
+        return tr(self.value[1] if is_metric else self.value[2])
 
-    def find_scale(self, metric: bool) -> float:
+    def find_scale(self, is_metric: bool) -> float:
         """Return the factor from internal units to display units."""
         if self is Quantity.OVERRIDE:
             return 100.0
         if self in {Quantity.QUEUE_TIME, Quantity.DELAY}:
             return 1000.0
-        return 1.0 / MM_PER_INCH if self.is_length and not metric else 1.0
+        return 1.0 / MM_PER_INCH if self.is_length and not is_metric else 1.0
 
-    def places(self, metric: bool) -> int:
+    def places(self, is_metric: bool) -> int:
         """Return the number of decimals of a displayed value."""
-        return _DECIMALS[self] + (1 if self.is_length and not metric else 0)
+        return _DECIMALS[self] + (1 if self.is_length and not is_metric else 0)
 
 
 _DECIMALS = {
@@ -138,7 +138,7 @@ class ScopeSignal:
 
 
 def _speed(key: str, word: str, letter: str, channel: str, quantity: Quantity) -> ScopeSignal:
-    span = record.VELOCITY_SPAN_S
+    span = record.DEFAULT_VELOCITY_SPAN_S
     return ScopeSignal(key, word, quantity, channel, letter, record.calculate_velocity, span)
 
 

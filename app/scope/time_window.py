@@ -15,7 +15,7 @@ ROUND_SPANS_S = (
     *(1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 300.0),
 )  # zoom steps in seconds
 MIN_SPAN_S = ROUND_SPANS_S[0]
-PAN_STEP_SHARE = 0.1  # ratio of the window per step
+PAN_STEP_FRACTION = 0.1  # ratio of the window per step
 
 
 @dataclass(slots=True)
@@ -23,12 +23,12 @@ class TimeWindow:
     """Time window of the scope, in seconds.
 
     The times are relative to instant 0 of the record, or to the newest sample if the curves are live.
-    ``limits`` is the largest possible window, from the start to the end of the record.
+    ``limits_s`` is the largest possible window, from the start to the end of the record.
     """
 
     begin_s: float = -10.0
     end_s: float = 0.0
-    limits: tuple[float, float] = (-300.0, 0.0)
+    limits_s: tuple[float, float] = (-300.0, 0.0)
 
     @property
     def span_s(self) -> float:
@@ -55,7 +55,7 @@ class TimeWindow:
     def magnify(self, factor: float, time_s: float | None = None) -> None:
         """Magnify the window by a factor, around a time or around the middle."""
         time_s = self.middle_s if time_s is None else time_s
-        whole = self.limits[1] - self.limits[0]
+        whole = self.limits_s[1] - self.limits_s[0]
         span = min(max(self.span_s / factor, MIN_SPAN_S), max(whole, MIN_SPAN_S))
         share = (time_s - self.begin_s) / self.span_s if self.span_s else 0.5
         self.begin_s = time_s - share * span
@@ -69,7 +69,7 @@ class TimeWindow:
 
     def show_all(self) -> None:
         """Show the whole record."""
-        self.begin_s, self.end_s = self.limits
+        self.begin_s, self.end_s = self.limits_s
         if self.span_s < MIN_SPAN_S:
             self.begin_s = self.end_s - MIN_SPAN_S
 
@@ -80,7 +80,7 @@ class TimeWindow:
 
     def _stay(self) -> None:
         span = self.span_s
-        self.begin_s = max(self.limits[0], min(self.begin_s, self.limits[1] - span))
+        self.begin_s = max(self.limits_s[0], min(self.begin_s, self.limits_s[1] - span))
         self.end_s = self.begin_s + span
 
 
@@ -88,39 +88,39 @@ class TimeWindow:
 class TimeCursors:
     """Two cursors with times in seconds.
 
-    ``active_cursor`` is the index of the cursor that the keys move, or -1 while the cursors are hidden.
+    ``active_index`` is the index of the cursor that the keys move, or -1 while the cursors are hidden.
     """
 
     times_s: tuple[float, float] = (0.0, 0.0)
-    active_cursor: int = -1
+    active_index: int = -1
 
     @property
     def shown(self) -> bool:
         """Return whether the cursors are shown."""
-        return self.active_cursor >= 0
+        return self.active_index >= 0
 
     @property
     def distance_s(self) -> float:
         """Return the time from the first to the second cursor in seconds."""
         return self.times_s[1] - self.times_s[0]
 
-    def place_in(self, window: TimeWindow) -> None:
+    def place_in_window(self, window: TimeWindow) -> None:
         """Place the cursors at one quarter and three quarters of the window."""
         quarter = 0.25 * window.span_s
-        self.times_s, self.active_cursor = (window.begin_s + quarter, window.end_s - quarter), 0
+        self.times_s, self.active_index = (window.begin_s + quarter, window.end_s - quarter), 0
 
     def move_cursor(self, time_s: float, cursor: int | None = None) -> None:
         """Move a cursor to a time.
 
         The default is the active cursor.
         """
-        self.active_cursor = self.active_cursor if cursor is None else cursor
-        self.times_s = (time_s, self.times_s[1]) if self.active_cursor == 0 else (self.times_s[0], time_s)
+        self.active_index = self.active_index if cursor is None else cursor
+        self.times_s = (time_s, self.times_s[1]) if self.active_index == 0 else (self.times_s[0], time_s)
 
-    def activate_other(self) -> None:
+    def activate_other_cursor(self) -> None:
         """Activate the other cursor."""
         if self.shown:
-            self.active_cursor = 1 - self.active_cursor
+            self.active_index = 1 - self.active_index
 
 
 FloatArray = npt.NDArray[np.float64]
@@ -142,22 +142,22 @@ class TriggerEvent(Enum):
         return self in {TriggerEvent.RISES_ABOVE, TriggerEvent.FALLS_BELOW, TriggerEvent.EXCEEDS}
 
 
-TRIGGER_SHARES = (0.1, 0.5, 0.9)  # shares of the window before the trigger
+TRIGGER_POSITIONS = (0.1, 0.5, 0.9)  # shares of the window before the trigger
 
 
 @dataclass(frozen=True, slots=True)
 class Trigger:
     """Trigger of the scope.
 
-    ``signal_key`` is the key of a signal. ``level`` is in internal units. ``share_before`` is the fraction
+    ``signal_key`` is the key of a signal. ``level`` is in internal units. ``fraction_before`` is the fraction
     of the window before the event.
     """
 
     event: TriggerEvent = TriggerEvent.OFF
     signal_key: str = ""
     level: float = 0.0
-    line: int = 1
-    share_before: float = 0.5
+    line_number: int = 1
+    fraction_before: float = 0.5
 
     @property
     def watched_key(self) -> str:
@@ -169,10 +169,12 @@ class Trigger:
             return self.signal_key
         return {TriggerEvent.ALARM: "state", TriggerEvent.LINE: "line"}.get(self.event, "")
 
-    def with_next_share(self) -> Trigger:
+    def with_next_position(self) -> Trigger:
         """Return a copy with the next position of the event in the window."""
-        at = TRIGGER_SHARES.index(self.share_before) if self.share_before in TRIGGER_SHARES else -1
-        return replace(self, share_before=TRIGGER_SHARES[(at + 1) % len(TRIGGER_SHARES)])
+        at = (
+            TRIGGER_POSITIONS.index(self.fraction_before) if self.fraction_before in TRIGGER_POSITIONS else -1
+        )
+        return replace(self, fraction_before=TRIGGER_POSITIONS[(at + 1) % len(TRIGGER_POSITIONS)])
 
     def find_trigger_time(
         self, times: FloatArray, values: FloatArray, alarm_values: frozenset[int]
@@ -198,5 +200,5 @@ class Trigger:
         if self.event is TriggerEvent.EXCEEDS:
             return np.asarray(np.abs(values) > abs(self.level))
         if self.event is TriggerEvent.LINE:
-            return np.asarray(values == self.line)
+            return np.asarray(values == self.line_number)
         return np.isin(values, sorted(alarmed))

@@ -41,7 +41,7 @@ def _make_interface(kind: str, shown: QObject) -> QAccessibleInterface | None:
     return AccessiblePanel(shown) if isinstance(shown, Panel) else AccessiblePart(shown)
 
 
-def speak_text(widget: QWidget, text: str) -> None:
+def announce_text(widget: QWidget, text: str) -> None:
     """Let a screen reader speak a text that has appeared.
 
     Without a screen reader, this does nothing.

@@ -171,12 +171,12 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self.setCacheMode(QGraphicsView.CacheModeFlag.CacheNone)
         self.apply_theme()
 
-    def prepare_plots(self, count: int) -> bool:
-        """Return whether ``count`` plots exist.
+    def prepare_plots(self, plot_count: int) -> bool:
+        """Return whether ``plot_count`` plots exist.
 
         Each call creates at most one missing plot, so that no call takes longer than a frame.
         """
-        if len(self.plots) + len(self._spare) < count:
+        if len(self.plots) + len(self._spare) < plot_count:
             self._spare.append(ChartPlot())
             return False
         return True
@@ -200,19 +200,19 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         self._spare += self.plots
         self.plots.clear()
 
-    def set_left_width(self, units: float) -> None:
+    def set_left_axis_width(self, units: float) -> None:
         """Set the width of all left axes in screen units, so that the plots are aligned."""
         for plot in self.plots:
-            plot.find_axis("left").setWidth(round(units * self.theme.u))
+            plot.find_axis("left").setWidth(round(units * self.theme.unit_px))
 
     def apply_theme(self) -> None:
         """Apply the current colors and font sizes."""
-        margin = round(0.4 * self.theme.u)
-        top = round(0.6 * _TICK * self.theme.u)  # Half of the top label is above the highest line.
+        margin = round(0.4 * self.theme.unit_px)
+        top = round(0.6 * _TICK * self.theme.unit_px)  # Half of the top label is above the highest line.
         self.ci.layout.setContentsMargins(margin, top, margin, margin)
-        self.ci.layout.setSpacing(round(1.2 * self.theme.u))  # Keep the labels of two axes apart.
+        self.ci.layout.setSpacing(round(1.2 * self.theme.unit_px))  # Keep the labels of two axes apart.
         self.setAccessibleName(tr("CHART"))
-        self.setBackground(self.theme.color("panel"))
+        self.setBackground(self.theme.get_color("panel"))
         for plot in self.plots:
             self._dress(plot)
 
@@ -221,12 +221,12 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         font = look.make_font(_TICK)
         for side in ("left", "bottom"):
             axis = plot.find_axis(side)
-            axis.setPen(make_line_pen(look.color("frame")))
-            axis.setTextPen(make_line_pen(look.color("soft")))
-            axis.setStyle(tickFont=font, tickLength=-round(0.5 * look.u))
+            axis.setPen(make_line_pen(look.get_color("frame")))
+            axis.setTextPen(make_line_pen(look.get_color("soft")))
+            axis.setStyle(tickFont=font, tickLength=-round(0.5 * look.unit_px))
             axis.labelStyle = {
                 "color": look.palette.soft,
-                "font-size": f"{max(8, round(MIN_TEXT_SIZE * look.u))}px",
+                "font-size": f"{max(8, round(MIN_TEXT_SIZE * look.unit_px))}px",
                 "font-family": FONT_FAMILY,
             }
             if axis.labelText:
@@ -234,12 +234,12 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
 
     def name(self, painter: QPainter, text: str, area: QRectF) -> None:
         """Draw the name of a plot in its upper left corner, on a filled background."""
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.setFont(self.theme.make_font(_NAME, is_bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(text)
         box = QRectF(area.x() + 0.4 * u, area.y() + 0.3 * u, wide + 0.8 * u, 2.0 * u)
-        painter.fillRect(box, self.theme.color("panel"))
-        painter.setPen(self.theme.color("soft"))
+        painter.fillRect(box, self.theme.get_color("panel"))
+        painter.setPen(self.theme.get_color("soft"))
         painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
     def drawBackground(self, painter: QPainter, rect: QRectF) -> None:
@@ -248,6 +248,6 @@ class Chart(pg.GraphicsLayoutWidget):  # type: ignore[misc]
         The lines are drawn together, which takes a tenth of the time of pyqtgraph's grid.
         """
         super().drawBackground(painter, rect)
-        painter.setPen(make_line_pen(self.theme.color("ghost")))
+        painter.setPen(make_line_pen(self.theme.get_color("ghost")))
         for plot in self.plots:
             painter.drawLines(plot.find_grid_lines())

@@ -46,13 +46,13 @@ class CodeChoiceList(RowPanel):
 
     def _find_foot_height(self) -> float:
         """Return the total height of the words and the example in pixels."""
-        return self._find_example_height() + self._count_word_rows() * WORD_ROW_HEIGHT * self.theme.u
+        return self._find_example_height() + self._count_word_rows() * WORD_ROW_HEIGHT * self.theme.unit_px
 
     def _find_example_height(self) -> float:
         """Return the height of the example in pixels."""
         chosen = self._help.selected_entry
         lines = chosen.example.splitlines()[:MAX_EXAMPLE_LINES] if chosen is not None else []
-        return (len(lines) * EXAMPLE_LINE_HEIGHT + 1.4) * self.theme.u if lines else 0.0
+        return (len(lines) * EXAMPLE_LINE_HEIGHT + 1.4) * self.theme.unit_px if lines else 0.0
 
     def _find_sketch_height(self) -> float:
         """Return the height of a drawing in pixels, which is 0 here.
@@ -63,7 +63,7 @@ class CodeChoiceList(RowPanel):
 
     def _count_word_rows(self) -> int:
         """Return the number of word rows that leave enough space for the selected code."""
-        count, u = len(self._help.words), self.theme.u
+        count, u = len(self._help.words), self.theme.unit_px
         wanted = count if count <= _MAX_ONE_COLUMN else -(-count // 2)
         room = (
             self.height()
@@ -75,7 +75,7 @@ class CodeChoiceList(RowPanel):
 
     def _write_words(self, painter: ThemedPainter) -> None:
         """Draw the words above the example, in two columns if there are many."""
-        u, rows = self.theme.u, self._count_word_rows()
+        u, rows = self.theme.unit_px, self._count_word_rows()
         columns = 1 if len(self._help.words) <= _MAX_ONE_COLUMN else 2
         wide = (self.width() - 3.2 * u) / columns
         top = self.height() - self._find_example_height() - rows * WORD_ROW_HEIGHT * u
@@ -90,7 +90,7 @@ class CodeChoiceList(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the code choices, with the words and an example of the selected choice."""
-        u, shown = self.theme.u, self._help
+        u, shown = self.theme.unit_px, self._help
         self.frame(painter, shown.title)
         if shown.selected_entry is None:
             return
@@ -111,7 +111,7 @@ class CodeChoiceList(RowPanel):
             EXAMPLE_LINE_HEIGHT * u,
         )
         painter.setFont(self.theme.make_font(1.9))
-        painter.setPen(self.theme.color("text"))
+        painter.setPen(self.theme.get_color("text"))
         for line in lines:
             draw_raw_text(painter, row, ALIGN_LEFT, line)
             row.translate(0, EXAMPLE_LINE_HEIGHT * u)
@@ -120,8 +120,8 @@ class CodeChoiceList(RowPanel):
         marked = number == self._help.marked
         if marked:
             painter.fill_rect(box, "lit")
-        room = box.adjusted(0.6 * self.theme.u, 0.2 * self.theme.u, -0.4 * self.theme.u, 0)
-        draw_entry(painter, room, entry, *(("on_lit", "on_lit") if marked else ("accent", "text")))
+        room = box.adjusted(0.6 * self.theme.unit_px, 0.2 * self.theme.unit_px, -0.4 * self.theme.unit_px, 0)
+        draw_code_entry(painter, room, entry, *(("on_lit", "on_lit") if marked else ("accent", "text")))
         self.add_target(box, partial(self._press_choice, number), kind="row", is_on=marked)
 
     def scroll_by(self, rows: int) -> None:
@@ -136,15 +136,17 @@ class CodeChoiceList(RowPanel):
             self._help.mark(number)
 
 
-def draw_entry(painter: ThemedPainter, box: QRectF, entry: CodeBookEntry, code: str, text: str) -> None:
+def draw_code_entry(
+    painter: ThemedPainter, box: QRectF, entry: CodeBookEntry, code_color: str, text_color: str
+) -> None:
     """Draw the syntax of a code, with its meaning below it."""
     upper = box.adjusted(0, 0, 0, -box.height() / 2)
-    painter.draw_text_line(upper, entry.form, 1.9, code, raw=True, fit=False)
+    painter.draw_text_line(upper, entry.form, 1.9, code_color, raw=True, fit=False)
     painter.draw_text_line(
-        upper.translated(0, upper.height() - 0.2 * painter.theme.u),
+        upper.translated(0, upper.height() - 0.2 * painter.theme.unit_px),
         entry.what,
         1.7,
-        text,
+        text_color,
         bold=False,
         fit=False,
     )

@@ -52,16 +52,16 @@ class SketchPanel(Panel):
         self,
         theme: ScreenTheme,
         on_dimension_touch: Callable[[str], None],
-        on_touch_elsewhere: Callable[[tuple[float, float]], None],
+        on_other_touch: Callable[[tuple[float, float]], None],
         parent: QWidget,
     ) -> None:
         """Create the panel.
 
-        ``on_dimension_touch`` is called with the word of a touched dimension. ``on_touch_elsewhere`` is
+        ``on_dimension_touch`` is called with the word of a touched dimension. ``on_other_touch`` is
         called with the point of any other touch, in coordinates of the sketch.
         """
         super().__init__(theme, parent)
-        self._touch, self._beside = on_dimension_touch, on_touch_elsewhere
+        self._touch, self._beside = on_dimension_touch, on_other_touch
         self._scale, self._middle, self._centre = 1.0, (0.0, 0.0), QPointF()
 
     def draw(self, painter: ThemedPainter) -> None:
@@ -85,10 +85,12 @@ class SketchPanel(Panel):
     def _fit_sketch(self, drawn: Sketch) -> None:
         """Center the drawing in the panel at the largest possible scale."""
         points = [p for each in drawn.outlines for p in each.points]
-        points += [(dim.start[0], dim.start[1] + dim.distance) for dim in drawn.dimensions]
+        points += [(dim.start[0], dim.start[1] + dim.line_distance) for dim in drawn.dimensions]
         low = min(p[0] for p in points), min(p[1] for p in points)
         high = max(p[0] for p in points), max(p[1] for p in points)
-        room = self.inside().adjusted(*(k * _DRAWING_MARGIN * self.theme.u for k in (0.8, 0.4, -0.8, -0.4)))
+        room = self.inside().adjusted(
+            *(k * _DRAWING_MARGIN * self.theme.unit_px for k in (0.8, 0.4, -0.8, -0.4))
+        )
         wide, tall = max(high[0] - low[0], 1e-6), max(high[1] - low[1], 1e-6)
         self._scale = max(1e-6, min(room.width() / wide, room.height() / tall))
         self._middle = (low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0
@@ -114,7 +116,7 @@ class SketchPanel(Panel):
         shape = QPolygonF([self._at(p) for p in each.points])
         ground = _FILL_COLORS.get(each.role)
         if each.is_closed:
-            painter.setBrush(self.theme.color(ground) if ground else Qt.BrushStyle.NoBrush)
+            painter.setBrush(self.theme.get_color(ground) if ground else Qt.BrushStyle.NoBrush)
             painter.drawPolygon(shape)
         else:
             painter.drawPolyline(shape)
@@ -125,9 +127,9 @@ class SketchPanel(Panel):
         middle = self._at(dim.start)
         if dim.end is not None:
             a, b = self._at(dim.start), self._at(dim.end)
-            lift = QPointF(0.0, -dim.distance * self._scale)
-            painter.setPen(QPen(self.theme.color(ink), 1.0))
-            if dim.distance:
+            lift = QPointF(0.0, -dim.line_distance * self._scale)
+            painter.setPen(QPen(self.theme.get_color(ink), 1.0))
+            if dim.line_distance:
                 painter.drawLine(a, a + lift)
                 painter.drawLine(b, b + lift)
             line = QLineF(a + lift, b + lift)
@@ -143,14 +145,14 @@ class SketchPanel(Panel):
             return
         for turn in (20.0, -20.0):
             side = QLineF(line)
-            side.setLength(_ARROW_SIZE * self.theme.u)
+            side.setLength(_ARROW_SIZE * self.theme.unit_px)
             side.setAngle(line.angle() + turn)
             painter.drawLine(side)
 
     def _figure(
         self, painter: ThemedPainter, at: QPointF, figure: str, ink: str, word: str, *, marked: bool
     ) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         metrics = QFontMetricsF(self.theme.make_font(_NUMBER_HEIGHT, is_bold=True))
         wide, tall = metrics.horizontalAdvance(figure) + 1.2 * u, 2.6 * u
         box = QRectF(at.x() - wide / 2.0, at.y() - tall / 2.0, wide, tall)
@@ -164,7 +166,7 @@ class SketchPanel(Panel):
 
     def _make_touch_box(self, box: QRectF) -> QRectF:
         """Return a rectangle around a number that is large enough for a touch and inside the panel."""
-        least = max(5.0 * self.theme.u, FINGERTIP_PX)
+        least = max(5.0 * self.theme.unit_px, FINGERTIP_PX)
         side, up = (max(0.0, least - have) / 2.0 for have in (box.width(), box.height()))
         place = box.adjusted(-side, -up, side, up)
         place.moveLeft(max(0.0, min(place.x(), self.width() - place.width())))
@@ -187,7 +189,7 @@ def draw_tool_outline(
 
     Z points right and X points down. ``is_small`` omits the arrows of the axes and draws a smaller cross.
     """
-    look, u = painter.theme, painter.theme.u
+    look, u = painter.theme, painter.theme.unit_px
     place = _make_transform(box, outline)
     painter.save()
     painter.setClipRect(box)
@@ -197,7 +199,7 @@ def draw_tool_outline(
     ):
         for points in polygons:
             painter.setPen(look.make_pen(ink, 0.16))
-            painter.setBrush(look.color(ground))
+            painter.setBrush(look.get_color(ground))
             painter.drawPolygon(place.map(_polygon(points)))
     at = place.map(QPointF(0.0, 0.0))
     painter.setPen(look.make_pen("tip", 0.2))
@@ -240,7 +242,7 @@ def _polygon(points: FloatArray) -> QPolygonF:
 
 def _draw_axes(painter: ThemedPainter, box: QRectF) -> None:
     """Draw the axis arrows in the upper left corner, with Z+ to the right and X+ down."""
-    u = painter.theme.u
+    u = painter.theme.unit_px
     at, long = QPointF(box.x() + 1.2 * u, box.y() + 1.2 * u), 3.0 * u
     painter.setPen(painter.theme.make_pen("soft", 0.14))
     painter.drawLine(at, at + QPointF(long, 0))
@@ -263,13 +265,13 @@ def draw_tool_tip(painter: ThemedPainter, box: QRectF, quadrant: int, color: str
     painter.save()
     painter.setClipRect(box)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.theme.color("ghost"))
+    painter.setBrush(painter.theme.get_color("ghost"))
     if (z, x) != (0, 0):
         painter.drawPath(_make_body_path(middle, math.atan2(-x, -z), radius, side))
     painter.setPen(painter.theme.make_pen(color, 0.16))
     painter.drawEllipse(middle, radius, radius)
     painter.setPen(Qt.PenStyle.NoPen)
-    painter.setBrush(painter.theme.color("tip"))
+    painter.setBrush(painter.theme.get_color("tip"))
     dot = max(1.5, 0.06 * side)
     painter.drawEllipse(middle + QPointF(radius * z, radius * x), dot, dot)
     painter.restore()

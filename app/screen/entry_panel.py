@@ -77,7 +77,7 @@ class LetterPad(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the keys of the touch keyboard, which fill the width of each row."""
-        gap = 0.6 * self.theme.u
+        gap = 0.6 * self.theme.unit_px
         high = (self.height() + gap) / len(self._rows)
         for row, keys in enumerate(self._rows):
             wide = (self.width() + gap) / len(keys)
@@ -123,12 +123,12 @@ class EntryTexts:
 class EntryPanel(Panel):
     """A panel with one input field, which is redrawn when one of its texts changes."""
 
-    ground_color = "panel"
+    background_color = "panel"
     entry_texts = RedrawingAttribute(EntryTexts())
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the subject, the change text, the input field and the footer."""
-        u, asked = self.theme.u, self.entry_texts
+        u, asked = self.theme.unit_px, self.entry_texts
         room = self.find_full_area().adjusted(1.4 * u, 0.4 * u, -1.4 * u, -0.3 * u)
         painter.draw_text_line(
             QRectF(room.x(), room.y(), 27 * u, 3.2 * u), asked.subject, 1.9, "text", bold=False
@@ -141,7 +141,7 @@ class EntryPanel(Panel):
         painter.draw_text_line(room, asked.footer_text, 1.8, "soft", bold=False)
 
     def _ask(self, painter: ThemedPainter, row: QRectF) -> None:
-        u, asked = self.theme.u, self.entry_texts
+        u, asked = self.theme.unit_px, self.entry_texts
         painter.draw_text_line(
             QRectF(row.x(), row.y(), 36 * u, row.height()), asked.question_text, 2.4, "text"
         )
@@ -152,19 +152,19 @@ class EntryPanel(Panel):
 
 
 def draw_entry_text(
-    painter: ThemedPainter, area: QRectF, text: str, *, size: float = 2.8, has_cursor: bool = True
+    painter: ThemedPainter, area: QRectF, text: str, *, height_units: float = 2.8, has_cursor: bool = True
 ) -> None:
     """Draw an input text that is ``size`` units high, with a caret if the field has the keyboard focus.
 
     A rejected text is drawn as selected, because the next character replaces it.
     """
-    u, selected = painter.theme.u, painter.theme.is_caret_shown and isinstance(text, RejectedText)
-    painter.setFont(painter.theme.fit_font(text, size, area.width() - u, is_bold=True))
+    u, selected = painter.theme.unit_px, painter.theme.is_caret_shown and isinstance(text, RejectedText)
+    painter.setFont(painter.theme.fit_font(text, height_units, area.width() - u, is_bold=True))
     wide = min(QFontMetricsF(painter.font()).horizontalAdvance(text), area.width() - u)
-    high = (size + 0.2) * u
+    high = (height_units + 0.2) * u
     if selected:
         painter.fill_rect(QRectF(area.x(), area.center().y() - high / 2, wide, high), "lit")
-    painter.draw_text_line(area, text, size, "on_lit" if selected else "text", raw=True, margin=1.0)
+    painter.draw_text_line(area, text, height_units, "on_lit" if selected else "text", raw=True, margin=1.0)
     if has_cursor and painter.theme.is_caret_shown:
         at = area.x() + wide + 0.3 * u
         painter.fill_rect(QRectF(at, area.center().y() - high / 2, 0.3 * u, high), "accent")
@@ -173,19 +173,22 @@ def draw_entry_text(
 def draw_entry_box(painter: ThemedPainter, box: QRectF, text: str, size: float = 2.8) -> None:
     """Draw an input field with its frame and text."""
     painter.draw_box(box, "accent", 0.2, "ground")
-    draw_entry_text(painter, box.adjusted(painter.theme.u, 0, -painter.theme.u, 0), text, size=size)
+    draw_entry_text(
+        painter, box.adjusted(painter.theme.unit_px, 0, -painter.theme.unit_px, 0), text, height_units=size
+    )
 
 
-def style_line_edit(edit: QLineEdit, theme: ScreenTheme, size: float, left: float) -> None:
+def style_line_edit(edit: QLineEdit, theme: ScreenTheme, size: float, left_padding: float) -> None:
     """Apply the current font and colors to a line edit.
 
-    ``left`` is the padding before the text, in units.
+    ``left_padding`` is the padding before the text, in units.
     """
-    u, colours = theme.u, theme.palette
+    u, colours = theme.unit_px, theme.palette
     edit.setFont(theme.make_font(size, is_bold=True))
     edit.setStyleSheet(
         f"QLineEdit {{ background: {colours.ground}; color: {colours.text};"
-        f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: {round(left * u)}px;"
+        f" border: {max(1, round(0.2 * u))}px solid {colours.accent}; padding-left: "
+        f"{round(left_padding * u)}px;"
         f" selection-background-color: {colours.lit}; selection-color: {colours.on_lit}; }}"
     )
 

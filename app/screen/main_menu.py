@@ -32,17 +32,17 @@ class MenuPage(Page):
 
     def __init__(self, host: PageHost, parent: QWidget) -> None:
         super().__init__(host, parent)
-        self._entries = list_menu_entries(host.desk.machine.language)
-        self._keys = map_menu_keys(host.desk.machine.language)
+        self._entries = list_menu_entries(host.desk.machine.program_language)
+        self._keys = map_menu_keys(host.desk.machine.program_language)
         labels = {"F1": "MENU", "F7": "ALARMS", **{key: each.menu_label for key, each in self._keys.items()}}
         self._labels = tuple(labels.get(f"F{number}", "") for number in range(1, 11))
         self.menu_list = _MenuTiles(self.theme, host.press_key, self._entries, self)
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the pages that this machine has."""
         return self._labels
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the keys of the editor and MDI pages while these pages cannot be opened."""
         snapshot, named = self.desk.read_snapshot(), self.desk.program_loader.loaded.path is not None
         found = {
@@ -54,9 +54,9 @@ class MenuPage(Page):
     def refresh(self, snapshot: Snapshot, status: MachineStatus, loaded: LoadedProgram) -> None:
         """Dim the tiles of pages that cannot be opened now."""
         super().refresh(snapshot, status, loaded)
-        self.menu_list.barred = self.disabled_keys()
+        self.menu_list.barred = self.find_disabled_keys()
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the menu's keys."""
         return {MENU_KEYS.get(key, key): partial(self._open, entry.name) for key, entry in self._keys.items()}
 
@@ -101,7 +101,7 @@ class _MenuTiles(Panel):
         self._press, self._entries = press, entries
 
     def draw(self, painter: ThemedPainter) -> None:
-        u, room = self.theme.u, self.inside()
+        u, room = self.theme.unit_px, self.inside()
         rows = -(-len(self._entries) // COLUMN_COUNT)
         wide, high = room.width() / COLUMN_COUNT, min(room.height() / rows, 13.0 * u)
         tall = max(high - u, min(high, FINGERTIP_PX))
@@ -113,7 +113,7 @@ class _MenuTiles(Panel):
             self.add_target(box, press, is_disabled=entry.key in self.barred)
 
     def _tile(self, painter: ThemedPainter, box: QRectF, entry: PageDescription) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         barred = entry.key in self.barred
         ink = "soft" if barred else "accent"
         painter.draw_box(box, "frame" if barred else "accent", 0.2, "panel" if barred else "key")

@@ -8,16 +8,16 @@ first opened. A page may override the following members:
 - ``NAME``: its name in ``app.screen.page_table``, which the title line shows.
 - ``LABELS``: ten labels of up to eight characters for the function keys. F1 is MENU.
   An empty label means that there is no key.
-- ``key_labels()``: the labels, if they change.
-- ``disabled_keys()``: the function keys that are disabled now. They are drawn dim, and show the reason
+- ``make_key_labels()``: the labels, if they change.
+- ``find_disabled_keys()``: the function keys that are disabled now. They are drawn dim, and show the reason
   when they are pressed.
 - ``STARTS``: whether the start buttons can start cycles while the page is shown.
-- ``key_actions()``: its key actions, by the key names of ``app.screen.window.key_table``. They
+- ``make_key_actions()``: its key actions, by the key names of ``app.screen.window.key_table``. They
   have priority over the actions of the frame. H, E, D, R and the pots work on every page without
   a caret, and F1 works on all pages.
 - ``handle_key_press``: receives every key press first, including repeats. True means that the page
   has handled the key.
-- ``end_held_actions()``: called before any other key or touch acts. Actions that need a key held down
+- ``stop_held_actions()``: called before any other key or touch acts. Actions that need a key held down
   end.
 - ``handle_key_release``: receives every key release.
 - ``release_all()``: called if no more key releases will arrive. All such actions end.
@@ -27,7 +27,7 @@ first opened. A page may override the following members:
 - ``accepts_key(key)``: whether this character is text input. Lamps then do not show it as their key.
 - ``has_text_field()``: whether an input field has the keyboard focus. Only then is a caret drawn, and
   every character belongs to the field.
-- ``pending_question()``: a question of the page, which has priority on the prompt line.
+- ``find_pending_question()``: a question of the page, which has priority on the prompt line.
 - ``prompt_text()``: the text of the prompt line if there is no message and no alarm.
 - ``can_open()``: whether the page can be opened now. If not, it shows the reason with ``desk.say``.
 - ``on_open()``: called when the page has opened. It may take the focus from the window.
@@ -70,7 +70,7 @@ _LABELS: Mapping[str, Mapping[str, str]] = {
 }
 
 
-def find_label(language: str, label: str) -> str:
+def find_key_label(language: str, label: str) -> str:
     """Return the key label that is used on a machine with this programming language."""
     return _LABELS.get(language, {}).get(label, label)
 
@@ -109,21 +109,21 @@ class Page(QWidget):
         """Return the name for assistive technology."""
         return self.NAME
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels that the function keys have now.
 
         This is called once a frame.
         """
-        return tuple(find_label(self.desk.machine.language, label) for label in self.LABELS)
+        return tuple(find_key_label(self.desk.machine.program_language, label) for label in self.LABELS)
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are disabled now.
 
         This is called once a frame.
         """
         return frozenset()
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of this page, by key name."""
         return {}
 
@@ -140,7 +140,7 @@ class Page(QWidget):
         The base class does nothing.
         """
 
-    def end_held_actions(self) -> None:
+    def stop_held_actions(self) -> None:
         """End the actions of keys held down, because another key or touch will act next."""
 
     def release_all(self) -> None:
@@ -182,7 +182,7 @@ class Page(QWidget):
         """Return whether the page shows an animation or live measurements."""
         return False
 
-    def pending_question(self) -> str:
+    def find_pending_question(self) -> str:
         """Return a question of the page that must always be visible.
 
         Return an empty string if there is no question.
@@ -276,7 +276,7 @@ class ModelPage(Page):
         return self.model.handle_escape()
 
 
-class HeadKey(NamedTuple):
+class HeaderKey(NamedTuple):
     """A touch target above the editor's text that opens the panel.
 
     ``label`` is the text of the target. ``name`` is the name of the equivalent key.
@@ -301,15 +301,15 @@ class EditorPanel(QWidget):
         self.model = PanelModel()
         self.hide()
 
-    def make_head_keys(self, name: str) -> Sequence[HeadKey]:  # noqa: ARG002
+    def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:  # noqa: ARG002
         """Return the targets above the text of a program with this name, from right to left."""
         return ()
 
-    def open_for_text(self, key: str, name: str, text: str, line: int) -> str:  # noqa: ARG002
+    def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:  # noqa: ARG002
         """Open the panel for this text.
 
-        Return why this is not possible, or an empty string. ``line`` is the line of the cursor, counted
-        from 1. ``key`` is the name of the pressed key, or empty if a program is made from a file.
+        Return why this is not possible, or an empty string. ``line_number`` is the line of the cursor,
+        counted from 1. ``key`` is the name of the pressed key, or empty if a program is made from a file.
         """
         return ""
 

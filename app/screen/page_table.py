@@ -156,7 +156,7 @@ ALL_PAGES = tuple(
     insert_after(
         _OWN_PAGES,
         lambda entry: entry.name,
-        [(page, page.preceding_page) for extra in extras().values() for page in extra.pages],
+        [(page, page.preceding_page) for extra in extras().values() for page in extra.page_descriptions],
     )
 )
 MENU_PAGES = tuple(entry for entry in ALL_PAGES if entry.key)
@@ -168,7 +168,7 @@ _REPLACED_PAGES = {
 }
 
 
-def find_page_name(language: str, name: str) -> str:
+def find_replacement_page(language: str, name: str) -> str:
     """Return the name of the page that replaces the page ``name`` on a machine with this language."""
     return _REPLACED_PAGES.get(language, {}).get(name, name)
 
@@ -187,9 +187,9 @@ def map_menu_keys(language: str) -> dict[str, PageDescription]:
     by_name = {entry.name: entry for entry in entries}
     absent = [entry for entry in MENU_PAGES if language not in entry.languages]
     instead = {
-        entry.key: by_name[find_page_name(language, entry.name)]
+        entry.key: by_name[find_replacement_page(language, entry.name)]
         for entry in absent
-        if find_page_name(language, entry.name) in by_name
+        if find_replacement_page(language, entry.name) in by_name
     }
     return {**instead, **{entry.key: entry for entry in entries}}
 
@@ -231,19 +231,19 @@ def make_page(name: str, host: PageHost, parent: QWidget) -> Page:
     return page
 
 
-def import_class(dotted: str) -> Any:
+def import_class(dotted_name: str) -> Any:
     """Import the class with this dotted name, and return it."""
-    module, _, name = dotted.rpartition(".")
+    module, _, name = dotted_name.rpartition(".")
     return getattr(import_module(module), name)
 
 
-def find_editor_panel(default: Any) -> Any:
+def find_editor_panel_class(default: Any) -> Any:
     """Return the panel class that an optional feature adds to the editor, or ``default``."""
     return import_class(_PANELS[0]) if _PANELS else default
 
 
 def _model(entry: PageDescription, host: PageHost) -> object:
-    model = host.desk.page_registry.find(import_class(entry.model_class))
+    model = host.desk.page_registry.find_model(import_class(entry.model_class))
     if model is None:
         raise RuntimeError(f"the desk was put together without {entry.model_class}")
     return model
@@ -258,7 +258,7 @@ _LOADING_PHASES = frozenset(
 )
 
 
-def create_types() -> Iterator[bool]:
+def create_qt_classes() -> Iterator[bool]:
     """Create all PySide classes on Qt's thread, in slices, before a worker imports pyqtgraph.
 
     PySide creates a class when it is first used. If two threads do this at the same time, the process can
@@ -299,7 +299,7 @@ class PagePreloader:
         if self.is_done or now < self._next or self._desk.program_loader.loaded.phase in _LOADING_PHASES:
             return
         self._next = now + MIN_SLICE_INTERVAL_S
-        self._worker.poll()
+        self._worker.deliver_results()
         if not self._worker.is_busy and next(self._slices, True):
             self.is_done = True
             gc.freeze()  # Exclude the modules from garbage collection, which stops every thread.
@@ -314,10 +314,10 @@ class PagePreloader:
 
         A slice imports a page or prepares a part of it.
         """
-        yield from create_types()
-        for entry in list_pages(self._desk.machine.language):
+        yield from create_qt_classes()
+        for entry in list_pages(self._desk.machine.program_language):
             found: list[None] = []
-            self._worker.enqueue(partial(import_page_classes, entry), found.append, lambda _why: None)
+            self._worker.enqueue_work(partial(import_page_classes, entry), found.append, lambda _why: None)
             yield False
             if found and entry.deferred_modules and self._has_model(entry):
                 page = self._page_of(entry.name)
@@ -328,5 +328,5 @@ class PagePreloader:
     def _has_model(self, entry: PageDescription) -> bool:
         return (
             not entry.model_class
-            or self._desk.page_registry.find(import_class(entry.model_class)) is not None
+            or self._desk.page_registry.find_model(import_class(entry.model_class)) is not None
         )

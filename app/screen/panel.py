@@ -74,7 +74,7 @@ class Panel(QWidget):
     title = ""
     accessible_name = ""  # For assistive technology, if the panel has no title.
     is_list = False  # The targets are the rows of a list.
-    ground_color = "ground"
+    background_color = "ground"
     paint_count: ClassVar[int] = 0  # Number of paint events of all panels.
 
     def __init__(self, theme: ScreenTheme, parent: QWidget | None = None) -> None:
@@ -94,7 +94,7 @@ class Panel(QWidget):
         Panel.paint_count += 1
         with ThemedPainter(self, self.theme) as painter:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-            painter.fill_rect(self.find_full_area(), self.ground_color)
+            painter.fill_rect(self.find_full_area(), self.background_color)
             self._places.clear()
             if self.title:
                 self.frame(painter, self.title)
@@ -199,19 +199,19 @@ class Panel(QWidget):
 
     def inside(self) -> QRectF:
         """Return the rectangle inside a frame with a title, in pixels."""
-        u = self.theme.u
+        u = self.theme.unit_px
         return self.find_full_area().adjusted(1.2 * u, 2.6 * u, -1.2 * u, -0.9 * u)
 
     def frame(self, painter: ThemedPainter, title: str, color: str = "frame", width: float = 0.16) -> None:
         """Draw a frame with its title in the top edge, as on text screens."""
-        look, u, title = self.theme, self.theme.u, tr(title)
+        look, u, title = self.theme, self.theme.unit_px, tr(title)
         self._titled = title
         top = 1.0 * u
         pen = look.make_pen(color, width)
         half = pen.widthF() / 2
         box = self.find_full_area().adjusted(half, top, -half, -half)
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.color("panel"))
+        painter.setBrush(look.get_color("panel"))
         painter.drawRect(box)
         painter.setPen(QPen(pen))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -220,9 +220,11 @@ class Panel(QWidget):
         painter.setFont(font)
         wide = QFontMetricsF(font).horizontalAdvance(title)
         patch = QRectF(1.6 * u, 0.0, wide + 1.2 * u, 2.0 * u)
-        painter.fillRect(QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.color("ground"))
+        painter.fillRect(
+            QRectF(patch.x(), top - half - 1, patch.width(), 2 * half + 2), look.get_color("ground")
+        )
         painter.fill_rect(QRectF(patch.x(), top, patch.width(), 1.0 * u), "panel")
-        painter.setPen(look.color("soft"))
+        painter.setPen(look.get_color("soft"))
         draw_text(painter, patch.adjusted(0.6 * u, 0, 0, 0), ALIGN_LEFT, title)
 
 
@@ -240,7 +242,7 @@ class TouchControl:
     on_press: Callable[[QPointF], None]
     on_move: Callable[[QPointF], None] | None = None
     on_release: Callable[[], None] | None = None
-    acts_when_late: bool = False  # The control stops the machine, so it also acts on a late press.
+    stops_machine: bool = False  # The control stops the machine, so it also acts on a late press.
     name: str = ""  # See ``TouchTarget``.
     kind: Literal["key", "slider"] = "key"
 
@@ -258,7 +260,7 @@ class TouchControl:
 
     def make_stop_control(self) -> TouchControl:
         """Return a copy of the control that is marked as stopping the machine."""
-        return replace(self, acts_when_late=True)
+        return replace(self, stops_machine=True)
 
 
 def make_press_control(box: QRectF, press: OnPress, name: str = "") -> TouchControl:
@@ -284,7 +286,7 @@ class TouchPanel(Panel):
 
     def has_stop_control_at(self, position: QPointF) -> bool:
         """Return whether a control at this position stops the machine."""
-        return any(control.acts_when_late and control.box.contains(position) for control in self.controls)
+        return any(control.stops_machine and control.box.contains(position) for control in self.controls)
 
     @property
     def touch_count(self) -> int:

@@ -81,7 +81,7 @@ class PdfWriter:
         if kind is None:
             self.close()
         else:
-            self.discard()
+            self.discard_file()
 
     def add_pages(self, html: str, footer: str) -> None:
         """Add ``html`` on new pages, with ``footer`` and a page number at the bottom of each page."""
@@ -124,7 +124,7 @@ class PdfWriter:
             raise OSError(0, why, str(self._path))
         sync_file(self._path)
 
-    def discard(self) -> None:
+    def discard_file(self) -> None:
         """Close the unfinished file, which will not be used."""
         if self._painter.isActive():
             self._painter.end()
@@ -193,7 +193,7 @@ class _SvgObjects(QPyTextObject):
         return int(form.toImageFormat().name())
 
 
-def find_default_paper() -> PaperSize:
+def find_default_paper_size() -> PaperSize:
     """Return Letter if the computer's locale uses inches, and otherwise A4."""
     system = QLocale.system().measurementSystem()
     return PaperSize.LETTER if system is QLocale.MeasurementSystem.ImperialUSSystem else PaperSize.A4

@@ -47,16 +47,16 @@ class ProgramListing(RowPanel):
             self.first_row = max(0, min(self._bad, default=0) - 3)
             self.update()
 
-    def show_run(self, active_line: int, block: str, next_block: str) -> None:
+    def show_run(self, active_line: int, block_text: str, next_block_text: str) -> None:
         """Show the executed line (0 for none), the generated block and the next block.
 
         The next block is hidden if it equals the next source line.
         """
-        if next_block and any(
-            text.startswith(next_block) for text in self._lines[active_line : active_line + 1]
+        if next_block_text and any(
+            text.startswith(next_block_text) for text in self._lines[active_line : active_line + 1]
         ):
-            next_block = ""
-        self._line, self._block, self._next = active_line, block, next_block
+            next_block_text = ""
+        self._line, self._block, self._next = active_line, block_text, next_block_text
 
     @property
     def _high(self) -> float:
@@ -67,7 +67,7 @@ class ProgramListing(RowPanel):
     def _text_scale(self) -> float:
         """Return the scale of the letters, which depends on the line spacing."""
         # Rows for touch are higher, but their letters are not larger.
-        return min(1.0, self._high / (ROW * self.theme.u))
+        return min(1.0, self._high / (ROW * self.theme.unit_px))
 
     @property
     def _generated_blocks(self) -> tuple[str, ...]:
@@ -88,7 +88,7 @@ class ProgramListing(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the visible program lines, and scroll to the current line if the listing follows the run."""
-        u = self.theme.u
+        u = self.theme.unit_px
         count = len(self._lines)
         title = Message("PROGRAM  ·  {count} LINES", count=count) if count else "PROGRAM"
         self.frame(
@@ -107,9 +107,9 @@ class ProgramListing(RowPanel):
             self._none(painter)
 
     def _none(self, painter: ThemedPainter) -> None:
-        room, high = self.inside(), ROW * self.theme.u
+        room, high = self.inside(), ROW * self.theme.unit_px
         room.setHeight(high)
-        wide = max(10, int(room.width() / (_LETTER_WIDTH * self.theme.u)))
+        wide = max(10, int(room.width() / (_LETTER_WIDTH * self.theme.unit_px)))
         for row in wrap(tr(self.error_text or "No program loaded."), wide):
             painter.draw_text_line(
                 room, row, 2.0, "text" if self.error_text else "soft", bold=False, raw=True
@@ -125,7 +125,7 @@ class ProgramListing(RowPanel):
                     yield partial(self._block_row, painter, label, text)
 
     def _source(self, painter: ThemedPainter, number: int, row: QRectF) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         here, bad = number == self._line, number in self._bad
         if self.on_line_touched is not None:
             self.add_target(row, partial(self.on_line_touched, number), kind="row", is_on=here)
@@ -143,7 +143,7 @@ class ProgramListing(RowPanel):
         painter.draw_text_line(room, text, 2.1 * scale, "text", bold=here, raw=True, fit=False)
 
     def _block_row(self, painter: ThemedPainter, label: str, text: str, row: QRectF) -> None:
-        u, runs = self.theme.u, label == "BLOCK"
+        u, runs = self.theme.unit_px, label == "BLOCK"
         ink = "accent" if runs else "soft"
         if runs:
             self._mark(painter, row)
@@ -154,4 +154,4 @@ class ProgramListing(RowPanel):
 
     def _mark(self, painter: ThemedPainter, row: QRectF) -> None:
         painter.fill_rect(row, "here")
-        painter.fill_rect(QRectF(row.x(), row.y(), 0.7 * self.theme.u, row.height()), "lit")
+        painter.fill_rect(QRectF(row.x(), row.y(), 0.7 * self.theme.unit_px, row.height()), "lit")

@@ -51,7 +51,7 @@ def run_screen(
     app.setQuitOnLastWindowClosed(False)
     window = MainWindow(ScreenTheme(PALETTES[theme]), app.quit)
     window.is_kiosk = is_kiosk
-    window.show_on(app.primaryScreen())
+    window.show_on_screen(app.primaryScreen())
     start = _Startup(window, build_model, program_file)
     before, sys.excepthook = sys.excepthook, start.handle_exception
     # Use exit and not quit, because a window may refuse to close, and a shutdown cannot wait.
@@ -105,7 +105,7 @@ class _Startup:
         from app.screen.window.running_screen import RunningScreen
 
         opening = FileOpening(self._window)
-        RunningScreen(opening.open_file, self._window).listen()
+        RunningScreen(opening.open_file, self._window).start_listening()
 
     def handle_exception(
         self, kind: type[BaseException], error: BaseException, trace: TracebackType | None

@@ -25,7 +25,7 @@ from PySide6.QtWidgets import QApplication
 from app.desk.status.machine_status import Tone
 from app.desk.translation import ENGLISH_CODE, Translate, set_translator, tr
 from app.screen.color_palettes import ColorPalette
-from app.screen.text_sizes import PanelSize, Role
+from app.screen.text_sizes import PanelSize, TextRole
 from app.screen.window_layout import FINGERTIP_PX
 from core.message import Message
 
@@ -37,7 +37,10 @@ ALIGN_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 MIN_TEXT_SIZE = 1.35  # Units: the smallest text.
 MIN_ROW_PX = 20.0  # Pixels: a line of text.
 _GROWN = 1.35  # Largest factor by which a text of a table is enlarged for the distance.
-_ROW_SHARE = {Role.TABLE: 0.9, Role.PROMPT: 0.95}  # Largest em height as a ratio to the height of the row.
+_ROW_SHARE = {
+    TextRole.TABLE: 0.9,
+    TextRole.PROMPT: 0.95,
+}  # Largest em height as a ratio to the height of the row.
 _ALONE = 1.1  # The same ratio for digits and capitals that have their row for themselves.
 MIN_TEXT_SCALE = 0.6  # A translation may be drawn at this fraction of its text size.
 ALIGN_CENTER = Qt.AlignmentFlag.AlignCenter
@@ -60,12 +63,12 @@ def load_fonts() -> tuple[str, ...]:
 class ScreenTheme:
     """Colors, fonts and sizes that all widgets of a window share.
 
-    ``u`` is the unit of size in pixels, which changes with the size of the window.
+    ``unit_px`` is the unit of size in pixels, which changes with the size of the window.
     """
 
-    def __init__(self, palette: ColorPalette, u: float = 12.0) -> None:
+    def __init__(self, palette: ColorPalette, unit_px: float = 12.0) -> None:
         self.palette = palette
-        self.u = u
+        self.unit_px = unit_px
         self.is_caret_shown = (
             False  # An input field of the current page has the keyboard, so its caret is drawn.
         )
@@ -73,10 +76,10 @@ class ScreenTheme:
         self._colours: dict[str, QColor] = {}
         self._fonts: dict[tuple[float, bool], QFont] = {}
 
-    def set_unit(self, u: float) -> None:
+    def set_unit(self, unit_px: float) -> None:
         """Set the unit of size in pixels."""
-        if u != self.u:
-            self.u = u
+        if unit_px != self.unit_px:
+            self.unit_px = unit_px
             self._fonts.clear()
 
     def find_row_height(
@@ -88,26 +91,26 @@ class ScreenTheme:
         screen thus shows more rows. A row that is touchable is at least as high as a fingertip on the
         smallest screen.
         """
-        high = min(height_units * self.u, max_height_mm * self.screen.pixels_per_mm)
+        high = min(height_units * self.unit_px, max_height_mm * self.screen.pixels_per_mm)
         return (
             max(high, float(FINGERTIP_PX))
             if is_touchable
-            else max(high, min(height_units * self.u, MIN_ROW_PX))
+            else max(high, min(height_units * self.unit_px, MIN_ROW_PX))
         )
 
     def find_key_rows_height(self, row_count: int) -> int:
         """Return the height in pixels of a number of rows of touch keys, each as high as a fingertip."""
-        return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.u)
+        return math.ceil(row_count * FINGERTIP_PX + (row_count - 1) * 0.6 * self.unit_px)
 
-    def em(self, size: float, role: Role, high: float) -> float:
-        """Return the em height, in units, of a text in a row that is ``high`` pixels high.
+    def find_em_height(self, size: float, role: TextRole, row_height_px: float) -> float:
+        """Return the em height, in units, of a text in a row that is ``row_height_px`` pixels high.
 
         The height is at least ``size``. It is larger if the role of the text requires this on a screen of
         this size and the row is high enough.
         """
-        least = self.screen.least_em(role) / self.u
-        room = high / self.u * _ROW_SHARE.get(role, _ALONE)
-        most = min(room, size * _GROWN) if role is Role.TABLE else room
+        least = self.screen.find_min_em_px(role) / self.unit_px
+        room = row_height_px / self.unit_px * _ROW_SHARE.get(role, _ALONE)
+        most = min(room, size * _GROWN) if role is TextRole.TABLE else room
         return max(size, min(least, most))
 
     def set_palette(self, palette: ColorPalette) -> None:
@@ -115,7 +118,7 @@ class ScreenTheme:
         self.palette = palette
         self._colours.clear()
 
-    def color(self, name: str) -> QColor:
+    def get_color(self, name: str) -> QColor:
         """Return a copy of a palette color.
 
         The caller may change the copy.
@@ -129,17 +132,17 @@ class ScreenTheme:
         key = (size, is_bold)
         if key not in self._fonts:
             font = QFont(FONT_FAMILY)
-            font.setPixelSize(max(8, round(size * self.u)))
+            font.setPixelSize(max(8, round(size * self.unit_px)))
             font.setBold(is_bold)
             self._fonts[key] = font
         return self._fonts[key]
 
-    def make_pen(self, name: str, width: float = 0.12) -> QPen:
+    def make_pen(self, color_name: str, width: float = 0.12) -> QPen:
         """Return a pen with a palette color.
 
         ``width`` is in units. The pen is at least one pixel wide.
         """
-        return QPen(self.color(name), max(1.0, width * self.u))
+        return QPen(self.get_color(color_name), max(1.0, width * self.unit_px))
 
     def fit_font(self, text: str, size: float, width: float, *, is_bold: bool = False) -> QFont:
         """Return the font of this size, or a smaller font that makes ``text`` fit.
@@ -152,7 +155,7 @@ class ScreenTheme:
         if wide <= width or wide <= 0:
             return font
         smaller = QFont(font)
-        smaller.setPixelSize(max(round(MIN_TEXT_SIZE * self.u), int(font.pixelSize() * width / wide)))
+        smaller.setPixelSize(max(round(MIN_TEXT_SIZE * self.unit_px), int(font.pixelSize() * width / wide)))
         return smaller
 
 
@@ -250,19 +253,19 @@ class ThemedPainter(QPainter):
         raw: bool = False,
         margin: float = 0.0,
         fit: bool = True,
-        role: Role = Role.TABLE,
+        role: TextRole = TextRole.TABLE,
     ) -> None:
         """Draw one line of text in a palette color, ``size`` units high, or smaller if necessary.
 
-        The text is larger if its role requires this. See ``ScreenTheme.em``.
+        The text is larger if its role requires this. See ``ScreenTheme.find_em_height``.
 
         The text is fitted into ``rect`` minus ``margin`` units, or elided. ``raw`` text is not translated.
         See ``draw_raw_text``. The painter retains the color and font.
         """
         look = self.theme
-        room = rect.width() - margin * look.u
-        size = look.em(size, role, rect.height()) if fit else size
-        self.setPen(look.color(ink))
+        room = rect.width() - margin * look.unit_px
+        size = look.find_em_height(size, role, rect.height()) if fit else size
+        self.setPen(look.get_color(ink))
         self.setFont(
             look.fit_font(text, size, room, is_bold=bold) if fit else look.make_font(size, is_bold=bold)
         )
@@ -275,7 +278,7 @@ class ThemedPainter(QPainter):
 
     def fill_rect(self, rect: QRectF, color: str) -> None:
         """Fill a rectangle with a palette color."""
-        self.fillRect(rect, self.theme.color(color))
+        self.fillRect(rect, self.theme.get_color(color))
 
     def draw_box(self, rect: QRectF, line_color: str, width: float, fill_color: str) -> None:
         """Draw a filled rectangle with an edge that is ``width`` units wide.
@@ -283,7 +286,7 @@ class ThemedPainter(QPainter):
         If ``fill_color`` is empty, the rectangle is not filled.
         """
         self.setPen(self.theme.make_pen(line_color, width))
-        self.setBrush(self.theme.color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)
+        self.setBrush(self.theme.get_color(fill_color) if fill_color else Qt.BrushStyle.NoBrush)
         self.drawRect(rect)
 
 
@@ -307,7 +310,7 @@ def style_application(palette: ColorPalette) -> None:
         (QPalette.ColorRole.HighlightedText, "on_lit"),
         (QPalette.ColorRole.PlaceholderText, "soft"),
     ):
-        colours.setColor(role, look.color(name))
+        colours.setColor(role, look.get_color(name))
     QApplication.setPalette(colours)
 
 

@@ -63,14 +63,14 @@ class RowPanel(Panel):
         return max(0, min(top, self._count - self.rows))
 
     def draw_scroll_keys(
-        self, painter: ThemedPainter, area: QRectF, visible_count: int, count: int, selected_row: int = -1
+        self, painter: ThemedPainter, area: QRectF, visible_count: int, row_count: int, selected_row: int = -1
     ) -> QRectF:
-        """Draw the scroll keys if ``count`` rows do not fit, and return the rectangle for the rows.
+        """Draw the scroll keys if ``row_count`` rows do not fit, and return the rectangle for the rows.
 
         ``visible_count`` is the number of rows that fit. ``selected_row`` is the index of the selected row,
         or -1.
         """
-        self.rows, self._count = visible_count, count
+        self.rows, self._count = visible_count, row_count
         if self.is_centered:
             self.first_row = selected_row - visible_count // 2
         elif (selected_row, visible_count) != self._followed and selected_row >= 0 and visible_count:
@@ -81,33 +81,40 @@ class RowPanel(Panel):
             self.first_row = min(max(self.first_row, lowest), highest)
         self._followed = (selected_row, visible_count)
         self.first_row = self._limited(self.first_row)
-        return self._with_keys(painter, area) if self.has_scroll_keys and 0 < visible_count < count else area
+        return (
+            self._with_keys(painter, area) if self.has_scroll_keys and 0 < visible_count < row_count else area
+        )
 
-    def find_row_boxes(self, area: QRectF, height: float) -> Iterator[tuple[int, QRectF]]:
+    def find_row_boxes(self, area: QRectF, row_height_px: float) -> Iterator[tuple[int, QRectF]]:
         """Yield the index and box of each visible row.
 
-        ``height`` is the height of a row in pixels.
+        ``row_height_px`` is the height of a row in pixels.
         """
         for number in range(self.first_row, min(self._count, self.first_row + self.rows)):
             yield (
                 number,
-                QRectF(area.x(), area.y() + (number - self.first_row) * height, area.width(), height),
+                QRectF(
+                    area.x(),
+                    area.y() + (number - self.first_row) * row_height_px,
+                    area.width(),
+                    row_height_px,
+                ),
             )
 
-    def count_fitting_rows(self, area: QRectF, height: float, count: int) -> int:
+    def count_fitting_rows(self, area: QRectF, row_height_px: float, row_count: int) -> int:
         """Return how many rows of this height fit, which is at least one.
 
         The scroll keys of a narrow list are below its rows and use some of the height.
         """
-        fits = int(area.height() / height)
-        if self.has_scroll_keys and fits < count and self.is_narrow(area.width()):
-            fits = int((area.height() - self.scroll_key_size[1] - 0.6 * self.theme.u) / height)
+        fits = int(area.height() / row_height_px)
+        if self.has_scroll_keys and fits < row_count and self.is_narrow(area.width()):
+            fits = int((area.height() - self.scroll_key_size[1] - 0.6 * self.theme.unit_px) / row_height_px)
         return max(1, fits)
 
     @property
     def scroll_key_size(self) -> tuple[float, float]:
         """Return the width and minimum height of a scroll key in pixels."""
-        size = max(SCROLL_KEY_SIZE * self.theme.u, float(FINGERTIP_PX))
+        size = max(SCROLL_KEY_SIZE * self.theme.unit_px, float(FINGERTIP_PX))
         return size, size
 
     def is_narrow(self, width: float) -> bool:
@@ -115,7 +122,7 @@ class RowPanel(Panel):
 
         The scroll keys of wider lists are on the right.
         """
-        return width < NARROW_WIDTH * self.theme.u
+        return width < NARROW_WIDTH * self.theme.unit_px
 
     def _with_keys(self, painter: ThemedPainter, area: QRectF) -> QRectF:
         """Draw the scroll keys and the scroll bar, and return the rectangle that remains for the rows.
@@ -123,7 +130,7 @@ class RowPanel(Panel):
         The keys are on the right, or below the rows of a narrow list. They are side by side if the area is
         low.
         """
-        gap, (wide, high) = 0.6 * self.theme.u, self.scroll_key_size
+        gap, (wide, high) = 0.6 * self.theme.unit_px, self.scroll_key_size
         foot = self.is_narrow(area.width())
         is_side_by_side = foot or area.height() < 2 * high + gap
         strip = QRectF(area.right() - wide - is_side_by_side * (wide + gap), area.y(), wide, area.height())
@@ -141,11 +148,11 @@ class RowPanel(Panel):
         return left
 
     def _scroll_key(self, painter: ThemedPainter, box: QRectF, sign: int) -> None:
-        at, size = box.center(), 1.2 * self.theme.u
+        at, size = box.center(), 1.2 * self.theme.unit_px
         ends = self.first_row <= 0 if sign < 0 else self.first_row + self.rows >= self._count
         painter.fill_rect(box, "key")
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(self.theme.color("ghost" if ends else "accent"))
+        painter.setBrush(self.theme.get_color("ghost" if ends else "accent"))
         tip, foot = QPointF(at.x(), at.y() + sign * size), at.y() - sign * size
         painter.drawPolygon(QPolygonF([tip, QPointF(at.x() - size, foot), QPointF(at.x() + size, foot)]))
         name = "PREVIOUS ROWS" if sign < 0 else "NEXT ROWS"
@@ -172,9 +179,9 @@ class TablePanel(RowPanel):
 
     table = RedrawingAttribute(TableContent("", (), (), ()))
 
-    def __init__(self, theme: ScreenTheme, on_select: Callable[[int], None], parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, select_cell: Callable[[int], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
-        self._choose = on_select
+        self._choose = select_cell
         self.on_entry_touched: Callable[[], None] | None = None  # Called for a touch on the entry line.
 
     def show_table(self, table: TableContent) -> None:
@@ -195,12 +202,14 @@ class TablePanel(RowPanel):
         """
         own, mm = (TALL_ROW_HEIGHT, 14.0) if self.table.has_tall_rows else (ROW, 9.0)
         share = self._find_list_height(len(self.table.notes)) / max(1, len(self.table.rows)) - _ROUNDING
-        return max(self.theme.find_row_height(own, mm, is_touchable=True) / self.theme.u, min(own, share))
+        return max(
+            self.theme.find_row_height(own, mm, is_touchable=True) / self.theme.unit_px, min(own, share)
+        )
 
     def _find_list_height(self, notes: int) -> float:
         """Return the height in units that remains for rows when a number of note lines is shown."""
         foot = notes * NOTE + (self._entry_height if self.table.question else 0.0)
-        return self.height() / self.theme.u - 4.0 - HEAD - foot
+        return self.height() / self.theme.unit_px - 4.0 - HEAD - foot
 
     @property
     def _entry_height(self) -> float:
@@ -208,7 +217,7 @@ class TablePanel(RowPanel):
 
         The line is at least as high as a fingertip if it reacts to touch.
         """
-        return ASKED if self.on_entry_touched is None else max(ASKED, FINGERTIP_PX / self.theme.u + 0.6)
+        return ASKED if self.on_entry_touched is None else max(ASKED, FINGERTIP_PX / self.theme.unit_px + 0.6)
 
     @property
     def _text_scale(self) -> float:
@@ -231,7 +240,11 @@ class TablePanel(RowPanel):
 
         The scroll keys of a narrow table are below its rows.
         """
-        return self.scroll_key_size[1] / self.theme.u + 0.6 if self.is_narrow(self.inside().width()) else 0.0
+        return (
+            self.scroll_key_size[1] / self.theme.unit_px + 0.6
+            if self.is_narrow(self.inside().width())
+            else 0.0
+        )
 
     @property
     def _visible_notes(self) -> tuple[str, ...]:
@@ -244,7 +257,7 @@ class TablePanel(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the head, the visible rows and the foot of the table, and make each row a touch target."""
-        u, sheet = self.theme.u, self.table
+        u, sheet = self.theme.unit_px, self.table
         self.frame(painter, sheet.title)
         room, fits, high = self.inside(), self._count_fitting(), self._high
         row = QRectF(room.x(), room.y(), room.width(), HEAD * u)
@@ -259,7 +272,7 @@ class TablePanel(RowPanel):
         self._foot(painter, room)
 
     def _columns(self, box: QRectF) -> Iterator[tuple[int, QRectF]]:
-        u = self.theme.u
+        u = self.theme.unit_px
         lamp = LAMP_SIZE * u if any(row.is_lit is not None for row in self.table.rows) else 0.8 * u
         x, wide = box.x() + lamp, box.width() - lamp - 0.6 * u
         for number, share in enumerate(self.table.column_shares):
@@ -274,7 +287,7 @@ class TablePanel(RowPanel):
         return ALIGN_RIGHT if number in self.table.number_columns else ALIGN_LEFT
 
     def _row(self, painter: ThemedPainter, box: QRectF, row: TableRow, marked: bool) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         if marked:
             painter.fill_rect(box, "here")
             painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
@@ -302,14 +315,14 @@ class TablePanel(RowPanel):
 
     def _draw_filled(self, painter: ThemedPainter, at: QRectF, row: TableRow) -> None:
         """Draw a bar below the text of the last cell."""
-        high = 0.5 * self.theme.u
+        high = 0.5 * self.theme.unit_px
         track = QRectF(at.x(), at.bottom() - 2 * high, at.width(), high)
         painter.fill_rect(track, "key")
         track.setWidth(track.width() * min(1.0, max(0.0, row.bar_fraction or 0.0)))
         painter.fill_rect(track, row.tone.value)
 
     def _foot(self, painter: ThemedPainter, room: QRectF) -> None:
-        u, sheet = self.theme.u, self.table
+        u, sheet = self.theme.unit_px, self.table
         notes = self._visible_notes
         y = room.bottom() - len(notes) * NOTE * u
         for number, note in enumerate(notes):
@@ -322,7 +335,7 @@ class TablePanel(RowPanel):
             )
 
     def _ask(self, painter: ThemedPainter, row: QRectF) -> None:
-        u, sheet = self.theme.u, self.table
+        u, sheet = self.theme.unit_px, self.table
         asked = QRectF(row.x(), row.y(), 0.5 * row.width(), row.height())
         painter.draw_text_line(asked, sheet.question, 2.2, "text", margin=1.0)
         box = QRectF(asked.right(), row.y() + 0.2 * u, row.right() - asked.right(), row.height() - 0.4 * u)
@@ -361,7 +374,7 @@ class ListPage(ModelPage):
         super().__init__(host, parent)
         self.model = model
 
-    def make_labels(
+    def make_function_key_labels(
         self, page_labels: Mapping[str, str], function_keys: Mapping[str, FunctionKey]
     ) -> tuple[str, ...]:
         """Return the ten key labels.
@@ -372,13 +385,13 @@ class ListPage(ModelPage):
         named.update((name, key.label) for name, key in function_keys.items())
         return tuple(named.get(f"F{number}", "") for number in range(1, 11))
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model, which are none here."""
         return {}
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys of the model that are disabled now."""
-        return frozenset(name for name, key in self.function_keys().items() if key.barred)
+        return frozenset(name for name, key in self.make_function_keys().items() if key.barred)
 
     def prompt_text(self) -> str:
         """Return the prompt of the model."""

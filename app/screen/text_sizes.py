@@ -6,15 +6,15 @@ import math
 from dataclasses import dataclass
 from enum import Enum
 
-DESK_DPI = 96.0  # Dots per inch of a monitor that does not report its size.
+DEFAULT_DPI = 96.0  # Dots per inch of a monitor that does not report its size.
 _LEAST_DPI, _MOST_DPI = 75.0, 350.0
 _ALIKE = 0.1  # Largest difference of the horizontal and vertical resolution, as a ratio.
 _INCH = 25.4
 _SMALL = 10.0  # Inches: smaller panels are read from nearer.
-CAPITALS = 0.73  # Height of a capital or a digit of B612, as a ratio to its em height.
+CAPITAL_HEIGHT_RATIO = 0.73  # Height of a capital or a digit of B612, as a ratio to its em height.
 
 
-class Role(Enum):
+class TextRole(Enum):
     """The roles of texts.
 
     Texts without another role are values, labels or rows of a table.
@@ -26,20 +26,20 @@ class Role(Enum):
     FEED = "feed"
     TABLE = "table"
 
-    def least_mm(self, *, small: bool) -> float:
+    def find_min_height_mm(self, *, is_small: bool) -> float:
         """Return the smallest permitted height of capital letters in mm."""
         minutes, far, near = _SEEN[self]
-        return (near if small else far) * math.tan(math.radians(minutes / 60.0))
+        return (near if is_small else far) * math.tan(math.radians(minutes / 60.0))
 
 
 # Height of the capitals in arc minutes, and the viewing distance in mm; the second distance is that of panels
 # with a diagonal of less than 10 inches.
 _SEEN = {
-    Role.POSITION: (20.0, 2000.0, 1200.0),
-    Role.STATE: (20.0, 2000.0, 1200.0),
-    Role.PROMPT: (16.0, 1500.0, 1000.0),
-    Role.FEED: (16.0, 1500.0, 1000.0),
-    Role.TABLE: (16.0, 700.0, 500.0),
+    TextRole.POSITION: (20.0, 2000.0, 1200.0),
+    TextRole.STATE: (20.0, 2000.0, 1200.0),
+    TextRole.PROMPT: (16.0, 1500.0, 1000.0),
+    TextRole.FEED: (16.0, 1500.0, 1000.0),
+    TextRole.TABLE: (16.0, 700.0, 500.0),
 }
 
 
@@ -47,27 +47,27 @@ _SEEN = {
 class PanelSize:
     """Resolution of a panel in pixels per mm.
 
-    ``small`` is set if the diagonal of the panel is less than 10 inches.
+    ``is_small`` is set if the diagonal of the panel is less than 10 inches.
     """
 
-    pixels_per_mm: float = DESK_DPI / _INCH
-    small: bool = False
+    pixels_per_mm: float = DEFAULT_DPI / _INCH
+    is_small: bool = False
 
-    def least_em(self, role: Role) -> float:
+    def find_min_em_px(self, role: TextRole) -> float:
         """Return the smallest permitted em height of a text in pixels."""
-        return role.least_mm(small=self.small) * self.pixels_per_mm / CAPITALS
+        return role.find_min_height_mm(is_small=self.is_small) * self.pixels_per_mm / CAPITAL_HEIGHT_RATIO
 
 
-def panel_size(width: int, height: int, width_mm: float, height_mm: float) -> PanelSize:
+def make_panel_size(width_px: int, height_px: int, width_mm: float, height_mm: float) -> PanelSize:
     """Return the size of a panel from its size in pixels and its reported size in mm.
 
     Some panels report no size, the size of another panel, or only an aspect ratio. An implausible size is
     replaced by 96 dots per inch.
     """
-    across = width / width_mm if width_mm > 0.0 else 0.0
-    down = height / height_mm if height_mm > 0.0 else 0.0
+    across = width_px / width_mm if width_mm > 0.0 else 0.0
+    down = height_px / height_mm if height_mm > 0.0 else 0.0
     plausible = min(across, down) >= _LEAST_DPI / _INCH and max(across, down) <= _MOST_DPI / _INCH
     if not plausible or abs(across / down - 1.0) > _ALIKE:
-        across = down = DESK_DPI / _INCH
-    diagonal = math.hypot(width / across, height / down)
+        across = down = DEFAULT_DPI / _INCH
+    diagonal = math.hypot(width_px / across, height_px / down)
     return PanelSize((across + down) / 2.0, diagonal < _SMALL * _INCH)

@@ -67,20 +67,20 @@ class AutomaticLayout(NamedTuple):
 
 HEAD, HEAD_MOVES = 7.4, 10.2  # Units: height of the low readouts.
 
-LOW_WINDOW_PX = 700
+LOW_WINDOW_HEIGHT_PX = 700
 """px: a lower window has smaller rows above and below its page, so that its targets fit a finger."""
 
 
-def find_unit(width: int, height: int) -> float:
+def find_unit_px(width_px: int, height_px: int) -> float:
     """Return the unit of size in pixels for a window of this size."""
-    return min(width / ACROSS, height / DOWN)
+    return min(width_px / ACROSS, height_px / DOWN)
 
 
 def make_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
     """Return the layout of the Automatic page for a window of this size in pixels."""
-    u = find_unit(width, height)
+    u = find_unit_px(width, height)
     gap = _gap(u)
-    low = height < LOW_WINDOW_PX
+    low = height < LOW_WINDOW_HEIGHT_PX
     title_h, strip_h, prompt_h, keys_h = (
         round(k * u) for k in (4.0 if low else 4.8, 6.0, 5.2 if low else 7.6, 6.6)
     )
@@ -106,10 +106,10 @@ def make_layout(width: int, height: int, has_dock: bool) -> AutomaticLayout:
     )
 
 
-def divide_work_area(work_area: Rect, u: float) -> tuple[Rect, Rect, Rect]:
+def divide_work_area(work_area: Rect, unit_px: float) -> tuple[Rect, Rect, Rect]:
     """Return the rectangles of listing, comment and path in the work area of the Automatic page."""
-    gap = _gap(u)
-    wide, comment_h = round(52 * u), round(4.8 * u)
+    gap = _gap(unit_px)
+    wide, comment_h = round(52 * unit_px), round(4.8 * unit_px)
     listing = Rect(work_area.x, work_area.y, wide, work_area.h - comment_h - gap)
     comment = Rect(work_area.x, work_area.bottom - comment_h, wide, comment_h)
     return (
@@ -124,20 +124,20 @@ def find_work_area(layout: AutomaticLayout) -> Rect:
     return Rect(layout.listing.x, layout.listing.y, layout.path.right - layout.listing.x, layout.path.h)
 
 
-def make_low_layout(width: int, height: int, has_dock: bool, *, moves: bool = False) -> LowLayout:
+def make_low_layout(width: int, height: int, has_dock: bool, *, has_axis_motion: bool = False) -> LowLayout:
     """Return the layout with low readouts, for a window of this size in pixels.
 
     The readouts are in one row. On a page on which axes can move, large positions are above the other
     readouts, unless the window is so low that the touch targets of the page would become too small. Title,
     dock, prompt and function keys have the same positions as on the Automatic page.
     """
-    at, u = make_layout(width, height, has_dock), find_unit(width, height)
+    at, u = make_layout(width, height, has_dock), find_unit_px(width, height)
     gap, wide = _gap(u), at.strip.w
     head = Rect(
         at.strip.x,
         at.position.y,
         wide,
-        round((HEAD_MOVES if moves and height >= LOW_WINDOW_PX else HEAD) * u),
+        round((HEAD_MOVES if has_axis_motion and height >= LOW_WINDOW_HEIGHT_PX else HEAD) * u),
     )
     strip = Rect(head.x, head.bottom + gap, wide, at.strip.h)
     top, high = strip.bottom + gap, round(2.8 * u)

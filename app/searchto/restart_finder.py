@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from core.interpreter.restart.program_search import BlockSearch
     from core.interpreter.restart.state_rebuild import OmniturnSearch
 
-    Search = OmniturnSearch | BlockSearch
+    RestartSearch = OmniturnSearch | BlockSearch
 
 
 RestartSearchResult = RestartPoint | RestartRefusal | CutRecord | tuple[Job, ProvedJob]
@@ -34,22 +34,22 @@ class RestartFinder:
     polled.
     """
 
-    rebuild_state: Callable[[Job, ProgressCallback], Search]
+    rebuild_state: Callable[[Job, ProgressCallback], RestartSearch]
     prove_job: Callable[[Job, ProgressCallback], ProvedJob]
     on_found: Callable[[RestartSearchResult], None]
     on_failed: Callable[[str], None]
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("loading-search"))
-    _rebuild: tuple[Job, Search] | None = None  # Used by the worker only.
+    _rebuild: tuple[Job, RestartSearch] | None = None  # Used by the worker only.
 
     def find_line(
-        self, job: Job, line: int, pass_number: int = 0, interruption: Interruption | None = None
+        self, job: Job, line_number: int, pass_number: int = 0, interruption: Interruption | None = None
     ) -> None:
         """Search for a line of this job's program.
 
         ``pass_number`` is the execution of the line, counted from 1. If it is 0, the interrupted execution
         is used, or the first execution if none was interrupted.
         """
-        self._ask(job, lambda rebuild: rebuild.find_restart(line, pass_number, interruption))
+        self._ask(job, lambda rebuild: rebuild.find_restart(line_number, pass_number, interruption))
 
     def calculate_cuts(self, job: Job) -> None:
         """Calculate all cuts of this job's program."""
@@ -57,13 +57,15 @@ class RestartFinder:
 
     def prove_restart(self, job: Job) -> None:
         """Prove the job of a restart on the worker."""
-        self.worker.request(lambda watch: (job, self.prove_job(job, watch)), self.on_found, self.on_failed)
+        self.worker.request_work(
+            lambda watch: (job, self.prove_job(job, watch)), self.on_found, self.on_failed
+        )
 
-    def _ask(self, job: Job, ask: Callable[[Search], RestartSearchResult]) -> None:
-        self.worker.request(lambda watch: self._with(job, watch, ask), self.on_found, self.on_failed)
+    def _ask(self, job: Job, ask: Callable[[RestartSearch], RestartSearchResult]) -> None:
+        self.worker.request_work(lambda watch: self._with(job, watch, ask), self.on_found, self.on_failed)
 
     def _with(
-        self, job: Job, watch: ProgressCallback, ask: Callable[[Search], RestartSearchResult]
+        self, job: Job, watch: ProgressCallback, ask: Callable[[RestartSearch], RestartSearchResult]
     ) -> RestartSearchResult:
         """Run a query on the worker.
 
@@ -92,7 +94,7 @@ class LineCursor:
     lines: Sequence[str] = ()
     selected_line: int = 1
     entry_text: str = ""
-    is_found: bool = False  # The line was found by the present text.
+    is_text_found: bool = False  # The line was found by the present text.
 
     @property
     def entered_number(self) -> int | None:
@@ -117,14 +119,14 @@ class LineCursor:
         """
         return self.entry_text.removeprefix(_QUOTE).upper()
 
-    def set_program(self, lines: Sequence[str], line: int) -> None:
+    def set_program(self, lines: Sequence[str], line_number: int) -> None:
         """Set the program lines and the selected line."""
-        self.lines, self.entry_text, self.is_found = lines, "", False
-        self.select_line(line)
+        self.lines, self.entry_text, self.is_text_found = lines, "", False
+        self.select_line(line_number)
 
-    def select_line(self, line: int) -> None:
+    def select_line(self, line_number: int) -> None:
         """Select this line, or the nearest line that exists."""
-        self.selected_line = max(1, min(line, len(self.lines)))
+        self.selected_line = max(1, min(line_number, len(self.lines)))
 
     def handle_key(self, key: str) -> bool:
         """Handle a character or an editing key.
@@ -133,7 +135,7 @@ class LineCursor:
         """
         taken = key in {"Back", "Delete"} or (len(key) == 1 and key.isprintable())
         if taken:
-            self.entry_text, self.is_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False
+            self.entry_text, self.is_text_found = edit_text(self.entry_text, key, MAX_ENTRY_LENGTH), False
         return taken
 
     def find_text(self, direction: int) -> bool:
@@ -147,6 +149,6 @@ class LineCursor:
         for step in range(1, count + 1):
             at = (self.selected_line - 1 + direction * step) % count
             if wanted in self.lines[at].upper():
-                self.selected_line, self.is_found = at + 1, True
+                self.selected_line, self.is_text_found = at + 1, True
                 return True
         return False

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from app.desk.status import formats
 from app.desk.status.modal_rows import NO_CODE, ModalRow, make_modal_rows
 from app.desk.translation import tr
-from app.path.path_aspects import DrawnLeg as Drawn
+from app.path.path_aspects import ApproachLeg as Drawn
 from core.executor.job import Job
 from core.executor.snapshot import POWER_LOST_REASON, Snapshot
 from core.interpreter.restart.cut_record import CutRecord
@@ -81,7 +81,10 @@ def plan_retract(cut_state: CutRecord, snapshot: Snapshot, job: Job, choices: Op
     if not problem and not steps:
         problem = tr(Message("T{tool} IS ALREADY CLEAR OF THE PART", tool=tool))
     return RetractPlan(
-        begin, make_drawn_legs(steps, snapshot, cut_state.tool_offsets.get(tool, (0.0, 0.0))), feed, problem
+        begin,
+        make_approach_legs(steps, snapshot, cut_state.tool_offsets.get(tool, (0.0, 0.0))),
+        feed,
+        problem,
     )
 
 
@@ -99,7 +102,7 @@ def read_machine_state(snapshot: Snapshot, job: Job) -> PresentState:
     return PresentState(snapshot.demand, snapshot.modal, broken)
 
 
-def make_drawn_legs(
+def make_approach_legs(
     steps: tuple[ApproachStep, ...], snapshot: Snapshot, offset: tuple[float, float]
 ) -> tuple[Drawn, ...]:
     """Return the legs of a path in the frame of one tool.
@@ -202,7 +205,7 @@ def make_restart_plan(
         ),
         drawn_legs=()
         if out
-        else make_drawn_legs(begin.approach, snapshot, (modal.drawing_zero_x, modal.drawing_zero_z)),
+        else make_approach_legs(begin.approach, snapshot, (modal.drawing_zero_x, modal.drawing_zero_z)),
         warning_text=_left_out(restart_point),
         error_text=_collet(restart_point.checkpoint, snapshot) or out,
     )

@@ -32,7 +32,7 @@ from core.language.source import ProgramSource
 from core.message import Message
 
 if TYPE_CHECKING:
-    from app.searchto.restart_finder import Search
+    from app.searchto.restart_finder import RestartSearch
 
 RETRACT_TEXT = "(RETRACT FROM THE PART)"
 
@@ -61,7 +61,7 @@ class SearchtoModel:
     show_message: Callable[[str], None]
     clear_message: Callable[[], None]
     rebuild_state: Callable[
-        [Job, ProgressCallback], Search
+        [Job, ProgressCallback], RestartSearch
     ]  # Creates the search in a program; called on the worker.
     prove_job: Callable[
         [Job, ProgressCallback], ProvedJob
@@ -92,7 +92,7 @@ class SearchtoModel:
     # --- open and close ------------------------------------------------------------------------------
 
     @property
-    def has_keyboard(self) -> bool:
+    def can_choose_line(self) -> bool:
         """Return whether a line can be chosen.
 
         This is not possible while the tool retracts.
@@ -132,13 +132,13 @@ class SearchtoModel:
     def _discard_results(self) -> None:
         """Cancel the plan and the prepared restart."""
         self._withdraw()
-        if self.is_open and self.has_keyboard:
+        if self.is_open and self.can_choose_line:
             # The end of the retract must not discard an entry that begins at the same time.
             self._going_out = False
             self.post_command(PrepareStart(StartAction.RESTART))
 
     def _withdraw(self) -> None:
-        self.restart_finder.worker.cancel()
+        self.restart_finder.worker.cancel_request()
         self.stage, self.search_refusal, self.restart_plan, self.proved_job = (
             SearchtoStage.CHOOSING,
             None,
@@ -150,24 +150,24 @@ class SearchtoModel:
 
     # --- choose a line -------------------------------------------------------------------------------
 
-    def move_cursor(self, lines: int) -> None:
+    def move_cursor(self, line_steps: int) -> None:
         """Move the cursor by a number of lines."""
-        self.line_cursor.select_line(self.line_cursor.selected_line + lines)
+        self.line_cursor.select_line(self.line_cursor.selected_line + line_steps)
         self.pass_number = self.pass_count = 0
         self._discard_results()
 
-    def select_line(self, line: int, pass_number: int = 0) -> None:
+    def select_line(self, line_number: int, pass_number: int = 0) -> None:
         """Select this line in this pass, and rebuild its state.
 
         Line 0 has no effect.
         """
-        if line:
-            self.line_cursor.select_line(line)
+        if line_number:
+            self.line_cursor.select_line(line_number)
             self.line_cursor.entry_text = ""
             self.pass_number, self.pass_count = pass_number, 0
-            self.rebuild_selected()
+            self.rebuild_selected_line()
 
-    def select_pass(self, steps: int) -> None:
+    def step_pass(self, steps: int) -> None:
         """Select a later or earlier pass of a line that is executed more than once."""
         if self.pass_count < 2:
             self.show_message(tr("NO REPETITIONS FOUND FOR THIS LINE. ENTER: REBUILD STATE"))
@@ -175,14 +175,14 @@ class SearchtoModel:
         number = max(1, min(self.pass_number + steps, self.pass_count))
         if number != self.pass_number:
             self.pass_number = number
-            self.rebuild_selected()
+            self.rebuild_selected_line()
 
     def accepts_key(self, key: str) -> bool:
         """Return whether this character is text input.
 
         No character is text input while the tool retracts.
         """
-        return len(key) == 1 and self.has_keyboard
+        return len(key) == 1 and self.can_choose_line
 
     def handle_key(self, key: str) -> bool:
         """Handle a character or an editing key.
@@ -199,12 +199,12 @@ class SearchtoModel:
         number = self.line_cursor.entered_number
         if number is not None:
             self.select_line(number, self.line_cursor.entered_pass)
-        elif self.line_cursor.entry_text and not self.line_cursor.is_found:
+        elif self.line_cursor.entry_text and not self.line_cursor.is_text_found:
             self.find_text(1)
         else:
-            self.rebuild_selected()
+            self.rebuild_selected_line()
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are disabled now."""
         found: set[str] = set()
         if not self._has_text:
@@ -247,7 +247,7 @@ class SearchtoModel:
         elif not self.line_cursor.find_text(direction):
             self.show_message(tr(Message("{text} NOT FOUND IN ANY LINE", text=self.line_cursor.search_text)))
 
-    def rebuild_selected(self) -> None:
+    def rebuild_selected_line(self) -> None:
         """Rebuild the state of the selected line."""
         loaded = self.program_loader.loaded
         self._discard_results()
@@ -260,7 +260,7 @@ class SearchtoModel:
             job, line, self.pass_number, read_machine_state(self.read_snapshot(), job).interruption
         )
 
-    def select_nearest_valid(self, direction: int) -> None:
+    def select_nearest_valid_line(self, direction: int) -> None:
         """Select the nearest valid line before or after a rejected line."""
         if self.search_refusal is not None:
             self.select_line(
@@ -283,7 +283,7 @@ class SearchtoModel:
 
     def toggle_coolant(self) -> None:
         """Toggle whether the coolant starts if it is on at the line."""
-        self._choose(replace(self.restart_choices, coolant=not self.restart_choices.coolant))
+        self._choose(replace(self.restart_choices, uses_coolant=not self.restart_choices.uses_coolant))
 
     def confirm_plan(self) -> None:
         """Confirm the restart or the retract, which is then proved and prepared for Cycle Start."""
@@ -357,7 +357,7 @@ class SearchtoModel:
             self._discard_results()
         if self.stage is SearchtoStage.READY:
             self._see_start(snapshot)
-        self.restart_finder.worker.poll()
+        self.restart_finder.worker.deliver_results()
 
     def prompt_text(self, snapshot: Snapshot, start_instruction: str) -> str:
         """Return the prompt.

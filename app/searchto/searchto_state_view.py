@@ -19,7 +19,7 @@ from app.screen.window_layout import FINGERTIP_PX
 from app.searchto.restart_plan import StateRow
 from core.message import Message
 
-DIFFERENCE_SIGN = "≠"
+DIFFERENCE_SYMBOL = "≠"
 PASS_BEFORE, PASS_AFTER = "Previous pass", "Next pass"
 FOLD_KEY = "Fold"
 _FOLD, _LARGE, _PLAIN, _LETTERS = 4.4, 4.0, 2.7, 2.6  # Units.
@@ -36,7 +36,7 @@ class NearestValidLine:
 
     key_name: str
     label: str
-    line: int
+    line_number: int
     line_text: str
 
 
@@ -79,9 +79,9 @@ class RestartStatePanel(Panel):
             room = self.inside()
             if shown.pass_text:
                 self._draw_passes(
-                    painter, room.adjusted(0, room.height() - _PASS_KEY_HEIGHT * self.theme.u, 0, 0)
+                    painter, room.adjusted(0, room.height() - _PASS_KEY_HEIGHT * self.theme.unit_px, 0, 0)
                 )
-                room.adjust(0, 0, 0, -(_PASS_KEY_HEIGHT + 0.6) * self.theme.u)
+                room.adjust(0, 0, 0, -(_PASS_KEY_HEIGHT + 0.6) * self.theme.unit_px)
             self._draw_table(painter, room)
 
     def _draw_passes(self, painter: ThemedPainter, area: QRectF) -> None:
@@ -99,7 +99,7 @@ class RestartStatePanel(Panel):
 
         The equal rows are folded into one row, or have one row each.
         """
-        u, shown = self.theme.u, self.content
+        u, shown = self.theme.unit_px, self.content
         other = tuple(row for row in shown.state_rows if row.must_change)
         equal = tuple(row for row in shown.state_rows if not row.must_change)
         fold = _FOLD * u if equal else 0.0
@@ -126,7 +126,7 @@ class RestartStatePanel(Panel):
 
         A touch on this row folds or unfolds the equal rows.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.fill_rect(box.adjusted(0, 0.2 * u, 0, -0.2 * u), "key")
         words = tr(Message("{count} IDENTICAL", count=len(equal)))
         sign = "▲" if self.content.shows_all_rows else "▼"
@@ -145,7 +145,7 @@ class RestartStatePanel(Panel):
         self.add_target(box.adjusted(0, -short, 0, 0), partial(self._press, FOLD_KEY))
 
     def _row(self, painter: ThemedPainter, box: QRectF, row: StateRow, size: float, *, head: bool) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         label, sign = _LABEL * box.width(), _SIGN * box.width()
         differs = row.must_change and not head
         painter.draw_text_line(
@@ -160,11 +160,11 @@ class RestartStatePanel(Panel):
         painter.draw_text_line(now, row.present_value, size, ink, bold=head or differs)
         if differs:
             between = QRectF(box.x() + sign, box.y(), 2 * u, box.height())
-            painter.draw_text_line(between, DIFFERENCE_SIGN, size + 0.3, "mark", at=ALIGN_CENTER)
+            painter.draw_text_line(between, DIFFERENCE_SYMBOL, size + 0.3, "mark", at=ALIGN_CENTER)
 
     def _refusal(self, painter: ThemedPainter) -> None:
-        look, u, room = self.theme, self.theme.u, self.inside()
-        painter.setPen(look.color("alarm"))
+        look, u, room = self.theme, self.theme.unit_px, self.inside()
+        painter.setPen(look.get_color("alarm"))
         painter.setFont(look.fit_font(self.content.refusal_reason, 2.2, 2 * room.width(), is_bold=True))
         flags = int(ALIGN_LEFT) | 0x1000  # Qt.TextWordWrap
         painter.draw_wrapped_text(
@@ -175,9 +175,9 @@ class RestartStatePanel(Panel):
             self._near(painter, box, near)
 
     def _near(self, painter: ThemedPainter, box: QRectF, near: NearestValidLine) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.fill_rect(box, "key")
-        ink = "accent" if near.line else "soft"
+        ink = "accent" if near.line_number else "soft"
         painter.draw_text_line(
             QRectF(box.x(), box.y(), 5 * u, box.height()), near.key_name, 2.4, ink, at=ALIGN_CENTER
         )
@@ -187,5 +187,5 @@ class RestartStatePanel(Panel):
         painter.draw_text_line(
             text.translated(0, text.height()), near.line_text, 2.0, "text", bold=False, fit=False
         )
-        if near.line:
+        if near.line_number:
             self.add_target(box, partial(self._press, near.key_name))

@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 class SearchEntryPanel(Panel):
     """The prompt for a line or a text, with the entered text."""
 
-    ground_color = "panel"
+    background_color = "panel"
     entry_text = RedrawingAttribute("")
 
     def __init__(self, theme: ScreenTheme, press: Callable[[], None], parent: QWidget) -> None:
@@ -64,7 +64,7 @@ class SearchEntryPanel(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the question ``LINE OR TEXT?`` and the entered text."""
         self.add_target(self.find_full_area(), self._press)
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.find_full_area().adjusted(1.2 * u, 0.4 * u, -0.8 * u, -0.4 * u)
         question = tr("LINE OR TEXT?")
         painter.draw_text_line(QRectF(room.x(), room.y(), 14 * u, room.height()), question, 1.9, "text")
@@ -108,7 +108,7 @@ class StartedFunctionsPanel(Panel):
         self.frame(
             painter, title, "lit" if self.is_confirmed else "frame", 0.3 if self.is_confirmed else 0.16
         )
-        u, room = self.theme.u, self.inside()
+        u, room = self.theme.unit_px, self.inside()
         lines = [(text, "text", True) for text in self.started_functions]
         lines += [
             (text, "soft", False) for choice in self.option_texts for text in wrap(choice, WARNING_LINE_CHARS)
@@ -159,11 +159,11 @@ class SearchtoPage(ModelPage):
         self._whole = False  # Equal rows are shown, too.
         self._stood: tuple[object, int] = (None, 0)  # Path and block after which the part was last shown.
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the function keys that are disabled now."""
-        return self.model.disabled_keys()
+        return self.model.find_disabled_keys()
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of this page."""
         model = self.model
         return {
@@ -171,13 +171,13 @@ class SearchtoPage(ModelPage):
             "F3": partial(model.find_text, -1),
             "F4": model.plan_retract,
             "F5": model.toggle_coolant,
-            "F6": model.rebuild_selected,
-            "F8": partial(model.select_nearest_valid, -1),
-            "F9": partial(model.select_nearest_valid, 1),
+            "F6": model.rebuild_selected_line,
+            "F8": partial(model.select_nearest_valid_line, -1),
+            "F9": partial(model.select_nearest_valid_line, 1),
             "F10": model.confirm_plan,
             FOLD_KEY: self._turn_fold,
-            PASS_BEFORE: partial(model.select_pass, -1),
-            PASS_AFTER: partial(model.select_pass, 1),
+            PASS_BEFORE: partial(model.step_pass, -1),
+            PASS_AFTER: partial(model.step_pass, 1),
             "Zoom in": partial(self._visible_view.zoom_view, 1),
             "Zoom out": partial(self._visible_view.zoom_view, -1),
         }
@@ -187,7 +187,7 @@ class SearchtoPage(ModelPage):
 
         Arrow keys select a line, and other keys are text input.
         """
-        if not self.model.has_keyboard:
+        if not self.model.can_choose_line:
             return False
         steps = {
             "Up": -1,
@@ -202,7 +202,7 @@ class SearchtoPage(ModelPage):
             self._turn_fold()
             return True
         if key in {"Left", "Right"}:
-            self.model.select_pass(-1 if key == "Left" else 1)
+            self.model.step_pass(-1 if key == "Left" else 1)
             return True
         if key == "Enter":
             self.model.handle_enter()
@@ -225,10 +225,10 @@ class SearchtoPage(ModelPage):
 
     def _mark_line(self, line: int) -> None:
         """Select a touched line, or rebuild its state if the line is already selected."""
-        if not self.model.has_keyboard:
+        if not self.model.can_choose_line:
             return
         if line == self.model.line_cursor.selected_line:
-            self.model.rebuild_selected()
+            self.model.rebuild_selected_line()
         else:
             self.model.move_cursor(line - self.model.line_cursor.selected_line)
 
@@ -240,7 +240,7 @@ class SearchtoPage(ModelPage):
 
         It always does except while the tool retracts.
         """
-        return self.model.has_keyboard
+        return self.model.can_choose_line
 
     def prompt_text(self) -> str:
         """Return the prompt of the model."""
@@ -309,7 +309,7 @@ class SearchtoPage(ModelPage):
         if plan is not None:
             axes, done = {**axes, **plan.axis_positions}, plan.restart_point.checkpoint.blocks
         self.plane_view.show_instant(
-            replace(here, axis_positions=axes, active_block=done), describe_plane(here.swivel)
+            replace(here, axis_positions=axes, active_block=done), describe_plane(here.plane_position)
         )
 
     @property
@@ -324,13 +324,17 @@ class SearchtoPage(ModelPage):
         """
         shown = self.model.retract_plan or self.model.restart_plan
         legs = shown.drawn_legs if shown is not None else ()
-        return TipPosition(0, legs[0].z, legs[0].x) if legs else find_tip_position(snapshot)._replace(block=0)
+        return (
+            TipPosition(0, legs[0].z, legs[0].x)
+            if legs
+            else find_tip_position(snapshot)._replace(active_block=0)
+        )
 
     def _shown(self) -> StateContent:
         model, line = self.model, self.model.line_cursor.selected_line
         answer, plan = model.search_refusal, model.restart_plan
         if answer is not None:
-            title = tr(Message("CANNOT START FROM LINE {line}", line=answer.line))
+            title = tr(Message("CANNOT START FROM LINE {line}", line=answer.line_number))
             near = (
                 ("F8", tr("PREVIOUS VALID"), answer.nearest_line_before),
                 ("F9", tr("NEXT VALID"), answer.nearest_line_after),
@@ -347,7 +351,7 @@ class SearchtoPage(ModelPage):
 
     def _state(self, plan: RestartPlan) -> StateContent:
         title, visit = (
-            tr(Message("STATE AT LINE {line}", line=plan.restart_point.line)),
+            tr(Message("STATE AT LINE {line}", line=plan.restart_point.line_number)),
             plan.restart_point.visit,
         )
         if visit.visit_count < 2:
@@ -377,7 +381,7 @@ class SearchtoPage(ModelPage):
         if plan.restart_point.checkpoint.modal.coolant:
             choices.append(
                 tr("COOLANT WILL START. F5: CHANGE")
-                if model.restart_choices.coolant
+                if model.restart_choices.uses_coolant
                 else tr("COOLANT WILL NOT START. F5: START COOLANT TOO")
             )
         if plan.approach_texts:
@@ -409,7 +413,7 @@ class SearchtoPage(ModelPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the program, the state, and the path above the functions that start."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, asked, starts = max(4, round(0.7 * u)), max(FINGERTIP_PX, round(ASKED * u)), round(STARTS * u)
         wide, high = self.width(), self.height()
         left, state = round(LIST * wide), round(STATE * wide)

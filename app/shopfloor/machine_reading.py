@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from app.desk.status.machine_status import SilenceWatch
-from core.alarms import CATALOGUE, AlarmCode, Reaction
+from core.alarms import CATALOG, AlarmCode, Reaction
 from core.executor.snapshot import MDI_ACTIONS, Alarm, InterruptedJob, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -41,8 +41,8 @@ def list_condition_keys(machine: Machine) -> frozenset[str]:
     They are the conditions of each axis with its own drive, and the other conditions. On a lathe the
     spindle is also the C axis, unless C has its own drive.
     """
-    turns_c = machine.kind == "lathe" and machine.spindle_is_c
-    axes = [axis.name for axis in machine.axes if not (turns_c and axis.rotary and axis.name == "C")]
+    turns_c = machine.kind == "lathe" and machine.is_spindle_c_axis
+    axes = [axis.name for axis in machine.axes if not (turns_c and axis.is_rotary and axis.name == "C")]
     own = (f"{name}{kind}" for name in axes for kind in (_SERVO, _TRAVEL))
     return frozenset((*own, SPINDLE, COMMS, LOGIC, SYSTEM, MOTION))
 
@@ -64,7 +64,7 @@ def find_conditions(snapshot: Snapshot, keys: frozenset[str]) -> Mapping[str, tu
     if (
         snapshot.state is MachineState.HOLD
         and stop is not None
-        and CATALOGUE[stop.code].reaction is Reaction.HOLD
+        and CATALOG[stop.code].reaction is Reaction.HOLD
     ):
         active[SYSTEM].append((WARNING, str(stop.number), stop.text))
     return {key: tuple(found) for key, found in active.items()}
@@ -106,10 +106,10 @@ _MODE_BY_STATE = {
     MachineState.FAULT: STOPPED,
     MachineState.DISABLED: STOPPED,  # not ready, because no program can be started
     MachineState.RUN: ACTIVE,
-    MachineState.HOLDING: FEED_HOLD,
-    MachineState.BLOCK_END: INTERRUPTED,
+    MachineState.STOPPING: FEED_HOLD,
+    MachineState.SINGLE_BLOCK_STOP: INTERRUPTED,
     MachineState.JOG: READY,
-    MachineState.HOME: READY,
+    MachineState.HOMING: READY,
 }
 
 
@@ -170,7 +170,7 @@ def find_controller_mode(snapshot: Snapshot) -> str:
 
     The control has no mode switch.
     """
-    if snapshot.state in {MachineState.JOG, MachineState.HOME}:
+    if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
         return MANUAL
     if snapshot.starts in MDI_ACTIONS:
         return MDI
@@ -255,7 +255,7 @@ class MachineReader:
         known = UnknownPart.AXES not in snapshot.unknown
         at = zip(snapshot.axes, snapshot.actual, snapshot.homed, strict=True)
         return {
-            f"{name}abs": actual if known and homed and (name != "C" or self.machine.c_enabled) else None
+            f"{name}abs": actual if known and homed and (name != "C" or self.machine.is_c_enabled) else None
             for name, actual, homed in at
         }
 
@@ -269,7 +269,7 @@ class MachineReader:
             "Scmd": abs(snapshot.requested_rpm),
             "Sovr": 100.0 * snapshot.spindle_override,
             "Sload": snapshot.spindle_load if known else None,
-            "rotmode": "CONTOUR" if snapshot.modal.c_locked and self.machine.spindle_is_c else "SPINDLE",
+            "rotmode": "CONTOUR" if snapshot.modal.c_locked and self.machine.is_spindle_c_axis else "SPINDLE",
             "chuckil": None if not known else "ACTIVE" if held else "INACTIVE",
         }
 

@@ -117,7 +117,7 @@ class StatusFileUpdater(RepeatingThread):
     def __init__(
         self,
         status_file: StatusFileWriter,
-        action: Callable[[], StatusDocument],
+        read_status: Callable[[], StatusDocument],
         final_status: StatusDocument,
     ) -> None:
         """Create the thread.
@@ -125,7 +125,7 @@ class StatusFileUpdater(RepeatingThread):
         ``final_status`` is the status that is written last.
         """
         super().__init__("status", self._show, _UPDATE_INTERVAL_S)
-        self._file, self._status, self._gone = status_file, action, final_status
+        self._file, self._status, self._gone = status_file, read_status, final_status
         self._last: StatusDocument = {}
 
     def _show(self) -> None:

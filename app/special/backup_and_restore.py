@@ -30,7 +30,7 @@ RESTORE_REFUSAL = "PROGRAM RUNNING. WAIT UNTIL IT ENDS, THEN RESTORE"
 
 
 @dataclass(frozen=True, slots=True)
-class BackupPlace:
+class BackupLocation:
     """Folder for backups, or one backup in a folder."""
 
     label: str
@@ -54,7 +54,7 @@ class BackupFunction(SpecialFunction):
         desk: Desk,
         persistence: Persistence,
         worker: LatestRequestWorker,
-        folder: Path,
+        csv_folder: Path,
         list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
         daily_folder: Path | None = None,
     ) -> None:
@@ -66,12 +66,12 @@ class BackupFunction(SpecialFunction):
         self.persistence, self.worker, self.backup_folder, self.list_media = (
             persistence,
             worker,
-            folder,
+            csv_folder,
             list_media,
         )
         self.daily_folder = daily_folder
-        self.places: tuple[BackupPlace, ...] = ()
-        self.verdicts: dict[BackupPlace, BackupVerdict] = {}
+        self.listed_locations: tuple[BackupLocation, ...] = ()
+        self.check_results: dict[BackupLocation, BackupVerdict] = {}
         self.check_error = ""  # reason why backups cannot be checked: the present data is unreadable
         self.task_text = ""
         self.on_restored: Callable[[], None] = lambda: None
@@ -79,42 +79,42 @@ class BackupFunction(SpecialFunction):
     @property
     def row_count(self) -> int:
         """Return the number of listed folders and backups."""
-        return len(self.places)
+        return len(self.listed_locations)
 
     def on_open(self) -> None:
         """List the folders and backups."""
-        self.reload_places()
+        self.reload_locations()
 
-    def reload_places(self) -> None:
+    def reload_locations(self) -> None:
         """List the folders and backups again.
 
         The result is shown in a later frame.
         """
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             lambda: _list_places(self.backup_folder, self.list_media(), self.daily_folder),
             self._found,
             self._failed,
         )
 
-    def _found(self, places: tuple[BackupPlace, ...]) -> None:
-        self.places = places
+    def _found(self, places: tuple[BackupLocation, ...]) -> None:
+        self.listed_locations = places
         self.marked = min(self.marked, max(0, len(places) - 1))
-        self.verdicts, self.check_error = {}, ""
+        self.check_results, self.check_error = {}, ""
         for place in places:
             if place.is_backup:
-                self.worker.enqueue(partial(self._check_place, place), self._judge, self._not_judged)
+                self.worker.enqueue_work(partial(self._check_place, place), self._judge, self._not_judged)
 
-    def _check_place(self, place: BackupPlace) -> tuple[BackupPlace, BackupVerdict]:
+    def _check_place(self, place: BackupLocation) -> tuple[BackupLocation, BackupVerdict]:
         """Check a backup on the worker.
 
         Raise StoreError on failure.
         """
         return place, self.persistence.check_backup(place.path)
 
-    def _judge(self, found: tuple[BackupPlace, BackupVerdict]) -> None:
+    def _judge(self, found: tuple[BackupLocation, BackupVerdict]) -> None:
         place, verdict = found
-        if place in self.places:
-            self.verdicts[place] = verdict
+        if place in self.listed_locations:
+            self.check_results[place] = verdict
 
     def _not_judged(self, why: str) -> None:
         self.check_error = why
@@ -132,7 +132,7 @@ class BackupFunction(SpecialFunction):
                 None if place.is_backup else True,
                 Tone.WAIT,
             )
-            for place in self.places
+            for place in self.listed_locations
         )
         return TableContent(
             "BACKUP AND RESTORE",
@@ -144,10 +144,10 @@ class BackupFunction(SpecialFunction):
             raw_columns=frozenset({0, 2, 3}),
         )
 
-    def _does(self, place: BackupPlace) -> str:
+    def _does(self, place: BackupLocation) -> str:
         if not place.is_backup:
             return "BACK UP HERE"
-        verdict = self.verdicts.get(place)
+        verdict = self.check_results.get(place)
         if verdict is None:
             return "NOT CHECKED" if self.check_error else "CHECKING …"
         return "CANNOT RESTORE: BACKUP DAMAGED" if verdict.first_problem else "RESTORE (BACKUP IS INTACT)"
@@ -161,8 +161,8 @@ class BackupFunction(SpecialFunction):
             "When a backup is restored, a copy of the replaced data is saved in the same folder "
             "as the new data."
         )
-        place = self.places[self.marked] if self.places else None
-        verdict = self.verdicts.get(place) if place is not None else None
+        place = self.listed_locations[self.marked] if self.listed_locations else None
+        verdict = self.check_results.get(place) if place is not None else None
         if verdict is None:
             return (self.check_error, tr(_TERMINAL_HINT)) if self.check_error else (kept,)
         if verdict.first_problem:
@@ -171,20 +171,20 @@ class BackupFunction(SpecialFunction):
         differs = Message("Differences from the current data: {what}.", what=what)
         return (tr(differs if what else "The backup and the current data are the same."), kept)
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which searches for media again."""
-        return {"F4": FunctionKey("REFRESH", self.reload_places)}
+        return {"F4": FunctionKey("REFRESH", self.reload_locations)}
 
     def execute_row(self) -> bool:
         """Make a backup in the selected folder, or restore the selected backup."""
         if self.task_text:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
-        elif self.places:
-            place = self.places[self.marked]
+        elif self.listed_locations:
+            place = self.listed_locations[self.marked]
             (self._restore if place.is_backup else self._backup)(place)
         return True
 
-    def _backup(self, place: BackupPlace) -> None:
+    def _backup(self, place: BackupLocation) -> None:
         if self.desk.is_refused(ProtectedChange.BACKUPS):
             return
         name = f"{datetime.now().strftime('%Y-%m-%d-%H%M%S')}{BACKUP_SUFFIX}"
@@ -203,24 +203,24 @@ class BackupFunction(SpecialFunction):
             sync_all_files()
             return name
 
-        self.worker.enqueue(work, partial(self._backed_up, place), self._failed)
+        self.worker.enqueue_work(work, partial(self._backed_up, place), self._failed)
 
-    def _backed_up(self, place: BackupPlace, name: str) -> None:
+    def _backed_up(self, place: BackupLocation, name: str) -> None:
         self.task_text = ""
         own = place.path in {self.backup_folder, self.daily_folder}
         done = (
             "BACKUP {name} IS COMPLETE" if own else "BACKUP {name} IS COMPLETE. YOU CAN REMOVE THE USB STICK"
         )
         self.desk.show_success(tr(Message(done, name=name)))
-        self.reload_places()
+        self.reload_locations()
 
-    def _restore(self, place: BackupPlace) -> None:
+    def _restore(self, place: BackupLocation) -> None:
         if self.check_error:
             self.desk.show_refusal(tr(_TERMINAL_HINT))
             return
         if self.desk.is_refused(ProtectedChange.RESTORE):
             return
-        verdict = self.verdicts.get(place)
+        verdict = self.check_results.get(place)
         if verdict is None or verdict.first_problem:
             why = (
                 verdict.first_problem
@@ -238,13 +238,13 @@ class BackupFunction(SpecialFunction):
             tr(Message(asked, name=place.label, what=what)), lambda: self._restore_now(place)
         )
 
-    def _restore_now(self, place: BackupPlace) -> None:
+    def _restore_now(self, place: BackupLocation) -> None:
         if self.desk.read_snapshot().state in ACTIVE_STATES:
             self.desk.say(RESTORE_REFUSAL)
             return
         self.task_text = "Restoring …"
         self.desk.storage_state.begin_restore()
-        self.worker.enqueue(lambda: self.persistence.restore(place.path), self._done, self._failed)
+        self.worker.enqueue_work(lambda: self.persistence.restore(place.path), self._done, self._failed)
 
     def _done(self, kept: Path | None) -> None:
         self.task_text = ""
@@ -256,7 +256,7 @@ class BackupFunction(SpecialFunction):
         self.on_restored()
         said = tr(Message("RESTORED. PREVIOUS DATA SAVED AS {name}", name=where))
         self.desk.show_success(said)
-        self.reload_places()
+        self.reload_locations()
 
     def _failed(self, why: str) -> None:
         self.task_text = ""
@@ -279,21 +279,21 @@ def _describe_differences(verdict: BackupVerdict) -> str:
     return ", ".join(difference_texts)
 
 
-def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupPlace, ...]:
+def _list_places(folder: Path, media: Sequence[UsbStick], daily: Path | None) -> tuple[BackupLocation, ...]:
     """Return the control's folder and the media, each followed by its backups.
 
     The newest backup is the first.
     """
-    found: list[BackupPlace] = []
+    found: list[BackupLocation] = []
     kept = [(tr("THIS CONTROL"), folder), *([(tr("DAILY BACKUPS"), daily)] if daily is not None else [])]
     for label, path in (*kept, *((stick.label, stick.path) for stick in media)):
-        found.append(BackupPlace(label, path))
+        found.append(BackupLocation(label, path))
         backups = sorted(path.glob(f"*{BACKUP_SUFFIX}"), key=lambda file: file.name, reverse=True)
         found += [_backup_of(file) for file in backups if not file.name.startswith(".")]
     return tuple(found)
 
 
-def _backup_of(file: Path) -> BackupPlace:
+def _backup_of(file: Path) -> BackupLocation:
     status = file.stat()
     at = datetime.fromtimestamp(status.st_mtime).strftime("%Y-%m-%d %H:%M")
-    return BackupPlace(file.name.removesuffix(BACKUP_SUFFIX), file, True, status.st_size, at)
+    return BackupLocation(file.name.removesuffix(BACKUP_SUFFIX), file, True, status.st_size, at)

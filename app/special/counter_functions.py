@@ -51,7 +51,7 @@ class ToolLifeFunction(NumericFunction):
     def list_tools(self) -> tuple[ToolLife, ...]:
         """Return the displayed tools in the order of their T numbers."""
         lives = self.parts_watch.tool_life_watch.read_lives()
-        numbers = sorted({*lives, *self.desk.offset_book.tools} & set(OFFSET_NUMBERS))
+        numbers = sorted({*lives, *self.desk.offset_book.tool_offsets} & set(OFFSET_NUMBERS))
         return tuple(lives.get(number, ToolLife(number)) for number in numbers)
 
     @property
@@ -94,7 +94,7 @@ class ToolLifeFunction(NumericFunction):
     def _row(self, life: ToolLife) -> TableRow:
         parts = str(life.limit_parts) if life.limit_parts else NO_VALUE
         minutes = f"{life.limit_seconds / 60.0:g}" if life.limit_seconds else NO_VALUE
-        left = life.parts_left
+        left = life.remaining_part_count
         words = NO_VALUE if left is None else tr(Message("{count} parts", count=left))
         stops = tr("STOP") if life.stops else NO_VALUE
         tone = LIFE_TONES[life.state]
@@ -109,7 +109,7 @@ class ToolLifeFunction(NumericFunction):
         """
         return self.move_selection(key) or super().handle_key(key)
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for the type of limit, the stop setting and a new insert."""
         return {
             "F2": FunctionKey(_LABELS[following(LIMIT_FIELDS, self.limit_kind)], self._next_limit),
@@ -214,7 +214,7 @@ class PartsCounterFunction(NumericFunction):
         to_come = formats.format_duration(left * last) if aim and last else formats.NO_VALUE
         stop = (
             tr(Message("{count} (SET BY JOB)", count=aim))
-            if counter.job_target
+            if counter.job_target_count
             else str(aim or tr("NO TARGET"))
         )
         rows = (
@@ -226,7 +226,7 @@ class PartsCounterFunction(NumericFunction):
         )
         return TableContent(
             "PARTS COUNTER",
-            ("PROGRAM", counter.program or "NO PROGRAM"),
+            ("PROGRAM", counter.program_name or "NO PROGRAM"),
             (0.55, 0.45),
             rows,
             question="STOP AT HOW MANY PARTS?",
@@ -244,7 +244,7 @@ class PartsCounterFunction(NumericFunction):
             number_columns=frozenset({1}),
         )
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for corrections, for the reset, and for cycles that are not counted."""
         return {
             "F2": FunctionKey("COUNT +1", partial(self.correct_count, 1)),
@@ -255,7 +255,7 @@ class PartsCounterFunction(NumericFunction):
 
     def correct_count(self, change: int) -> None:
         """Correct the count by a part that was not counted or that is scrap."""
-        if not self.part_counter.program:
+        if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
             return
@@ -267,7 +267,7 @@ class PartsCounterFunction(NumericFunction):
 
     def confirm_reset(self) -> None:
         """Reset the count to zero after the operator confirms."""
-        if not self.part_counter.program:
+        if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
         elif self.desk.is_refused(ProtectedChange.COUNTS):
             return
@@ -281,10 +281,10 @@ class PartsCounterFunction(NumericFunction):
 
         A value of 0 removes the target. Raise EntryError for an invalid value.
         """
-        if not self.part_counter.program:
+        if not self.part_counter.program_name:
             self.desk.say(NO_PROGRAM_LOADED)
             return False
-        if self.part_counter.job_target:
+        if self.part_counter.job_target_count:
             self.desk.say("ACTIVE JOB HAS ITS OWN COUNT. CHANGE IT IN JOBS (SHIFT+F6)")
             return False
         if self.desk.is_refused(ProtectedChange.COUNTS):

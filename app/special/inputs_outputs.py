@@ -24,7 +24,7 @@ from core.message import Message
 from core.ports import UnknownPart
 
 SWITCH_REFUSAL = "SWITCH OUTPUTS ONLY WHEN NO PROGRAM RUNS AND NOTHING MOVES"
-REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
+AT_REST_STATES = frozenset({MachineState.IDLE, MachineState.DISABLED})
 # Users of an input: OmniTurn codes and functions of the control.
 _PROGRAM_INPUT_USERS = {"TB2-5": "M91 M92", "TB2-7": "M93 M94", "TB2-9": "M95"}
 _INPUT_USERS = {
@@ -56,11 +56,11 @@ class SignalsFunction(SpecialFunction):
     name = "INPUTS AND OUTPUTS"
     use = "live signals, manual outputs, lamps"
 
-    def __init__(self, desk: Desk, machine: Machine) -> None:
+    def __init__(self, desk: Desk, machine_name: Machine) -> None:
         super().__init__(desk)
-        self.machine = machine
+        self.machine = machine_name
         self.list_kind = SignalListKind.OUTPUTS
-        self._codes = _map_codes(machine)
+        self._codes = _map_codes(machine_name)
 
     @property
     def row_count(self) -> int:
@@ -129,11 +129,11 @@ class SignalsFunction(SpecialFunction):
         if name == "guard" and not self.machine.interlocks.guard_stops:
             # The guard stops nothing on this machine; its state is only reported to the shop floor.
             return ""
-        if name in _INPUT_USERS or self.machine.language != "omniturn":
+        if name in _INPUT_USERS or self.machine.mdi_language != "omniturn":
             return _INPUT_USERS.get(name, "")
         return _PROGRAM_INPUT_USERS.get(name, f"M97I{name}" if name.isdigit() else "")
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which shows the next list."""
         labels = {
             SignalListKind.OUTPUTS: "OUTPUTS",
@@ -186,7 +186,7 @@ class SignalsFunction(SpecialFunction):
             return
         name = tuple(self.machine.outputs)[self.marked]
         snapshot = self.desk.read_snapshot()
-        if snapshot.state not in REST_STATES:
+        if snapshot.state not in AT_REST_STATES:
             self.desk.say(SWITCH_REFUSAL)
             return
         if name in self.machine.lamp_outputs:
@@ -221,7 +221,7 @@ class SignalsFunction(SpecialFunction):
             return tr("ENTER OR TAP: SWITCH SIMULATED INPUT   F4: NEXT LIST")
         if self.list_kind is not SignalListKind.OUTPUTS:
             return "F4: NEXT LIST   ESC: BACK TO THE LIST OF FUNCTIONS"
-        if self.desk.read_snapshot().state not in REST_STATES:
+        if self.desk.read_snapshot().state not in AT_REST_STATES:
             return SWITCH_REFUSAL
         return "CHECK THE MACHINE FIRST   ENTER OR TAP: SWITCH THE OUTPUT"
 
@@ -235,7 +235,7 @@ def _map_codes(machine: Machine) -> dict[str, str]:
 
     Codes that switch an output on precede those that switch it off.
     """
-    omniturn = machine.language == "omniturn"
+    omniturn = machine.mdi_language == "omniturn"
     own = _OWN_CODES_OF_OMNITURN if omniturn else _OWN_CODES
     form = "M{:02d}" if omniturn else "M{}"
     found = {name: list(codes) for name, codes in own.items()}
@@ -259,9 +259,9 @@ class DriveStatusFunction(SpecialFunction):
     name = "DRIVE STATUS"
     use = "power, home, following error, faults"
 
-    def __init__(self, desk: Desk, machine: Machine) -> None:
+    def __init__(self, desk: Desk, machine_name: Machine) -> None:
         super().__init__(desk)
-        self.machine = machine
+        self.machine = machine_name
 
     def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table with one row per axis and one row for the spindle."""
@@ -292,7 +292,7 @@ class DriveStatusFunction(SpecialFunction):
             snapshot.following_error[number],
             axis.following_window,
         )
-        write = formats.format_angle if axis.rotary else lambda value: formats.format_length(value, metric)
+        write = formats.format_angle if axis.is_rotary else lambda value: formats.format_length(value, metric)
         fault = _find_fault(snapshot.alarms, DRIVE_ALARMS, axis)
         home = "HOMED" if snapshot.homed[number] else "NOT HOMED"
         power = "ON" if on else "OFF"

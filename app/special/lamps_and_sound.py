@@ -43,14 +43,14 @@ class EventSounds:
     _told: str = ""
     _read: bool = False
 
-    def play_new_events(self, snapshot: Snapshot) -> None:
+    def play_new_event_sounds(self, snapshot: Snapshot) -> None:
         """Play the sounds of events that have begun since the last frame.
 
         No sounds are played in the first frame.
         """
         self.load_settings()
         kinds = self._signals.update_signals(
-            snapshot.state, snapshot.ends, next_part_blocked=bool(snapshot.next_barred)
+            snapshot.state, snapshot.ends, is_next_part_blocked=bool(snapshot.next_barred)
         )
         before, self._before = self._before, kinds
         new = [] if before is None else [kind for kind in kinds if kind not in before and self._heard(kind)]
@@ -120,9 +120,9 @@ class LampsAndSoundFunction(SpecialFunction):
     name = "LAMPS AND SOUND"
     use = "lamps, sounds, volume, lamp test"
 
-    def __init__(self, desk: Desk, machine: Machine, sounds: EventSounds) -> None:
+    def __init__(self, desk: Desk, machine_name: Machine, sounds: EventSounds) -> None:
         super().__init__(desk)
-        self.machine, self.event_sounds = machine, sounds
+        self.machine, self.event_sounds = machine_name, sounds
 
     @property
     def row_count(self) -> int:
@@ -156,7 +156,7 @@ class LampsAndSoundFunction(SpecialFunction):
             return ""
         return tr("OFF") if kind in self.event_sounds.muted_kinds else tr("ON")
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for volume, sound test and lamp test."""
         return {
             "F2": FunctionKey("SOFTER", lambda: self._louder(-_VOLUME_STEP)),

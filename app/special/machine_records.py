@@ -90,7 +90,7 @@ class EventLogFunction(SpecialFunction):
         The result arrives in a later frame. Only the last of several queries is used.
         """
         search, kinds = self.search_field.text.strip(), EVENT_FILTERS[self.filter_name]
-        self.worker.request(
+        self.worker.request_work(
             lambda _: tuple(self.persistence.events(search, kinds, MAX_EVENTS)), self._found, self._failed
         )
 
@@ -104,7 +104,7 @@ class EventLogFunction(SpecialFunction):
     def _failed(self, why: str) -> None:
         self.error_text = why
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for search and filter."""
         return {"F4": FunctionKey("SEARCH", self._search), "F5": FunctionKey("FILTER", self._filter)}
 
@@ -208,7 +208,7 @@ class MachineFileFunction(SpecialFunction):
             raw_columns=frozenset({0, 1, 2}),
         )
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F2 if there are changes to accept."""
         return {"F2": FunctionKey("ACCEPT", self._accept)} if self.changes.changes else {}
 

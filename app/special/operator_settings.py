@@ -83,7 +83,7 @@ class RParametersFunction(NumericFunction):
             number_columns=frozenset({1}),
         )
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which clears the selected parameter."""
         return {"F4": FunctionKey("CLEAR", self.clear_selected)}
 
@@ -126,7 +126,7 @@ class RParametersFunction(NumericFunction):
             self.parameter_values[number] = value
         kept = {str(each): self.parameter_values[each] for each in sorted(self.parameter_values)}
         change_text = f"R{number}: {_told(before)} → {_told(value)}"
-        self._worker.enqueue(
+        self._worker.enqueue_work(
             partial(self._persistence.save_settings, {R_PARAMETERS_SETTING: kept or None}),
             lambda _none: self._handle_saved(change_text),
             lambda why: self.desk.say(tr(Message("NOT SAVED: {why}", why=why))),
@@ -217,7 +217,7 @@ class ScreenSettingsFunction(SpecialFunction):
         if name == "dock" and self.desk.desk_control.station_panel is None:
             self.desk.say("NOT AVAILABLE: THIS MACHINE HAS A REAL OPERATOR STATION")
             return
-        if name == "dock" and settings.current.dock and self.desk.station_controls.estop_pressed:
+        if name == "dock" and settings.current.dock and self.desk.station_controls.is_estop_pressed:
             self.desk.say("RELEASE THE E-STOP (U) BEFORE HIDING THE OPERATOR STATION")
             return
         if name == "latched" and not self.desk.machine.allows_one_hand:
@@ -279,7 +279,7 @@ class SpindleLimitFunction(NumericFunction):
             number_columns=frozenset({1}),
         )
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function key F4, which removes the limit."""
         return {"F4": FunctionKey("NO LIMIT", self.confirm_remove_limit)}
 

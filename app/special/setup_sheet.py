@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from app.desk.status.readouts import format_rotary_angle
 from app.desk.translation import tr
-from app.report.run_record import PlannedStop, RunRecorder, ToolTime
+from app.report.run_record import PlannedStop, RunRecorder, ToolTimes
 from core.geometry.rotary_axes import DatumPreset
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.shared.job_setup import MillTool, SecondaryOffset, Setup, ToolOffset, ZeroOffset
@@ -78,13 +78,13 @@ class MillSetup:
         return ", ".join(filter(None, words)) or tr("no tool name in the tool table")
 
 
-def make_mill_setup(setup: Setup, blank: BlankCorners | None) -> MillSetup | None:
+def make_mill_setup(setup: Setup, blank_corners: BlankCorners | None) -> MillSetup | None:
     """Return the mill setup of a job, or None on a lathe."""
     if setup.kinematics is None:
         return None
     datum = setup.presets.get(setup.preset) if setup.preset else None
     names = {number: name for name, number in setup.tool_names.items()}
-    return MillSetup(blank, setup.preset, datum, names, setup.mill_tools)
+    return MillSetup(blank_corners, setup.preset, datum, names, setup.mill_tools)
 
 
 def format_tool_offset(offset: ToolOffset, format_length: FormatLength) -> str:
@@ -106,7 +106,7 @@ class SetupTool:
     tool_shape: ToolShape | None
     is_assumed: bool
     tool_offset: ToolOffset | None
-    tool_time: ToolTime
+    tool_time: ToolTimes
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +138,7 @@ class SetupSheet:
         return sum(each.severity is Severity.WARNING for each in self.diagnostics)
 
     @property
-    def summary(self) -> str:
+    def findings_summary(self) -> str:
         """Return a summary of the errors and warnings as text, or an empty string if there are none."""
         if self.error_count == 1:
             return tr("1 ERROR: this program will not run as it is")
@@ -248,15 +248,17 @@ def make_setup_sheet(
     program: SharedProgram,
     setup: Setup,
     machine: Machine,
-    setting: PartSettings,
-    watch: ReportProgress | None = None,
+    part_settings: PartSettings,
+    report_progress: ReportProgress | None = None,
 ) -> SetupSheet:
     """Prove the program, and return its setup sheet.
 
-    ``watch`` is called during the proof. It may raise an exception to cancel.
+    ``report_progress`` is called during the proof. It may raise an exception to cancel.
     """
-    record = RunRecorder(setting)
-    report, part = prove_with_part(program, setup, machine, setting, watch, on_span=record.add_span)
+    record = RunRecorder(part_settings)
+    report, part = prove_with_part(
+        program, setup, machine, part_settings, report_progress, on_span=record.add_span
+    )
     shapes = part.shapes if part is not None else {}
     numbers = sorted(
         {*report.tool_numbers, *(n for n, time in record.tool_times.items() if n and time.total_s)}
@@ -268,14 +270,14 @@ def make_setup_sheet(
         stock=part.stock if part is not None else None,
         finished_part=part.last_piece if part is not None else None,
         is_milled=part is not None and part.is_milled,
-        clamping=setting.clamping,
+        clamping=part_settings.clamping,
         setup_tools=tuple(
             SetupTool(
                 n,
                 shapes.get(n),
-                setting.shapes.get(n) != shapes.get(n),
+                part_settings.shapes.get(n) != shapes.get(n),
                 setup.tools.get(n),
-                record.tool_times.get(n, ToolTime()),
+                record.tool_times.get(n, ToolTimes()),
             )
             for n in numbers
         ),

@@ -14,7 +14,7 @@ from app.desk.persistence import Persistence
 from app.desk.translation import tr
 from app.programs.removable_media import UsbStick, list_sticks
 from app.report.pdf_file import PaperSize
-from app.special.backup_and_restore import BackupPlace
+from app.special.backup_and_restore import BackupLocation
 from app.special.special_functions import SpecialFunction
 from core.access.access_table import ProtectedChange
 from core.executor.job import Job
@@ -45,19 +45,19 @@ class SetupSheetFunction(SpecialFunction):
     def __init__(
         self,
         desk: Desk,
-        machine: Machine,
+        machine_name: Machine,
         persistence: Persistence,
         worker: LatestRequestWorker,
-        folder: Path,
+        csv_folder: Path,
         list_media: Callable[[], Sequence[UsbStick]] = list_sticks,
     ) -> None:
         super().__init__(desk)
-        self.machine, self.persistence, self.worker = machine, persistence, worker
-        self.folder, self.list_media = folder, list_media
-        self.made_sheet: PreparedSheet | None = None
+        self.machine, self.persistence, self.worker = machine_name, persistence, worker
+        self.folder, self.list_media = csv_folder, list_media
+        self.prepared_sheet: PreparedSheet | None = None
         self.error_text = ""
         self.note_field: InputField | None = None  # a note is being typed
-        self.save_places: tuple[BackupPlace, ...] = ()  # places to choose from
+        self.save_locations: tuple[BackupLocation, ...] = ()  # places to choose from
         self.task_text = ""
         self._asked: Job | None = None  # job whose sheet is being prepared
         self._changing: int | None = None  # index of the note being changed; None for a new note
@@ -103,12 +103,12 @@ class SetupSheetFunction(SpecialFunction):
     @property
     def row_count(self) -> int:
         """Return the number of rows that can be selected."""
-        return len(self.save_places) if self.save_places else len(list(self._rows()))
+        return len(self.save_locations) if self.save_locations else len(list(self._rows()))
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of the sheet, or of the locations for saving."""
         self._make_if_changed()
-        if self.save_places:
+        if self.save_locations:
             return self._sheet_of_places()
         name = self.program_name
         rows = tuple(self._rows())
@@ -133,25 +133,27 @@ class SetupSheetFunction(SpecialFunction):
             return (self.error_text,)
         if self.task_text:
             return (self.task_text,)
-        return ("Preparing the setup sheet …",) if self.made_sheet is None else ()
+        return ("Preparing the setup sheet …",) if self.prepared_sheet is None else ()
 
     def _rows(self) -> Iterator[TableRow]:
         if not self.program_name:
             return
-        if self.made_sheet is not None:
+        if self.prepared_sheet is not None:
             from app.special.setup_sheet_work import make_sheet_rows
 
-            yield from make_sheet_rows(self.made_sheet, self._remarks())
+            yield from make_sheet_rows(self.prepared_sheet, self._remarks())
         for number, text in enumerate(self.notes, 1):
             yield TableRow((f"{tr('NOTE')} {number}", text, ""))
 
     def _remarks(self) -> dict[int, str]:
         if self.machine.kind == "mill":  # Mill tools have names, which are shown with the tools.
             return {}
-        return {number: row.remark for number, row in self.desk.offset_book.tools.items() if row.remark}
+        return {
+            number: row.remark for number, row in self.desk.offset_book.tool_offsets.items() if row.remark
+        }
 
     def _sheet_of_places(self) -> TableContent:
-        rows = tuple(TableRow((place.label, str(place.path))) for place in self.save_places)
+        rows = tuple(TableRow((place.label, str(place.path))) for place in self.save_locations)
         return TableContent(
             "SETUP SHEET  ·  SAVE TO WHICH LOCATION?",
             ("WHERE", "FOLDER"),
@@ -167,15 +169,17 @@ class SetupSheetFunction(SpecialFunction):
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for notes, paper size and saving."""
-        if self.save_places:
-            return {"F4": FunctionKey("LOOK", self.reload_places)}
+        if self.save_locations:
+            return {"F4": FunctionKey("LOOK", self.reload_save_locations)}
         return {
             "F2": FunctionKey("NOTE", self.add_note),
             "F3": FunctionKey("DEL NOTE", self.confirm_delete_note),
-            "F5": FunctionKey("A4" if self.paper_size is PaperSize.A4 else "LETTER", self.select_next_paper),
-            "F6": FunctionKey("WRITE", self.reload_places),
+            "F5": FunctionKey(
+                "A4" if self.paper_size is PaperSize.A4 else "LETTER", self.select_next_paper_size
+            ),
+            "F6": FunctionKey("WRITE", self.reload_save_locations),
         }
 
     def handle_key(self, key: str) -> bool:
@@ -198,18 +202,18 @@ class SetupSheetFunction(SpecialFunction):
 
     def handle_escape(self) -> bool:
         """Cancel the note entry or the list of locations."""
-        open_ = self.note_field is not None or bool(self.save_places)
-        self.note_field, self.save_places = None, ()
+        open_ = self.note_field is not None or bool(self.save_locations)
+        self.note_field, self.save_locations = None, ()
         return open_
 
     def on_close(self) -> None:
         """Cancel the note entry when the function closes."""
-        self.note_field, self.save_places = None, ()
+        self.note_field, self.save_locations = None, ()
 
     def execute_row(self) -> bool:
         """Change the selected note, or save to the selected location."""
-        if self.save_places:
-            self._write(self.save_places[min(self.marked, len(self.save_places) - 1)])
+        if self.save_locations:
+            self._write(self.save_locations[min(self.marked, len(self.save_locations) - 1)])
         elif (at := self._selected_note_index) is not None:
             self._changing, self.note_field = at, InputField(words=True, text=self.notes[at])
         elif self.program_name:
@@ -274,7 +278,7 @@ class SetupSheetFunction(SpecialFunction):
         if not self.desk.is_refused(ProtectedChange.SCREEN):
             self.desk.try_save(save)
 
-    def select_next_paper(self) -> None:
+    def select_next_paper_size(self) -> None:
         """Switch the paper size between A4 and Letter."""
         if self.desk.is_refused(ProtectedChange.SCREEN):
             return
@@ -293,7 +297,7 @@ class SetupSheetFunction(SpecialFunction):
         """Return the prompt for the keys that are available now."""
         if self.note_field is not None:
             return "TYPE THE NOTE   ENTER: SAVE   ESC: EXIT WITHOUT SAVING"
-        if self.save_places:
+        if self.save_locations:
             return "ENTER: SAVE SHEET HERE   F4: RESCAN FOR USB STICKS"
         return "F2: ADD A NOTE   F6: SAVE SHEET AS PDF AND HTML   ESC: BACK"
 
@@ -309,45 +313,45 @@ class SetupSheetFunction(SpecialFunction):
         job, picture = loaded.job, loaded.picture
         if job is None or picture is None or job is self._asked:
             return
-        self._asked, self.made_sheet, self.error_text = job, None, ""
+        self._asked, self.prepared_sheet, self.error_text = job, None, ""
         from app.special.setup_sheet_work import prepare_sheet
 
         setting = picture.part.part_settings if picture.part is not None else None
-        self.worker.request(partial(prepare_sheet, job, self.machine, setting), self._take, self._failed)
+        self.worker.request_work(partial(prepare_sheet, job, self.machine, setting), self._take, self._failed)
 
     def _take(self, made: PreparedSheet) -> None:
-        self.made_sheet = made
+        self.prepared_sheet = made
 
     def _failed(self, why: str) -> None:
         self.error_text = why
 
     # --- saving --------------------------------------------------------------------------------------
 
-    def reload_places(self) -> None:
+    def reload_save_locations(self) -> None:
         """List the locations for saving.
 
         The result is shown in a later frame.
         """
         self.desk.clear_prompt_line()
-        if self.made_sheet is None or not self.program_name:
+        if self.prepared_sheet is None or not self.program_name:
             self.desk.say(
                 NO_PROGRAM_LOADED
                 if not self.program_name
                 else ("THE SETUP SHEET IS STILL BEING PREPARED: WAIT A MOMENT")
             )
             return
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             lambda: _list_places(self.folder, self.list_media()), self._found, self._not_written
         )
 
-    def _found(self, places: tuple[BackupPlace, ...]) -> None:
-        self.save_places, self.marked = places, 0
+    def _found(self, places: tuple[BackupLocation, ...]) -> None:
+        self.save_locations, self.marked = places, 0
 
-    def _write(self, place: BackupPlace) -> None:
+    def _write(self, place: BackupLocation) -> None:
         if self.task_text:
             self.desk.say("STILL BUSY. WAIT UNTIL THE LAST COMMAND IS DONE")
             return
-        if self.made_sheet is None:
+        if self.prepared_sheet is None:
             self.desk.say("THE SETUP SHEET IS STILL BEING PREPARED: WAIT A MOMENT")
             return
         self.task_text = "Writing …"
@@ -355,16 +359,16 @@ class SetupSheetFunction(SpecialFunction):
         from app.special.setup_sheet_work import make_sheet_page, write_sheet_files
 
         page = make_sheet_page(
-            self.made_sheet, self.program_name, self.machine, self._remarks(), tuple(self.notes)
+            self.prepared_sheet, self.program_name, self.machine, self._remarks(), tuple(self.notes)
         )
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             partial(write_sheet_files, page, self.program_name, place.path, self.paper_size),
             self._done,
             self._not_written,
         )
 
     def _done(self, name: str) -> None:
-        self.task_text, self.save_places = "", ()
+        self.task_text, self.save_locations = "", ()
         self.desk.show_success(
             tr(Message("{name} SAVED. IF YOU USED A USB STICK, YOU CAN REMOVE IT NOW", name=name))
         )
@@ -387,9 +391,9 @@ def _describe_change(before: Sequence[str], now: Sequence[str]) -> str:
     )
 
 
-def _list_places(folder: Path, media: Sequence[UsbStick]) -> tuple[BackupPlace, ...]:
+def _list_places(folder: Path, media: Sequence[UsbStick]) -> tuple[BackupLocation, ...]:
     """Return the media and the control's folder."""
     return (
-        *(BackupPlace(stick.label, stick.path) for stick in media),
-        BackupPlace(tr("THIS CONTROL"), folder),
+        *(BackupLocation(stick.label, stick.path) for stick in media),
+        BackupLocation(tr("THIS CONTROL"), folder),
     )

@@ -67,9 +67,9 @@ def make_sheet_html(
 
 
 def _verdict(sheet: SetupSheet) -> str:
-    if not sheet.summary:
+    if not sheet.findings_summary:
         return ""
-    return make_result_line("bad" if sheet.error_count else "doubt", sheet.summary)
+    return make_result_line("bad" if sheet.error_count else "doubt", sheet.findings_summary)
 
 
 def _section(sheet: SetupSheet) -> str:
@@ -122,7 +122,7 @@ def _offsets(sheet: SetupSheet) -> str:
 
 def _stops(sheet: SetupSheet) -> str:
     rows = [
-        (sheet.format_stop(stop), str(stop.line), format_minutes(stop.time_s), escape(stop.message))
+        (sheet.format_stop(stop), str(stop.line_number), format_minutes(stop.time_s), escape(stop.message))
         for stop in sheet.program_stops
     ]
     head = (tr("STOP"), tr("LINE"), tr("AFTER"), tr("MESSAGE TO THE OPERATOR"))
@@ -142,8 +142,8 @@ class PreparedSheet:
 def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iterator[TableRow]:
     """Yield the rows of the sheet, with time, stock, clamping, tools, offsets and stops."""
     sheet = prepared.setup_sheet
-    if sheet.summary:
-        yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.summary, ""))
+    if sheet.findings_summary:
+        yield TableRow((tr("ERRORS") if sheet.error_count else tr("WARNINGS"), sheet.findings_summary, ""))
     part = format_finished_size(sheet)
     stock = sheet.stock_text + (f"\n{tr('PART')} {part}" if part else "")
     yield TableRow((tr("TIME PER PART"), format_minutes(sheet.cycle_time_s), ""))
@@ -162,18 +162,18 @@ def make_sheet_rows(prepared: PreparedSheet, remarks: Mapping[int, str]) -> Iter
     for n, zero in sheet.zero_offsets:
         yield TableRow((f"G{n}", f"X {length(zero.x)}   Z {length(zero.z)}   C {zero.c:g}°", ""))
     for stop in sheet.program_stops:
-        at = tr(Message("LINE {line}", line=stop.line))
+        at = tr(Message("LINE {line}", line=stop.line_number))
         yield TableRow((sheet.format_stop(stop), f"{stop.message}\n{at}, {format_minutes(stop.time_s)}", ""))
 
 
 def prepare_sheet(
-    job: Job, machine: Machine, setting: PartSettings | None, watch: WorkRequest
+    job: Job, machine: Machine, part_settings: PartSettings | None, watch: WorkRequest
 ) -> PreparedSheet:
     """Prepare the sheet of a job.
 
     This runs on a worker.
     """
-    sheet = make_setup_sheet(job.shared_program, job.setup, machine, setting or PartSettings(), watch)
+    sheet = make_setup_sheet(job.shared_program, job.setup, machine, part_settings or PartSettings(), watch)
     return PreparedSheet(
         job, sheet, {tool.tool_number: _outline(tool.tool_shape) for tool in sheet.setup_tools}
     )
@@ -187,7 +187,11 @@ def _outline(shape: ToolShape | None) -> ToolOutline | None:
 
 
 def make_sheet_page(
-    prepared: PreparedSheet, program: str, machine: Machine, remarks: Mapping[int, str], notes: Sequence[str]
+    prepared: PreparedSheet,
+    program_name: str,
+    machine: Machine,
+    remarks: Mapping[int, str],
+    notes: Sequence[str],
 ) -> tuple[str, str, str]:
     """Return the title, date and body of the page."""
     facts = [
@@ -195,17 +199,19 @@ def make_sheet_page(
         (tr("PROGRAM CHECKSUM (SHA-256)"), hash_text(prepared.job.source)),
     ]
     body = make_sheet_html(prepared.setup_sheet, facts, remarks, notes)
-    title = tr(Message("Setup sheet: {program}", program=program))
+    title = tr(Message("Setup sheet: {program}", program=program_name))
     return title, datetime.now().strftime("%Y-%m-%d %H:%M"), body
 
 
-def write_sheet_files(page: tuple[str, str, str], program: str, folder: Path, paper_size: PaperSize) -> str:
+def write_sheet_files(
+    page: tuple[str, str, str], program_name: str, folder: Path, paper_size: PaperSize
+) -> str:
     """Write the sheet as PDF and HTML on the worker, and return the name of the PDF.
 
     Each file is replaced atomically. Raise FileOperationError on failure.
     """
     title, made, body = page
-    name = f"{program}-setup"
+    name = f"{program_name}-setup"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         pdf = make_pdf(make_headline(title, made) + body, title, paper_size)

@@ -34,7 +34,7 @@ class SpecialFunction(ABC):
     def make_table(self, snapshot: Snapshot) -> TableContent:
         """Return the table for a snapshot."""
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of this function, which can be F2 to F10 except F7."""
         return {}
 
@@ -287,7 +287,7 @@ class SpecialFunctionList:
 
         This is called once a frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
 
     def close(self) -> None:
         """Finish pending work of all functions, and stop the worker."""

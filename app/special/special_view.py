@@ -48,7 +48,7 @@ class FunctionList(RowPanel):
     @property
     def _high(self) -> float:
         """Return the height of a row in pixels, which is at least that of a fingertip with the gap."""
-        return max(ROW * self.theme.u, FINGERTIP_PX + GAP * self.theme.u)
+        return max(ROW * self.theme.unit_px, FINGERTIP_PX + GAP * self.theme.unit_px)
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the name and the use of each visible function, and make each row a touch target."""
@@ -56,12 +56,12 @@ class FunctionList(RowPanel):
         fits = self.count_fitting_rows(room, high, len(functions))
         room = self.draw_scroll_keys(painter, room, fits, len(functions), self.model.at)
         for number, row in self.find_row_boxes(room, high):
-            box = row.adjusted(0, 0, 0, -GAP * self.theme.u)
+            box = row.adjusted(0, 0, 0, -GAP * self.theme.unit_px)
             self._item(painter, box, number, functions[number].name, functions[number].use)
             self.add_target(box, partial(self._enter, number), kind="row", is_on=number == self.model.at)
 
     def _item(self, painter: ThemedPainter, box: QRectF, number: int, name: str, use: str) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         here = number == self.model.at
         painter.fill_rect(box, "here" if here else "key")
         if here:
@@ -124,20 +124,20 @@ class SpecialPage(ListPage):
         self.model.inside = True
         super().handle_touched_key(key)
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the displayed function."""
-        return self.model.shown_function.function_keys()
+        return self.model.shown_function.make_function_keys()
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the key labels of the displayed function and of the page."""
-        return self.make_labels({}, self.function_keys())
+        return self.make_function_key_labels({}, self.make_function_keys())
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the key actions of the displayed function.
 
         Pressing one of these keys opens the function.
         """
-        keys = self.model.shown_function.function_keys()
+        keys = self.model.shown_function.make_function_keys()
         return {name: partial(self._do, name) for name in keys}
 
     def has_text_field(self) -> bool:
@@ -146,7 +146,7 @@ class SpecialPage(ListPage):
 
     def _do(self, name: str) -> None:
         self.model.inside = True
-        self.model.shown_function.function_keys()[name].action()
+        self.model.shown_function.make_function_keys()[name].action()
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
         """Show the tables for a snapshot."""
@@ -167,7 +167,7 @@ class SpecialPage(ListPage):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(LIST * u)
         pad = 0 if self.number_pad.isHidden() else round(PAD * u) + gap
         self.function_list.setGeometry(0, 0, left, self.height())

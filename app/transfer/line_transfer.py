@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from app.programs.atomic_files import FileOperationError, write_new_file
-from app.programs.program_commands import check_name, find_same_name
+from app.programs.program_commands import complete_name, find_same_name
 from core.machine.serial_and_backup_tables import SerialLineModel
 from core.message import Message
 
@@ -21,17 +21,18 @@ T_co = TypeVar("T_co", covariant=True)
 class TransferProgress(Protocol):
     """Progress of a transfer.
 
-    ``total_bytes`` is 0 while the size is unknown. ``wait_reason`` names the reason for waiting: held, dc1,
-    sender, frame, noise or empty. ``received_text`` is the data received before the first % of a program.
+    ``total_byte_count`` is 0 while the size is unknown. ``wait_reason`` names the reason for waiting: held,
+    dc1, sender, frame, noise or empty. ``received_text`` is the data received before the first % of a
+    program.
     """
 
     @property
-    def done_bytes(self) -> int:
+    def done_byte_count(self) -> int:
         """Return the number of bytes that have been transferred."""
         ...
 
     @property
-    def total_bytes(self) -> int:
+    def total_byte_count(self) -> int:
         """Return the size of the transfer in bytes, or 0 while the size is unknown."""
         ...
 
@@ -127,13 +128,13 @@ class SerialPorts(Protocol):
 # --- Storing a received program; existing files are never changed. ---------------------------------------
 
 
-def store_received(received: ReceivedProgram, folder: Path, name: str) -> Path:
+def store_received_program(received: ReceivedProgram, folder: Path, name: str) -> Path:
     """Store a received program as a new file, and return its path.
 
     If ``name`` has no extension, the extension of the received program is added. Raise FileOperationError
     if the name is invalid or exists, or if the disk rejects the file.
     """
-    name = check_name(name, Path(received.name))
+    name = complete_name(name, Path(received.name))
     if other := find_same_name(folder, name):
         raise FileOperationError(Message("{other} ALREADY EXISTS. USE ANOTHER NAME", other=other))
     write_new_file(folder / name, received.program_bytes)

@@ -23,7 +23,7 @@ from app.transfer.line_transfer import (
     SerialPorts,
     TransferProgress,
     find_unused_name,
-    store_received,
+    store_received_program,
 )
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
@@ -47,8 +47,8 @@ LEADER_LENGTHS = (0, 50, 200, 1000)
 _EOL_NAMES = {"\r\n": "CR LF", "\n": "LF", "\r": "CR"}
 _FLOW_NAMES = {"xonxoff": "XON/XOFF", "rtscts": "RTS/CTS", "none": "NONE"}
 
-SettingStep = Callable[[SerialLineModel, Sequence[str]], SerialLineModel]
-SettingRow = tuple[str, Callable[[SerialLineModel], str], SettingStep]
+SelectNextValue = Callable[[SerialLineModel, Sequence[str]], SerialLineModel]
+SettingRow = tuple[str, Callable[[SerialLineModel], str], SelectNextValue]
 
 
 def _bits(model: SerialLineModel) -> str:
@@ -126,7 +126,7 @@ MAX_FINDINGS = 6  # maximum number of displayed findings
 
 
 def make_settings_table(
-    settings: SerialLineModel, marked: int, program_path: Path | None, last_result: str
+    settings: SerialLineModel, selected_index: int, program_path: Path | None, last_result: str
 ) -> TableContent:
     """Return the table of the line settings and of the program to send."""
     rows = tuple(TableRow((tr(name), value(settings))) for name, value, _ in SETTING_ROWS)
@@ -137,7 +137,7 @@ def make_settings_table(
         ("SETTING", "VALUE"),
         (0.5, 0.5),
         rows,
-        marked,
+        selected_index,
         notes=notes,
         raw_columns=frozenset({0, 1}),
     )
@@ -147,7 +147,9 @@ def make_progress_table(
     progress: TransferProgress, settings: SerialLineModel, sent_name: str
 ) -> TableContent:
     """Return the table with the progress of a transfer."""
-    share = f"{progress.done_bytes / progress.total_bytes:.0%}" if progress.total_bytes else "—"
+    share = (
+        f"{progress.done_byte_count / progress.total_byte_count:.0%}" if progress.total_byte_count else "—"
+    )
     rows = (
         TableRow(
             (tr("SENDING") if sent_name else tr("RECEIVING"), sent_name or settings.port), True, Tone.RUN
@@ -155,7 +157,8 @@ def make_progress_table(
         TableRow(
             (
                 tr("BYTES"),
-                f"{progress.done_bytes}" + (f" / {progress.total_bytes}" if progress.total_bytes else ""),
+                f"{progress.done_byte_count}"
+                + (f" / {progress.total_byte_count}" if progress.total_byte_count else ""),
             )
         ),
         TableRow((tr("LINES"), f"{progress.line_count}")),
@@ -255,7 +258,7 @@ class SerialTransferFunction(SpecialFunction):
 
     def on_open(self) -> None:
         """List the serial ports when the function opens."""
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             lambda: [device for device, _ in self.serial_ports.list_ports()],
             self._found,
             self.desk.show_refusal,
@@ -266,14 +269,14 @@ class SerialTransferFunction(SpecialFunction):
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
         """Return the table of the current state."""
-        self.worker.poll()
+        self.worker.deliver_results()
         if self.received_program is not None:
             return make_received_table(self.received_program, self.name_field.text)
         if self.running_transfer is not None:
             return make_progress_table(self.running_transfer.progress, self.line_settings, self.sent_name)
         return make_settings_table(self.line_settings, self.marked, self._chosen(), self.last_result)
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that are available now."""
         if self.received_program is not None:
             return {"F6": FunctionKey("DISCARD", self.confirm_discard)}
@@ -335,7 +338,7 @@ class SerialTransferFunction(SpecialFunction):
             self.sent_name = path.name
             carrying = self.serial_ports.make_send_transfer(self.line_settings, path)
             self.running_transfer = carrying
-            self.worker.enqueue(carrying.run_transfer, self._sent, self._failed)
+            self.worker.enqueue_work(carrying.run_transfer, self._sent, self._failed)
 
     def receive_program(self) -> None:
         """Handle F5: receive a program."""
@@ -345,7 +348,7 @@ class SerialTransferFunction(SpecialFunction):
             self.sent_name = ""
             carrying = self.serial_ports.make_receive_transfer(self.line_settings)
             self.running_transfer = carrying
-            self.worker.enqueue(carrying.run_transfer, self._came, self._failed)
+            self.worker.enqueue_work(carrying.run_transfer, self._came, self._failed)
 
     def cancel_transfer(self) -> None:
         """Cancel the transfer.
@@ -399,7 +402,7 @@ class SerialTransferFunction(SpecialFunction):
         if self.desk.is_refused(ProtectedChange.PROGRAMS):
             return  # The received program remains until an authorized user has signed in.
         try:
-            path = store_received(self.received_program, self.own_folder, self.name_field.text)
+            path = store_received_program(self.received_program, self.own_folder, self.name_field.text)
         except FileOperationError as error:
             self.desk.show_refusal(str(error))
             return

@@ -48,12 +48,12 @@ VIEW_ASPECTS = (
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Camera that looks at ``center``, in mm and in machine coordinates.
+    """Camera that looks at ``center_mm``, in mm and in machine coordinates.
 
     At ``zoom_factor`` 1, a sphere with the radius ``radius_mm`` around the center fills the picture.
     """
 
-    center: tuple[float, float, float]
+    center_mm: tuple[float, float, float]
     radius_mm: float
     aspect_index: int = 0
     zoom_factor: float = 1.0
@@ -79,16 +79,16 @@ class Camera:
         """Return the camera zoomed and panned so that everything is visible."""
         return replace(self, zoom_factor=1.0, offset_right=0.0, offset_down=0.0)
 
-    def with_zoom(self, steps: int) -> Camera:
+    def with_zoom(self, step_count: int) -> Camera:
         """Return the camera zoomed in by a number of steps."""
-        return replace(self, zoom_factor=min(40.0, max(0.2, self.zoom_factor * _ZOOM_STEP**steps)))
+        return replace(self, zoom_factor=min(40.0, max(0.2, self.zoom_factor * _ZOOM_STEP**step_count)))
 
-    def with_pan(self, across: int, down: int) -> Camera:
+    def with_pan(self, steps_right: int, steps_down: int) -> Camera:
         """Return the camera moved to the right and down by a number of steps."""
         return replace(
             self,
-            offset_right=self.offset_right - _PAN_STEP * across,
-            offset_down=self.offset_down - _PAN_STEP * down,
+            offset_right=self.offset_right - _PAN_STEP * steps_right,
+            offset_down=self.offset_down - _PAN_STEP * steps_down,
         )
 
     @property
@@ -113,7 +113,7 @@ class Camera:
         """
         size = min(width, height)
         scale = self.zoom_factor * size / (2.0 * self.radius_mm)
-        found = (points - np.array(self.center)) @ self.view_axes.T * scale
+        found = (points - np.array(self.center_mm)) @ self.view_axes.T * scale
         found[:, 0] += width / 2.0 + self.offset_right * size
         found[:, 1] += height / 2.0 + self.offset_down * size
         return np.asarray(found)
@@ -169,7 +169,7 @@ def find_blank_center(scene: MillScene) -> tuple[float, float, float]:
     return x, y, z
 
 
-def find_blank_diagonal(scene: MillScene) -> float:
+def find_blank_diagonal_mm(scene: MillScene) -> float:
     """Return the diagonal of the blank in mm, which scales all other sizes."""
     low, high = scene.blank_corners
     return max(1.0, math.dist(low, high))
@@ -194,11 +194,11 @@ def _find_table_center(kinematics: Kinematics, middle: FloatArray) -> FloatArray
     """Return a point on a table axis parallel to Z, or the center of the blank if there is no such axis."""
     for axis in kinematics.rotary_axes:
         if axis.is_table and abs(axis.direction[2]) > 0.5:
-            return np.array(axis.point)
+            return np.array(axis.point_on_axis)
     return middle
 
 
-def convert_to_tuple(row: FloatArray) -> tuple[float, float, float]:
+def convert_row_to_tuple(row: FloatArray) -> tuple[float, float, float]:
     """Return a row of an array as a tuple of three coordinates."""
     x, y, z = row.tolist()
     return x, y, z
@@ -251,7 +251,7 @@ class SceneDrawing:
 def make_camera(scene: MillScene) -> Camera:
     """Return a camera that shows the whole table, with the blank and the tool, at any tilt."""
     table = make_table_rim(scene)
-    at = scene.kinematics.make_transform({}).to_machine_position(find_blank_center(scene))
+    at = scene.kinematics.make_transform({}).convert_to_machine_position(find_blank_center(scene))
     reach = float(np.linalg.norm(table - np.array(at), axis=1).max())
     return Camera((at[0], at[1], at[2] + 0.1 * reach), 1.1 * reach)
 
@@ -307,7 +307,12 @@ class _ScenePicture:
         zero = self._scene.kinematics.make_transform({})
         flat = transform_points(
             machine_parallel,
-            np.array([zero.to_frame_point(convert_to_tuple(row)) for row in make_table_rim(self._scene)]),
+            np.array(
+                [
+                    zero.convert_to_frame_point(convert_row_to_tuple(row))
+                    for row in make_table_rim(self._scene)
+                ]
+            ),
         )
         up = np.cross(flat[1] - flat[0], flat[2] - flat[1])
         if up @ self._camera.view_axes[2] > 0.0:
@@ -328,22 +333,26 @@ class _ScenePicture:
 
     def make_plane_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return a square of the working plane around its datum."""
-        swivel = self._instant.swivel
+        swivel = self._instant.plane_position
         if swivel is None or not swivel.system.is_tilted:
             return []
         r, o = np.array(swivel.system.frame), np.array(swivel.system.datum)
-        half = _PLANE_SIZE_SHARE * find_blank_diagonal(self._scene)
+        half = _PLANE_SIZE_SHARE * find_blank_diagonal_mm(self._scene)
         square = np.array([(half, half, 0), (-half, half, 0), (-half, -half, 0), (half, -half, 0)])
         return [self._face("plane", transform_points(self._part, o + square @ r.T))]
 
     def make_tool_faces(self) -> list[tuple[float, DrawnFace]]:
         """Return a cutter at the tool tip along the current tool axis."""
         chain, axes = self._scene.kinematics, self._instant.axis_positions
-        length = self._instant.swivel.system.tool_length_mm if self._instant.swivel is not None else 0.0
+        length = (
+            self._instant.plane_position.system.tool_length_mm
+            if self._instant.plane_position is not None
+            else 0.0
+        )
         slides = axes["X"], axes["Y"], axes["Z"]
-        tip = np.array(chain.tip_position(self._angles, slides, length))
-        along = np.array(chain.tool_direction(self._angles))
-        size = find_blank_diagonal(self._scene)
+        tip = np.array(chain.compute_tip_position(self._angles, slides, length))
+        along = np.array(chain.compute_tool_direction(self._angles))
+        size = find_blank_diagonal_mm(self._scene)
         aside = np.cross(along, (1.0, 0.0, 0.0) if abs(along[0]) < 0.9 else (0.0, 1.0, 0.0))
         aside /= np.linalg.norm(aside)
         third = np.cross(along, aside)
@@ -377,11 +386,11 @@ class _ScenePicture:
 
         If the plane is not tilted, these are the axes of the workpiece.
         """
-        swivel = self._instant.swivel
+        swivel = self._instant.plane_position
         r = np.array(swivel.system.frame) if swivel is not None else np.eye(3)
         o = np.array(swivel.system.datum) if swivel is not None else np.zeros(3)
         mark = "'" if swivel is not None and swivel.system.is_tilted else ""
-        length = _PLANE_SIZE_SHARE * find_blank_diagonal(self._scene)
+        length = _PLANE_SIZE_SHARE * find_blank_diagonal_mm(self._scene)
         found = []
         for number, name in enumerate("xyz"):
             ends = np.array((o, o + length * r[:, number]))
@@ -395,19 +404,19 @@ class _ScenePicture:
     def make_rotation_strokes(self) -> list[DrawnStroke]:
         """Return the rotation axes of the tables in their current position."""
         scene, found = self._scene, []
-        reach = 0.75 * find_blank_diagonal(scene)
+        reach = 0.75 * find_blank_diagonal_mm(scene)
         rotaries = scene.kinematics.rotary_axes
         for number, axis in enumerate(rotaries):
             if not axis.is_table:
                 continue
             outer = {each.name: self._angles[each.name] for each in rotaries[number + 1 :] if each.is_table}
             place, zero = scene.kinematics.make_transform(outer), scene.kinematics.make_transform({})
-            middle = np.array(zero.to_machine_position(find_blank_center(scene)))
-            along, point = np.array(axis.direction), np.array(axis.point)
+            middle = np.array(zero.convert_to_machine_position(find_blank_center(scene)))
+            along, point = np.array(axis.direction), np.array(axis.point_on_axis)
             foot = point + along * float((middle - point) @ along)
             ends = np.array((foot - reach * along, foot + reach * along))
             moved = transform_points(
-                place, np.array([zero.to_frame_point(convert_to_tuple(end)) for end in ends])
+                place, np.array([zero.convert_to_frame_point(convert_row_to_tuple(end)) for end in ends])
             )
             found.append(DrawnStroke("axis", self._seen(moved)[:, :2], axis.name))
         return found

@@ -22,7 +22,7 @@ class SceneInstant:
     """Axis positions by name, the displayed plane, and the active block (0 for none)."""
 
     axis_positions: Mapping[str, float]
-    swivel: PlanePosition | None
+    plane_position: PlanePosition | None
     active_block: int = 0
 
 
@@ -33,14 +33,14 @@ def make_run_instant(scene: MillScene, snapshot: Snapshot) -> SceneInstant:
     return SceneInstant(axes, snapshot.swivel, snapshot.block)
 
 
-def make_line_instant(scene: MillScene, line: int) -> SceneInstant:
+def make_line_instant(scene: MillScene, line_number: int) -> SceneInstant:
     """Return the instant after a program line, with the tables at the target angles of its plane."""
-    swivel = scene.find_swivel(line)
+    swivel = scene.find_plane(line_number)
     if swivel is None:
         return SceneInstant(dict.fromkeys(scene.kinematics.axis_names, 0.0), None)
     axes = dict(zip("XYZ", swivel.machine_position, strict=True))
     shown = zip(_AXES, swivel.rotary_angles, swivel.system.target_angles, strict=True)
-    tilted = line in scene.planes and swivel.system.is_tilted
+    tilted = line_number in scene.plane_lines and swivel.system.is_tilted
     zero = scene.kinematics.zero_angles
     axes |= {name: zero[name] + (target if tilted else at) for name, at, target in shown if at is not None}
     return SceneInstant(axes, swivel)

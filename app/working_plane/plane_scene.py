@@ -44,7 +44,7 @@ class MillScene:
     """Tool path and planes of a mill program.
 
     ``points`` (n, 3) are the points of the tip. ``move_styles`` (n,) are the styles of the moves to each
-    point, and ``block_numbers`` (n,) are their block numbers. ``line_swivels`` maps a source line to the
+    point, and ``block_numbers`` (n,) are their block numbers. ``planes_by_line`` maps a source line to the
     plane after its first execution. ``sorted_lines`` contains its sorted keys. ``blank_corners`` are the
     corners of the blank, or default corners if the program does not define a blank.
     """
@@ -54,21 +54,21 @@ class MillScene:
     move_styles: npt.NDArray[np.int8]
     block_numbers: npt.NDArray[np.int64]
     blank_corners: BlankCorners
-    line_swivels: dict[int, PlanePosition] = field(default_factory=dict)
+    planes_by_line: dict[int, PlanePosition] = field(default_factory=dict)
     sorted_lines: tuple[int, ...] = ()
-    planes: frozenset[int] = frozenset()  # lines of PLANE blocks
+    plane_lines: frozenset[int] = frozenset()  # lines of PLANE blocks
 
-    def find_swivel(self, line: int) -> PlanePosition | None:
+    def find_plane(self, line_number: int) -> PlanePosition | None:
         """Return the plane after a source line, or after the nearest earlier line that generates a block."""
-        at = bisect_right(self.sorted_lines, line)
-        return self.line_swivels[self.sorted_lines[at - 1]] if at else None
+        at = bisect_right(self.sorted_lines, line_number)
+        return self.planes_by_line[self.sorted_lines[at - 1]] if at else None
 
-    def count_finished_points(self, block: int) -> int:
+    def count_finished_points(self, block_number: int) -> int:
         """Return the number of points that are finished after a block.
 
         Blocks are counted from 1.
         """
-        return int(np.searchsorted(self.block_numbers, block, side="right"))
+        return int(np.searchsorted(self.block_numbers, block_number, side="right"))
 
 
 class SceneBuilder:
@@ -106,9 +106,9 @@ class SceneBuilder:
             move_styles=np.array(self._ink, dtype=np.int8),
             block_numbers=np.array(self._block, dtype=np.int64),
             blank_corners=self._last.system.blank_corners or _EMPTY,
-            line_swivels=self._by_line,
+            planes_by_line=self._by_line,
             sorted_lines=tuple(sorted(self._by_line)),
-            planes=frozenset(self._planes),
+            plane_lines=frozenset(self._planes),
         )
 
     def _to(self, point: Vector, ink: MoveStyle, block: int) -> None:
@@ -125,9 +125,12 @@ def _find_path_points(block: Block, swivel: PlanePosition) -> list[Vector]:
     curve = None if block.travel is None else block.travel.way
     if not isinstance(curve, HelixMove):
         return [swivel.end]
-    count = max(1, math.ceil(abs(math.degrees(curve.arc.sweep)) / _CHORD_ANGLE_DEG))
+    count = max(1, math.ceil(abs(math.degrees(curve.arc.sweep_rad)) / _CHORD_ANGLE_DEG))
     share = np.arange(1, count) / count
-    between = [(x, y, z) for x, y, z in curve.workpiece_points(curve.machine_positions(share)).tolist()]
+    between = [
+        (x, y, z)
+        for x, y, z in curve.compute_workpiece_points(curve.compute_machine_positions(share)).tolist()
+    ]
     return [*between, swivel.end]
 
 

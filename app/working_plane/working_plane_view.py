@@ -103,20 +103,20 @@ class WorkingPlaneView(Panel):
         """Select the next view direction."""
         self._look(self._camera.with_next_aspect() if self._camera else None)
 
-    def fit_all(self) -> None:
+    def fit_all_panes(self) -> None:
         """Show the whole table."""
         self._look(self._camera.with_full_view() if self._camera else None)
 
-    def zoom_view(self, steps: int) -> None:
+    def zoom_view(self, step_count: int) -> None:
         """Zoom in by a number of steps.
 
         Negative steps zoom out.
         """
-        self._look(self._camera.with_zoom(steps) if self._camera else None)
+        self._look(self._camera.with_zoom(step_count) if self._camera else None)
 
-    def pan_view(self, across: int, down: int) -> None:
+    def pan_view(self, steps_right: int, steps_down: int) -> None:
         """Move the visible area by a number of steps to the right and down."""
-        self._look(self._camera.with_pan(across, down) if self._camera else None)
+        self._look(self._camera.with_pan(steps_right, steps_down) if self._camera else None)
 
     def _look(self, camera: Camera | None) -> None:
         if camera is not None:
@@ -172,7 +172,7 @@ class WorkingPlaneView(Panel):
 
     def _face(self, painter: ThemedPainter, face: DrawnFace) -> None:
         fill, share, edge = _FACE_COLORS[face.role]
-        colour = self.theme.color(fill)
+        colour = self.theme.get_color(fill)
         colour.setAlpha(share)
         painter.setBrush(colour)
         painter.setPen(self.theme.make_pen(edge, 0.10))
@@ -193,13 +193,13 @@ class WorkingPlaneView(Panel):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, fine)
         painter.drawPolyline(_polygon(stroke.points))
         if stroke.name:
-            u = self.theme.u
+            u = self.theme.unit_px
             x, y = stroke.points[-1].tolist()
             painter.setFont(self.theme.make_font(1.6, is_bold=True))
             draw_raw_text(painter, QRectF(x - 2 * u, y - 1.4 * u, 4 * u, 2.2 * u), ALIGN_CENTER, stroke.name)
 
     def _words(self, painter: ThemedPainter, room: QRectF) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         foot = room.adjusted(0, room.height() - 2.4 * u, 0, 0)
         painter.draw_text_line(foot, self.words, 1.7, "text", raw=True)
         assert self._camera is not None

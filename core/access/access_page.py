@@ -46,7 +46,7 @@ def _lines() -> Iterator[str]:
                     if rule.commands
                     else ""
                 )
-                yield f"| {rule.what} | {rule.pages} | {commands} |\n"
+                yield f"| {rule.description} | {rule.page_names} | {commands} |\n"
 
 
 def write_page(argv: list[str]) -> int:

@@ -54,8 +54,8 @@ class AccessRule:
     """Rule for a protected change: its minimum level, its description, and its pages and commands."""
 
     level: AccessLevel
-    what: str
-    pages: str
+    description: str
+    page_names: str
     commands: str = ""
 
 
@@ -178,6 +178,6 @@ NEVER_PERMITTED = (
 """What no level ever stands in the way of."""
 
 
-def get_required_level(act: ProtectedChange) -> AccessLevel:
+def get_required_level(change: ProtectedChange) -> AccessLevel:
     """Return the minimum level for a change."""
-    return ACCESS_RULES[act].level
+    return ACCESS_RULES[change].level

@@ -15,7 +15,7 @@ from core.alarms.bus_alarms import CONNECTION_ALARMS
 from core.alarms.control_alarms import CONTROL_ALARMS, PROGRAM_ALARMS, STOP_AND_HOLD_ALARMS
 from core.alarms.spindle_alarms import COLLET_ALARMS, SPINDLE_ALARMS
 
-SUBJECTS: tuple[tuple[str, AlarmEntries], ...] = (
+ALARM_SUBJECTS: tuple[tuple[str, AlarmEntries], ...] = (
     ("Axes and axis drives", AXIS_ALARMS),
     ("Spindle, C axis and threads", SPINDLE_ALARMS),
     ("Collet", COLLET_ALARMS),
@@ -24,6 +24,6 @@ SUBJECTS: tuple[tuple[str, AlarmEntries], ...] = (
     ("Operator station and stops", STOP_AND_HOLD_ALARMS),
     ("Control", CONTROL_ALARMS),
 )
-CATALOGUE: dict[AlarmCode, AlarmEntry] = {
-    code: entry for _, entries in SUBJECTS for code, entry in entries.items()
+CATALOG: dict[AlarmCode, AlarmEntry] = {
+    code: entry for _, entries in ALARM_SUBJECTS for code, entry in entries.items()
 }

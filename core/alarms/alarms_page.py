@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from core.alarms import SUBJECTS
+from core.alarms import ALARM_SUBJECTS
 from core.alarms.alarm_entry import AlarmEntry, Reaction
 from core.message import Message
 from core.page_contents import make_contents
@@ -35,14 +35,14 @@ _KINDS = {
 }
 
 
-def alarm_kind(reaction: Reaction) -> str:
+def get_alarm_kind(reaction: Reaction) -> str:
     """Return the kind of alarm that causes a reaction."""
     return _KINDS[reaction]
 
 
 def render_page() -> str:
     """Return the text of the alarm catalog page."""
-    head = _HEAD.format(contents=make_contents(title for title, _ in SUBJECTS))
+    head = _HEAD.format(contents=make_contents(title for title, _ in ALARM_SUBJECTS))
     return "\n".join([head, *_legend(), *_subjects()]) + "\n"
 
 
@@ -52,14 +52,14 @@ def _legend() -> Iterator[str]:
 
 
 def _subjects() -> Iterator[str]:
-    for title, entries in SUBJECTS:
+    for title, entries in ALARM_SUBJECTS:
         yield from ("", f"## {title}", "")
         for entry in sorted(entries.values(), key=lambda each: each.number):
             yield from _entry(entry)
 
 
 def _entry(entry: AlarmEntry) -> Iterator[str]:
-    yield f"**{entry.number} {entry.text.upper()}** ({alarm_kind(entry.reaction)})  "
+    yield f"**{entry.number} {entry.text.upper()}** ({get_alarm_kind(entry.reaction)})  "
     yield Message("Likely causes: {causes}.  ", causes="; ".join(entry.causes))
     yield f"Remedy: {entry.remedy}."
     yield ""

@@ -10,12 +10,12 @@ from collections.abc import Callable
 from typing import Any
 
 from core.executor import commands
-from core.executor.control_status import apply_offsets_to_modal
-from core.executor.hand_motion.jogging import travel_end_message
+from core.executor.control_status import apply_offsets_to_modal_state
+from core.executor.hand_motion.jogging import make_travel_end_message
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
-from core.executor.signals import StationWatch
 from core.executor.snapshot import CYCLE_STATES, MDI_ACTIONS, MachineState, StartAction
+from core.executor.station_signals import StationWatch
 from core.message import Message
 
 LAMP_TEST_S = 2.0  # s
@@ -40,7 +40,7 @@ class CommandHandler:
         self._methods: dict[type[commands.Command], Callable[[Any], None]] = {
             commands.CycleStart: self._start_cycle,
             commands.FeedHold: self._hold_cycle,
-            commands.Reset: lambda _: control.reset(),
+            commands.Reset: lambda _: control.reset_machine(),
             commands.EnableDrives: self._enable,
             commands.SetSwitch: self._switch,
             commands.SetFeedOverride: self._override,
@@ -60,8 +60,8 @@ class CommandHandler:
             commands.RenewDriveTest: lambda command: control.drive_tester.renew_lease(command.lease),
             commands.TouchOffTool: self._touch,
             commands.StopJog: lambda _: control.release_jog_key(),
-            commands.SelectHandwheel: lambda command: control.handwheel.select(command, control.state),
-            commands.DeselectHandwheel: lambda _: control.handwheel.deselect(control.state),
+            commands.SelectHandwheel: lambda command: control.handwheel.select_axis(command, control.state),
+            commands.DeselectHandwheel: lambda _: control.handwheel.deselect_axis(control.state),
             commands.HomeAxes: self._home,
             commands.UseOffsets: self._offsets,
             commands.StopSpindle: self._stop_spindle,
@@ -73,7 +73,7 @@ class CommandHandler:
         self._methods[type(command)](command)
 
     def _refuse(self, why: str) -> None:
-        self._context.log("refused", why)
+        self._context.log_text("refused", why)
 
     # --- start, drives, switches --------------------------------------------------------------------------
 
@@ -102,13 +102,13 @@ class CommandHandler:
             self._refuse(Message("drives cannot be switched on in state {state}", state=control.state.value))
         elif control.status.alarms:
             self._refuse("an alarm is active; press Reset first")
-        elif self._context.unknown_items:
+        elif self._context.unknown_parts:
             self._refuse(
                 "the machine has not reported its state yet; wait a moment, then switch the drives on"
             )
         else:
             self._context.ports.axes.enable(True)
-            self._context.sample = self._context.ports.axes.sample()
+            self._context.axis_sample = self._context.ports.axes.sample()
             control.change_state(MachineState.IDLE)
 
     def _switch(self, command: commands.SetSwitch) -> None:
@@ -117,7 +117,7 @@ class CommandHandler:
             self._refuse(Message("switch {name} does not exist", name=f"{name!r}"))
             return
         setattr(self._context.switches, name, on)
-        self._context.log(
+        self._context.log_text(
             "switch", Message("{name} {ending}", name=name.replace("_", " "), ending="on" if on else "off")
         )
 
@@ -127,7 +127,7 @@ class CommandHandler:
                 Message("feed override {fraction} is not between 0 and 1.5", fraction=command.fraction)
             )
             return
-        self._context.screen_override = command.fraction
+        self._context.screen_feed_override = command.fraction
 
     def _limit(self, command: commands.SetSpindleLimit) -> None:
         rpm, highest = command.rpm, self._context.machine.spindle.max_rpm
@@ -145,7 +145,9 @@ class CommandHandler:
             self._refuse("the spindle speed limit can be raised only when the spindle is stopped")
             return
         spindle.operator_limit_rpm = rpm
-        self._context.log("override", Message("spindle speed limit {rpm} rpm", rpm=f"{rpm or highest:g}"))
+        self._context.log_text(
+            "override", Message("spindle speed limit {rpm} rpm", rpm=f"{rpm or highest:g}")
+        )
 
     # --- selection of the next start ----------------------------------------------------------------------
 
@@ -159,13 +161,15 @@ class CommandHandler:
             return
         status = self._control.status
         if status.job is None or status.job.source.name != command.job.source.name:
-            status.modal = status.modal._replace(comment="")  # the comment belongs to the previous program
+            status.modal_state = status.modal_state._replace(
+                comment=""
+            )  # the comment belongs to the previous program
         self._control.program_run.interruption_watch.handle_loaded_job(command.job)
         status.job, status.proof, status.start_refusal = command.job, command.proof, ""
         self._control.program_run.changed_offsets.discard_request()
         if status.start_action is StartAction.RESTART:
             self._prepare(commands.PrepareStart(StartAction.RESTART))
-        self._context.log("load", command.job.source.name)
+        self._context.log_text("load", command.job.source.name)
 
     def _prove(self, command: commands.SupplyProof) -> None:
         self._control.status.proof = command.proof
@@ -205,7 +209,7 @@ class CommandHandler:
             self._refuse(why)
         elif command.at:
             self._control.confirmed_at = self._context.now
-            self._context.log("confirmed", "confirmed: the program starts at the first line")
+            self._context.log_text("confirmed", "confirmed: the program starts at the first line")
 
     def _count(self, command: commands.SetPartCount) -> None:
         self._control.counters.program_part_count = max(0, command.parts)
@@ -219,7 +223,7 @@ class CommandHandler:
         status = self._control.status
         if command.why != status.next_part_block_reason:
             status.next_part_block_reason, status.start_refusal = command.why, ""
-            self._context.log(
+            self._context.log_text(
                 "switch",
                 Message("no more parts may be run: {why}", why=command.why)
                 if command.why
@@ -242,11 +246,11 @@ class CommandHandler:
         if why:
             jogger.stop()
             self._refuse(Message("jog: {why}", why=why))
-        elif jogger.jog(command.axis, command.velocity, command.lease, command.along):
+        elif jogger.start_or_renew_jog(command.axis, command.velocity, command.lease, command.along):
             jogger.button_input = command.while_on
             control.change_state(MachineState.JOG)
         elif control.state is MachineState.IDLE:
-            self._refuse(Message("jog: {why}", why=travel_end_message(command.axis, command.velocity)))
+            self._refuse(Message("jog: {why}", why=make_travel_end_message(command.axis, command.velocity)))
 
     def _step(self, command: commands.JogByStep) -> None:
         control, jogger = self._control, self._control.jogger
@@ -305,7 +309,7 @@ class CommandHandler:
         if why:
             self._refuse(Message("homing: {why}", why=why))
         else:
-            control.change_state(MachineState.HOME)
+            control.change_state(MachineState.HOMING)
 
     # --- manual functions between programs ----------------------------------------------------------------
 
@@ -314,15 +318,17 @@ class CommandHandler:
             self._refuse("the running program uses the offsets with which it was proved")
             return
         status = self._control.status
-        status.modal = apply_offsets_to_modal(status.modal, command.tools, command.secondary)
-        self._context.log("offsets", "the offsets in the tables are in effect")
+        status.modal_state = apply_offsets_to_modal_state(
+            status.modal_state, command.tools, command.secondary
+        )
+        self._context.log_text("offsets", "the offsets in the tables are in effect")
 
     def _stop_spindle(self, _: commands.StopSpindle) -> None:
         if self._control.state in CYCLE_STATES:
             if (
                 self._control.status.start_action in MDI_ACTIONS
             ):  # The line started after the last update of the screen.
-                self._control.reset()
+                self._control.reset_machine()
             else:
                 self._refuse("a program is running; press feed hold, then Reset to stop the spindle")
             return
@@ -335,11 +341,11 @@ class CommandHandler:
             self._refuse(why)
             return
         if command.name in self._context.machine.lamp_outputs:
-            self._context.lamp_test_end = self._context.now + LAMP_TEST_S
-            self._context.log("force", "lamp test")
+            self._context.lamp_test_end_s = self._context.now + LAMP_TEST_S
+            self._context.log_text("force", "lamp test")
             return
         self._context.ports.io.write(command.name, command.on)
-        self._context.log(
+        self._context.log_text(
             "force",
             Message(
                 "{output} switched on manually" if command.on else "{output} switched off manually",

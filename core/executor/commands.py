@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from core.executor.hand_motion.drive_test import DriveTestPath
+from core.executor.hand_motion.drive_test import DriveTestMotion
 from core.executor.hand_motion.jog_line import Direction
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, StartAction
@@ -269,7 +269,7 @@ class RunDriveTest(Command):
 
     __slots__ = __match_args__ = ("path", "lease")
 
-    def __init__(self, path: DriveTestPath, lease: float) -> None:
+    def __init__(self, path: DriveTestMotion, lease: float) -> None:
         self.path: Final = path
         self.lease: Final = lease
 
@@ -418,7 +418,7 @@ class PrepareStart(Command):
     clearance: Clearance | None = None
 
 
-MOTION_COMMANDS = (
+MOTION_COMMAND_TYPES = (
     CycleStart,
     RunDriveTest,
     EnableDrives,

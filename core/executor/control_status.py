@@ -31,7 +31,7 @@ class Counters:
     program_end_count: int = 0  # programs that ran to their end, counted or not
     mdi_line_count: int = 0  # MDI lines that were started
     started_run_count: int = 0  # runs that were started: programs, repeats, restarts and MDI lines
-    underruns: int = 0
+    underrun_count: int = 0
     cycle_time_s: float = 0.0
     last_cycle_time_s: float = 0.0
     timed_cycle_count: int = 0  # number of complete cycles; ``last_cycle_time_s`` is the time of the latest
@@ -66,7 +66,7 @@ class ControlStatus:
     job: Job | None = None
     proof: Proof | None = None
     alarms: tuple[Alarm, ...] = ()
-    drives_switched_off: bool = False  # an alarm has switched the drives off
+    are_drives_switched_off: bool = False  # an alarm has switched the drives off
     start_refusal: str = ""
     start_refusal_code: str = ""  # code of the refusal if the first move caused it
     start_action: StartAction = StartAction.PROGRAM
@@ -79,13 +79,13 @@ class ControlStatus:
     is_tool_move_pending: bool = False  # MDI has called a tool that has not moved yet
     saved_pass: SavedPass[Any] | None = None  # state that MDI lines in other languages have left in force
     interrupted_job: InterruptedJob | None = None  # a program that did not reach its end
-    modal: ModalState = field(default_factory=ModalState)  # modal state in force between programs
+    modal_state: ModalState = field(default_factory=ModalState)  # modal state in force between programs
 
 
 # --- modal state between programs -----------------------------------------------------------------------
 
 
-def make_power_up_modal(context: MachineContext) -> ModalState:
+def make_power_up_modal_state(context: MachineContext) -> ModalState:
     """Return the modal state at power-up, with the units of the machine file.
 
     A SINUMERIK control powers up with DIAMON active.
@@ -93,22 +93,24 @@ def make_power_up_modal(context: MachineContext) -> ModalState:
     machine = context.machine
     begins = ModalState(
         metric=not machine.is_inch,
-        diameter=machine.language == "sinumerik",
+        diameter=machine.mdi_language == "sinumerik",
         rapid_rate=machine.limits.manual_rapid,
     )
-    return sync_modal_with_machine(begins, context)
+    return sync_modal_state_with_machine(begins, context)
 
 
-def modal_after_cancel(modal: ModalState, language: str = "omniturn") -> ModalState:
+def make_modal_state_after_cancel(modal: ModalState, language: str = "omniturn") -> ModalState:
     """Return the modal state after a program was canceled by Reset, an alarm or an E-stop.
 
     The result is the same as after M30. On a SINUMERIK control, the power-up mode of diameter words applies
     again.
     """
-    return compute_modal_after_end(modal, modal.rpm, reset=True)._replace(diameter=language == "sinumerik")
+    return compute_modal_after_end(modal, modal.rpm, resets_m_functions=True)._replace(
+        diameter=language == "sinumerik"
+    )
 
 
-def modal_after_mdi_cancel(modal: ModalState) -> ModalState:
+def make_modal_state_after_mdi_cancel(modal: ModalState) -> ModalState:
     """Return the modal state after an MDI line was canceled.
 
     The modes that the line set remain, but C and the spindle are released.
@@ -116,13 +118,13 @@ def modal_after_mdi_cancel(modal: ModalState) -> ModalState:
     return modal._replace(c_locked=False, c_rpm=None, oriented=None)
 
 
-def sync_modal_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
+def sync_modal_state_with_machine(modal: ModalState, context: MachineContext) -> ModalState:
     """Return the modal state with the M functions updated to their present state at the machine.
 
     An alarm, a reset or a manual action may have switched them. A stopped spindle releases C. Nose
     compensation and plane switching end with the program that used them.
     """
-    on = {name for name, lit in context.ports.io.outputs().items() if lit}
+    on = {name for name, lit in context.ports.io.get_outputs().items() if lit}
     assigned = {name for name, _ in context.machine.m_codes.values()} | {context.machine.live_tool_output}
     asked = context.spindle.is_requested
     return modal._replace(
@@ -137,7 +139,7 @@ def sync_modal_with_machine(modal: ModalState, context: MachineContext) -> Modal
     )
 
 
-def apply_offsets_to_modal(
+def apply_offsets_to_modal_state(
     modal: ModalState, tools: Mapping[int, ToolOffset], secondary: Mapping[int, SecondaryOffset]
 ) -> ModalState:
     """Return the modal state with the offsets of its tool and D number from the given tables."""
@@ -193,7 +195,7 @@ class Workpiece:
         return "" if self._whole else "a restart skipped part of the program"
 
 
-class PartCount:
+class PartCounter:
     """Counter of parts and their cycle times. Other modules read ``counters``."""
 
     def __init__(self, context: MachineContext) -> None:
@@ -217,7 +219,10 @@ class PartCount:
         if not self.workpiece.is_restarted:
             counters.last_cycle_time_s, counters.timed_cycle_count = seconds, counters.timed_cycle_count + 1
         if why:
-            text, line = Message("{why}; {seconds} s", why=why, seconds=f"{seconds:.2f}"), self._context.line
+            text, line = (
+                Message("{why}; {seconds} s", why=why, seconds=f"{seconds:.2f}"),
+                self._context.line_number,
+            )
             self._context.log_event(
                 LogEvent(self._context.now, "uncounted", text, line, mean_load_percent=load)
             )
@@ -230,7 +235,7 @@ class PartCount:
                     parts=counters.counted_part_count,
                     seconds=f"{seconds:.2f}",
                 ),
-                self._context.line,
+                self._context.line_number,
             )
             self._context.log_event(
                 LogEvent(

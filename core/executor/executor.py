@@ -15,21 +15,20 @@ from dataclasses import replace
 from functools import partial
 
 from core.executor.command_handler import CommandHandler
-from core.executor.commands import BLOCKING_COMMANDS, MOTION_COMMANDS, Command
-from core.executor.interruption_watch import StoreInterruptedJob
+from core.executor.commands import BLOCKING_COMMANDS, MOTION_COMMAND_TYPES, Command
+from core.executor.interruption_watch import StoreFunction
 from core.executor.job import Job, ProgramPass, start_program_pass
 from core.executor.machine_context import MachineContext
 from core.executor.machine_control import MachineControl
 from core.executor.raised_alarm import (
     AlarmError,
-    Attempt,
+    CaughtAttempt,
     ReportedAttempt,
     format_log_line,
     log_alarm,
     make_alarm,
 )
 from core.executor.signal_lamps import SignalLamps
-from core.executor.signals import CommandedOutputs, StationWatch
 from core.executor.snapshot import (
     ACTIVE_STATES,
     CYCLE_STATES,
@@ -42,6 +41,7 @@ from core.executor.snapshot import (
 from core.executor.snapshot_publisher import SnapshotPublisher
 from core.executor.spindle_control import SpindleControl
 from core.executor.start_conditions import is_guard_open
+from core.executor.station_signals import CommandedOutputs, StationWatch
 from core.faults import TrippedError
 from core.interpreter.shared.job_setup import Setup
 from core.machine.machine_model import Machine
@@ -63,7 +63,7 @@ _STALE_PRESS_S = 0.5  # s after which a key press must not start a motion
 """Commands that begin a motion, or switch the drives on."""
 _LOGGED_OVERRIDE_CHANGE = 0.1  # smallest change of the feed override that is logged
 _MAX_COMMANDS_PER_TICK = 100  # commands handled in one tick at most
-_POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOME}
+_POWERED_STATES = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOMING}
 
 
 class RestDetector:
@@ -92,19 +92,21 @@ class RestDetector:
         """
         context, status = self._context, self._control.status
         seen: tuple[object, ...] = ()
-        with Attempt() as look:  # The code that needs the missing value reports a driver that fails here.
+        with (
+            CaughtAttempt() as look
+        ):  # The code that needs the missing value reports a driver that fails here.
             seen = (
                 status.state,
-                context.sample[1:],
+                context.axis_sample[1:],
                 context.inputs,
                 context.signals,
-                context.ports.io.outputs(),
+                context.ports.io.get_outputs(),
                 context.spindle.measured_rpm,
                 context.spindle.commanded_rpm,
                 status.alarms,
                 context.stop,
                 status.job,
-                context.unknown_items,
+                context.unknown_parts,
             )
         broken = look.error is not None
         changed = broken or self._same < 0 or status.state not in _REST_STATES or seen != self._seen
@@ -124,7 +126,7 @@ class RestDetector:
         wakeup = self._wakeup
         if wakeup is None or not self._is_safe_at_rest() or not wakeup.is_settled():
             return False
-        if wakeup.wait(REST_TICK_S):
+        if wakeup.wait_for_wakeup(REST_TICK_S):
             self.restore_tick_rate()
         return True
 
@@ -138,7 +140,7 @@ class RestDetector:
         if not self.is_settled or self._control.handwheel.axis:
             return False
         context = self._context
-        outputs, models = context.ports.io.outputs(), context.machine.outputs
+        outputs, models = context.ports.io.get_outputs(), context.machine.outputs
         lamps = context.machine.lamp_outputs
         safe = all(
             name in lamps or model.safe_state in {None, outputs.get(name)} for name, model in models.items()
@@ -172,7 +174,7 @@ class Executor:
         ports: MachinePorts,
         on_event: Callable[[LogEvent], None],
         start_pass: Callable[[Job, Setup], ProgramPass] = start_program_pass,
-        store_interruption: StoreInterruptedJob = _ignore_interruption,
+        store_interruption: StoreFunction = _ignore_interruption,
         interrupted_job: InterruptedJob | None = None,
         record_tick: Callable[[TickData], None] | None = None,
         *,
@@ -232,15 +234,15 @@ class Executor:
         ``posted_at`` is the time of the request in seconds of the machine's clock; None means now.
         """
         self._commands.put((self._ports.clock.now() if posted_at is None else posted_at, command))
-        self.wake()
+        self.start_next_tick()
 
-    def wake(self) -> None:
+    def start_next_tick(self) -> None:
         """Start the next tick at once; any thread may call this function.
 
         The call has no effect if the drivers cannot wake the executor.
         """
         if self._ports.wakeup is not None:
-            self._ports.wakeup.wake()
+            self._ports.wakeup.request_poll()
 
     def wait_at_rest(self) -> bool:
         """Wait between two ticks while the machine is at rest, until a command or a change arrives.
@@ -269,7 +271,7 @@ class Executor:
         self._lamps.update_lamps(
             self._control.state,
             self._control.counters.program_end_count,
-            next_part_blocked=bool(status.next_part_block_reason),
+            is_next_part_blocked=bool(status.next_part_block_reason),
         )
         self._record_delay(self._context.now - self._due)
         self._due = self._context.now + TICK_PAUSE_S
@@ -277,7 +279,7 @@ class Executor:
             self._publish_snapshot()
             self._pass_to_recorder()
         if self._rest.changed_at_rest:
-            with Attempt():
+            with CaughtAttempt():
                 self.on_change_at_rest()
         self.is_waiting_for_drive = False
         self.tick_count += 1
@@ -289,10 +291,10 @@ class Executor:
         logged once.
         """
         self._late = max(self._late, delay_s)
-        lateness = self._context.lateness
+        lateness = self._context.tick_lateness
         if lateness.record_tick(delay_s, self._context.now):
             words = "the computer is busy: a feed hold reacts up to {seconds} s later"
-            self._context.log("late", Message(words, seconds=f"{lateness.hold_delay_s:.1f}"))
+            self._context.log_text("late", Message(words, seconds=f"{lateness.hold_delay_s:.1f}"))
 
     def report_unresponsive(self, reason: str) -> None:
         """Show an alarm because the watchdog has halted the machine.
@@ -301,7 +303,7 @@ class Executor:
         thread. If the executor ticks again, its first action is to raise this alarm.
         """
         self._silent = reason
-        alarm = make_alarm("control-silent", reason, self._context.line, self.snapshot.t)
+        alarm = make_alarm("control-silent", reason, self._context.line_number, self.snapshot.t)
         log_alarm(alarm)
         shown = replace(self.snapshot, state=MachineState.FAULT, alarms=(*self.snapshot.alarms, alarm))
         self.snapshot = shown
@@ -345,7 +347,7 @@ class Executor:
         """
         if self._tell is None:
             return
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             now, source = self._context.now, self._ports.samples
             late, self._late = self._late, 0.0
             samples = source.take() if source is not None else None
@@ -360,24 +362,26 @@ class Executor:
     def _handle_failed_read(self) -> None:
         """Discard the start signal after a failed read, but obey the E-stop."""
         context = self._context
-        context.signals = context.signals._replace(start_requested=False)
-        with Attempt():
-            context.signals = context.signals._replace(estop_pressed=self._ports.station.read_state().estop)
+        context.signals = context.signals._replace(is_start_requested=False)
+        with CaughtAttempt():
+            context.signals = context.signals._replace(
+                is_estop_pressed=self._ports.station.read_state().estop
+            )
 
     def _look(self) -> None:
         context, before = self._context, self._context.now
         context.now = self._ports.clock.now()
-        context.sample = self._ports.axes.sample()
+        context.axis_sample = self._ports.axes.sample()
         context.inputs = dict(self._ports.io.inputs())
-        context.outputs.set_write_time(context.now)
+        context.commanded_outputs.set_write_time(context.now)
         context.spindle.is_guard_open = is_guard_open(context)
-        context.unknown_items = self._ports.unknown()
-        context.spindle.is_speed_known = UnknownPart.SPINDLE not in context.unknown_items
+        context.unknown_parts = self._ports.unknown()
+        context.spindle.is_speed_known = UnknownPart.SPINDLE not in context.unknown_parts
         context.spindle.read_encoder()
         context.signals = self._station.process_state(self._ports.station.read_state(), context.now)
         context.spindle.override, context.spindle.is_auto = (
             context.signals.spindle,
-            context.signals.spindle_auto,
+            context.signals.is_spindle_in_auto,
         )
         self._log_override()
         self._log_lost()
@@ -385,7 +389,7 @@ class Executor:
             self._control.counters.cycle_time_s += context.now - before
             self._control.program_run.add_cutting_time(context.now - before)
             if context.now - before > _STALL_INTERVAL_S:
-                context.log(
+                context.log_text(
                     "starved",
                     Message(
                         "the control software did not run for {now} s", now=f"{context.now - before:.2f}"
@@ -399,7 +403,7 @@ class Executor:
         lost = self._context.signals.connection_lost_reason or self._context.signals.handwheel_fault
         if lost != self._told_lost:
             self._told_lost = lost
-            self._context.log("disturbed", (lost or "the pendant is connected again").upper())
+            self._context.log_text("disturbed", (lost or "the pendant is connected again").upper())
 
     def _log_override(self) -> None:
         """Log the feed override if it has changed by at least 10 % or has reached or left zero."""
@@ -408,18 +412,18 @@ class Executor:
             self._logged_override == 0.0
         ):
             self._logged_override = fraction
-            self._context.log(
+            self._context.log_text(
                 "override", Message("feed override {fraction} %", fraction=f"{100 * fraction:.0f}")
             )
 
     def _process_requests(self) -> None:
         """Handle the E-stop, then the posted commands, then the buttons of the operator station."""
         signals, control = self._context.signals, self._control
-        control.follow_estop(signals.estop_pressed)
+        control.handle_estop(signals.is_estop_pressed)
         for command in self._posted():
             self.is_waiting_for_drive = self.is_waiting_for_drive or isinstance(command, BLOCKING_COMMANDS)
             self._run_guarded(partial(self._handler.execute, command))
-        if signals.hold_requested:
+        if signals.is_hold_requested:
             control.start_feed_hold("", "the feed hold button on the operator station")
         elif signals.station_fault:
             control.start_feed_hold(signals.station_fault)
@@ -429,13 +433,13 @@ class Executor:
             control.start_feed_hold(signals.connection_lost_reason, code="pendant")
         elif self._context.spindle.is_guard_open and control.state in ACTIVE_STATES:
             control.start_feed_hold("GUARD OPEN")  # The machine builder limits jogging with an open guard.
-        if signals.start_requested:
+        if signals.is_start_requested:
             control.handle_cycle_start()
-        elif signals.late_start_detected:
-            self._context.log("refused", "the CycleStart command arrived too late and was ignored")
-        if signals.spindle_turned_on:
+        elif signals.was_late_start_detected:
+            self._context.log_text("refused", "the CycleStart command arrived too late and was ignored")
+        if signals.was_spindle_switch_turned_on:
             control.handle_spindle_switch()
-        control.follow_handwheel()
+        control.move_by_handwheel()
         self._lost = signals.connection_lost_reason
 
     def _posted(self) -> Iterator[Command]:
@@ -445,8 +449,8 @@ class Executor:
             except queue.Empty:
                 return
             self._rest.restore_tick_rate()  # show the effect of the command at once
-            if isinstance(command, MOTION_COMMANDS) and self._context.now - posted > _STALE_PRESS_S:
-                self._context.log(
+            if isinstance(command, MOTION_COMMAND_TYPES) and self._context.now - posted > _STALE_PRESS_S:
+                self._context.log_text(
                     "refused",
                     Message(
                         "the {name} command arrived too late and was ignored",
@@ -457,19 +461,19 @@ class Executor:
                 yield command
 
     def _supervise(self) -> None:
-        self._control.outputs_watch.check()
-        self._control.supervisor.check(self._control.state)
-        if self._control.state in _POWERED_STATES and not self._context.sample.enabled:
+        self._control.outputs_watch.check_outputs()
+        self._control.supervisor.check_machine(self._control.state)
+        if self._control.state in _POWERED_STATES and not self._context.axis_sample.enabled:
             raise AlarmError("power-lost")
 
     def _go_on(self) -> None:
-        self._control.advance()
+        self._control.advance_one_tick()
 
     def _turn(self) -> None:
         cycle = self._control.cycle
         block = cycle.current_block if cycle else None
-        offset = block.offset_x if block else self._control.modal.offset_x
-        self._context.spindle.update(self._context.now, self._context.sample.demand[0] - offset)
+        offset = block.offset_x if block else self._control.modal_state.offset_x
+        self._context.spindle.update(self._context.now, self._context.axis_sample.demand[0] - offset)
 
     def _run_guarded(self, part: Callable[[], None]) -> None:
         """Run one part of a tick and convert its errors to alarms, so that the other parts still run."""
@@ -488,7 +492,7 @@ class Executor:
     def _raise_alarm(self, error: AlarmError) -> None:
         """Raise an alarm, unless the E-stop has caused the loss of power; in that case handle the E-stop."""
         if error.code in _ESTOP_ALARM_CODES and self._ports.station.read_state().estop:
-            self._control.follow_estop(True)
+            self._control.handle_estop(True)
         else:
             self._control.raise_alarm(error)
 

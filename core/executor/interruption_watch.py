@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from core.executor.control_status import ControlStatus, PartCount
+from core.executor.control_status import ControlStatus, PartCounter
 from core.executor.job import Job
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.cycle import Cycle
@@ -16,7 +16,7 @@ from core.executor.snapshot import (
     InterruptedJob,
     MachineState,
     StartAction,
-    utc_timestamp,
+    make_utc_timestamp,
 )
 from core.interpreter.shared.checkpoint import PassStart
 from core.interpreter.shared.elementary_blocks import Block
@@ -24,7 +24,7 @@ from core.language.source import Dialect
 from core.message import Message
 from core.tool_edges import format_edge_name
 
-StoreInterruptedJob = Callable[[InterruptedJob | None], None]
+StoreFunction = Callable[[InterruptedJob | None], None]
 """Takes what is to be kept of the program under way, None: nothing. It must only put it into a queue."""
 
 _RECORD_INTERVAL_S = 1.0  # s between two notes while the program runs
@@ -45,8 +45,8 @@ class InterruptionWatch:
         self,
         context: MachineContext,
         status: ControlStatus,
-        parts: PartCount,
-        store_interruption: StoreInterruptedJob,
+        parts: PartCounter,
+        store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
     ) -> None:
         """Initialize the watch; ``interrupted_job`` is the job found when the control starts."""
@@ -70,7 +70,7 @@ class InterruptionWatch:
         if not self._begun and self._status.interrupted_job != interrupted_job:
             self._status.interrupted_job = interrupted_job
             if not is_logged:
-                self._context.log("interrupted", interrupted_job.words)
+                self._context.log_text("interrupted", interrupted_job.words)
 
     # --- running program ----------------------------------------------------------------------------------
 
@@ -111,7 +111,7 @@ class InterruptionWatch:
             self._stopped = stopped
 
     def _worth_a_note(self, block: Block, *, just_stopped: bool) -> bool:
-        log_stop, at = self._noted, self._context.sample.actual
+        log_stop, at = self._noted, self._context.axis_sample.actual
         if log_stop is None or log_stop.tool != block.modal.tool or log_stop.block == 0 or just_stopped:
             return True
         moved = log_stop.block != block.n or math.dist(log_stop.where, at) > _MOVED_DISTANCE_MM
@@ -137,17 +137,17 @@ class InterruptionWatch:
         self._settled, self._rests_since = False, None
         self._status.interrupted_job = found
         self._keep(found)
-        self._context.log("interrupted", found.words)
+        self._context.log_text("interrupted", found.words)
 
     def _settle(self) -> None:
         """Update the stored tool position until the axes have been at rest for 0.2 s after an E-stop."""
         found, now = self._status.interrupted_job, self._context.now
         if self._settled or found is None:
             return
-        if self._context.sample.moving or self._rests_since is None:
+        if self._context.axis_sample.moving or self._rests_since is None:
             self._rests_since = now
         self._settled = now - self._rests_since >= _SETTLED_S
-        self._status.interrupted_job = replace(found, where=self._context.sample.actual)
+        self._status.interrupted_job = replace(found, where=self._context.axis_sample.actual)
         if self._settled:
             self._keep(self._status.interrupted_job)
 
@@ -209,7 +209,7 @@ class InterruptionWatch:
         self._status.interrupted_job = None
         self._settled = True
         self._keep(None)
-        self._context.log("cleared", words)
+        self._context.log_text("cleared", words)
 
     # --- noted state --------------------------------------------------------------------------------------
 
@@ -227,7 +227,7 @@ class InterruptionWatch:
             block is None or (begin is not None and block.n <= begin.checkpoint.blocks)
         ):
             return replace(
-                before, where=self._context.sample.actual, why=POWER_LOST_REASON, at=utc_timestamp()
+                before, where=self._context.axis_sample.actual, why=POWER_LOST_REASON, at=make_utc_timestamp()
             )
         done = block.n if block is not None else 0
         return InterruptedJob(
@@ -237,12 +237,12 @@ class InterruptionWatch:
             line=block.line if block is not None else begin.line_number if begin is not None else 1,
             block=done,
             begun=self._parts.workpiece.count_started_blocks(done),
-            tool=block.modal.tool if block is not None else self._status.modal.tool,
+            tool=block.modal.tool if block is not None else self._status.modal_state.tool,
             part=self._parts.counters.program_part_count + 1,
             axes=tuple(axis.name for axis in self._context.machine.axes),
-            where=self._context.sample.actual,
+            where=self._context.axis_sample.actual,
             why=POWER_LOST_REASON,
-            at=utc_timestamp(),
+            at=make_utc_timestamp(),
         )
 
 

@@ -37,12 +37,12 @@ class ProgramPass(NamedTuple):
     program, which ends with M30 or M02.
     """
 
-    blocks: Iterator[Block]
+    block_iterator: Iterator[Block]
     get_diagnostics: Callable[[], Sequence[Diagnostic]]
     make_checkpoint: Callable[[], Checkpoint] | None = None
 
 
-class ReadAhead:
+class BlockReadAhead:
     """Reader that reads the blocks of a pass ahead of the motion.
 
     ``pending_blocks`` contains the blocks of one path section. ``stop`` is the next block that needs a
@@ -73,13 +73,13 @@ class ReadAhead:
         """Return whether no more blocks can be read before a standstill."""
         return self.stop is not None or self.is_at_end or self.read_error is not None
 
-    def read_blocks(self, blocks: int, seconds: float) -> None:
-        """Read up to ``blocks`` blocks, until ``seconds`` seconds of motion are pending.
+    def read_blocks(self, max_block_count: int, max_motion_s: float) -> None:
+        """Read up to ``blocks`` blocks, until ``max_motion_s`` seconds of motion are pending.
 
         A thread is read to the end of its pull-out, even if more motion than this is then pending.
         """
-        for _ in range(blocks):
-            if self.is_exhausted or (self.pending_motion_s >= seconds and not self._ends.is_in_thread):
+        for _ in range(max_block_count):
+            if self.is_exhausted or (self.pending_motion_s >= max_motion_s and not self._ends.is_in_thread):
                 return
             block = self._next()
             if block is not None:
@@ -102,7 +102,7 @@ class ReadAhead:
 
     def _next(self) -> Block | None:
         try:
-            block = next(self._source.blocks)
+            block = next(self._source.block_iterator)
         except StopIteration:
             self._find_error()
             self.is_at_end = True
@@ -134,10 +134,10 @@ class ReadAhead:
 
     def _append(self, block: Block) -> None:
         self.pending_blocks.append(block)
-        self.pending_motion_s += nominal_duration_s(block)
+        self.pending_motion_s += compute_nominal_duration_s(block)
 
 
-def nominal_duration_s(block: Block) -> float:
+def compute_nominal_duration_s(block: Block) -> float:
     """Return the duration of a block at its programmed speed, in seconds.
 
     The actual duration is never shorter.
@@ -165,7 +165,7 @@ def check_block(block: Block, machine: Machine) -> None:
         raise AlarmError(
             "spindle-still", Message("line {line} uses feed per revolution", line=block.line), block.line
         )
-    if block.c != block.c0 and block.modal.spindle and machine.spindle_is_c:
+    if block.c != block.c0 and block.modal.spindle and machine.is_spindle_c_axis:
         raise AlarmError(
             "c-is-spindle",
             Message("line {line} moves C while the spindle is turning", line=block.line),
@@ -174,7 +174,7 @@ def check_block(block: Block, machine: Machine) -> None:
     for axis, (low, high) in zip(machine.axes, block.compute_machine_bounds(), strict=True):
         least, most = axis.travel_with_margin
         if low < least or high > most:
-            unit = "degrees" if axis.rotary else "mm"
+            unit = "degrees" if axis.is_rotary else "mm"
             far = low if low < least else high
             raise AlarmError(
                 "travel",
@@ -201,7 +201,7 @@ class Job:
     setup: Setup
     digest: str
     shared_program: SharedProgram = field(compare=False, repr=False)
-    tools_set: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
+    set_tool_numbers: frozenset[int] = frozenset()  # numbers of the tool offsets that have been entered
     retained_settings: frozenset[str] = (
         frozenset()
     )  # settings that the program inherits from the previous job
@@ -230,7 +230,7 @@ class Proof:
 
     def unset(self, job: Job) -> list[int]:
         """Return the tools of the program that are neither set nor measured by the program itself."""
-        return sorted(set(self.tool_numbers) - job.tools_set - set(self.measured_tools))
+        return sorted(set(self.tool_numbers) - job.set_tool_numbers - set(self.measured_tools))
 
 
 def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) -> Job:
@@ -253,7 +253,7 @@ def make_job(source: ProgramSource, setup: Setup, whole_job: Job | None = None) 
             setup.limits.third_axis_name,
             setup.limits.is_c_linear,
         ),
-        (setup.limits.max_feed, setup.limits.max_rpm, setup.limits.resolution_mm),
+        (setup.limits.max_feed_mm_s, setup.limits.max_rpm, setup.limits.resolution_mm),
         (setup.limits.can_unclamp_while_turning, setup.limits.can_start_with_collet_open),
         (setup.block_delete, setup.strict, setup.metric, setup.last_rapid),
         (setup.begin.key if setup.begin else "", part_of),
@@ -303,12 +303,14 @@ def start_program_pass(job: Job, setup: Setup) -> ProgramPass:
     if setup.begin is not None and setup.begin.is_mdi_line:
         line = interpret_mdi_line(job.source, setup)
         return ProgramPass(
-            line.generate_blocks(to_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint
+            line.generate_blocks(stops_at_first_error=True), lambda: line.diagnostics, lambda: line.checkpoint
         )
     interpreter = job.shared_program.start_pass(setup)
-    return ProgramPass(interpreter.generate_blocks(to_first_error=True), lambda: interpreter.diagnostics)
+    return ProgramPass(
+        interpreter.generate_blocks(stops_at_first_error=True), lambda: interpreter.diagnostics
+    )
 
 
-def setup_at_start(setup: Setup, start: tuple[float, ...], is_input_on: Callable[[str], bool]) -> Setup:
+def make_start_setup(setup: Setup, start: tuple[float, ...], is_input_on: Callable[[str], bool]) -> Setup:
     """Return the setup of a job with the start position of the axes and the live inputs."""
     return dataclasses.replace(setup, start=start, inputs=is_input_on)

@@ -8,30 +8,30 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from core.alarms import AlarmCode
-from core.executor.lateness import TickLateness
-from core.executor.raised_alarm import Attempt, format_log_line, make_alarm
-from core.executor.signals import CommandedOutputs, StationSignals
+from core.executor.raised_alarm import CaughtAttempt, format_log_line, make_alarm
 from core.executor.snapshot import Alarm, LogEvent
 from core.executor.spindle_control import SpindleControl
+from core.executor.station_signals import CommandedOutputs, StationSignals
+from core.executor.tick_lateness import TickLateness
 from core.machine.machine_model import Machine
 from core.machine.station_rules import HANDWHEEL_ENABLE_INPUT
 from core.ports import AxisSample, FloatArray, MachinePorts, UnknownPart
 
 _log = logging.getLogger(__name__)
 _NEUTRAL_SIGNALS = StationSignals(
-    estop_pressed=False,
-    start_requested=False,
-    hold_requested=False,
+    is_estop_pressed=False,
+    is_start_requested=False,
+    is_hold_requested=False,
     feed_override=1.0,
     spindle=1.0,
-    spindle_auto=True,
+    is_spindle_in_auto=True,
     station_fault="",
 )
 _OVERRIDE_STEP = 0.005  # smallest step of the feed override
 
 
 @dataclass(slots=True)
-class Switches:
+class OperatorSwitches:
     """State of the operator's switches, which the screen shows as lit words."""
 
     single_block: bool = False
@@ -46,25 +46,25 @@ class MachineContext:
 
     machine: Machine
     ports: MachinePorts
-    on_event: Callable[[LogEvent], None]
+    handle_event: Callable[[LogEvent], None]
     spindle: SpindleControl
     now: float
-    sample: AxisSample
+    axis_sample: AxisSample
     inputs: dict[str, bool]
-    outputs: CommandedOutputs  # the same as ``ports.io``
+    commanded_outputs: CommandedOutputs  # the same as ``ports.io``
     signals: StationSignals = _NEUTRAL_SIGNALS
-    unknown_items: frozenset[UnknownPart] = frozenset()  # items of which no data arrives
-    switches: Switches = field(default_factory=Switches)
-    screen_override: float = 1.0
-    lamp_test_end: float = 0.0  # time until which all lamps of the signal tower are on
-    line: int = 0  # line of the block being executed, for the log
+    unknown_parts: frozenset[UnknownPart] = frozenset()  # items of which no data arrives
+    switches: OperatorSwitches = field(default_factory=OperatorSwitches)
+    screen_feed_override: float = 1.0
+    lamp_test_end_s: float = 0.0  # time until which all lamps of the signal tower are on
+    line_number: int = 0  # line of the block being executed, for the log
     stop: Alarm | None = None  # why the machine is stopped although no alarm is active
-    lateness: TickLateness = field(init=False)
+    tick_lateness: TickLateness = field(init=False)
     _noted: AlarmCode | None = None  # code of the last stop that was logged
     _borne: float | None = None  # spindle load of the latest driver sample, per cent
 
     def __post_init__(self) -> None:
-        self.lateness = TickLateness(self.machine.timing.lookahead)
+        self.tick_lateness = TickLateness(self.machine.timing.lookahead)
 
     @property
     def spindle_load(self) -> float | None:
@@ -86,12 +86,12 @@ class MachineContext:
 
         The override is the product of the potentiometer and the screen setting.
         """
-        fraction = min(self.signals.feed_override * self.screen_override, 1.5)
+        fraction = min(self.signals.feed_override * self.screen_feed_override, 1.5)
         return round(fraction / _OVERRIDE_STEP) * _OVERRIDE_STEP
 
-    def log(self, kind: str, text: str) -> None:
+    def log_text(self, kind: str, text: str) -> None:
         """Write an entry with the current time and line to the event log."""
-        self.log_event(LogEvent(self.now, kind, text, self.line))
+        self.log_event(LogEvent(self.now, kind, text, self.line_number))
 
     def show_stop(self, code: AlarmCode, detail: str = "") -> None:
         """Show a hold, a stop or the E-stop until motion resumes, and log it.
@@ -100,22 +100,22 @@ class MachineContext:
         log entries.
         """
         if code == "single-block" == self._noted:
-            self.stop = make_alarm(code, detail, self.line, self.now)
+            self.stop = make_alarm(code, detail, self.line_number, self.now)
         else:
             self.stop = self.log_stop(code, detail)
 
     def log_stop(self, code: AlarmCode, detail: str = "") -> Alarm:
         """Log a stop that is not displayed, and return it as an alarm entry."""
-        stop = make_alarm(code, detail, self.line, self.now)
+        stop = make_alarm(code, detail, self.line_number, self.now)
         self._noted = code
         kind = "estop" if code == "estop" else "stop"
-        self.log_event(LogEvent(self.now, kind, format_log_line(stop), self.line, stop))
+        self.log_event(LogEvent(self.now, kind, format_log_line(stop), self.line_number, stop))
         return stop
 
     def log_event(self, event: LogEvent) -> None:
         """Pass an event to the log. A failure of the log is reported but stops nothing else."""
-        with Attempt() as trial:
-            self.on_event(event)
+        with CaughtAttempt() as trial:
+            self.handle_event(event)
         if trial.error is not None:
             _log.error("an event was lost: %s", event, exc_info=trial.error)
 
@@ -140,5 +140,7 @@ class MachineContext:
 
     def is_in_position(self) -> bool:
         """Return whether all axes are at rest and within their in-position windows."""
-        pairs = zip(self.machine.axes, self.sample.following_error, strict=True)
-        return not self.sample.moving and all(abs(error) <= axis.in_position for axis, error in pairs)
+        pairs = zip(self.machine.axes, self.axis_sample.following_error, strict=True)
+        return not self.axis_sample.moving and all(
+            abs(error) <= axis.in_position_tolerance for axis, error in pairs
+        )

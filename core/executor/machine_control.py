@@ -7,25 +7,25 @@ from collections.abc import Callable
 from core.alarms import AlarmCode, Reaction
 from core.alarms.bus_alarms import CONNECTION_LOSS_CODES
 from core.executor import start_conditions
-from core.executor.control_status import make_power_up_modal
+from core.executor.control_status import make_power_up_modal_state
 from core.executor.hand_motion.drive_test import DriveTester
 from core.executor.hand_motion.handwheel import Handwheel
 from core.executor.hand_motion.jogging import create_jogger
 from core.executor.hand_motion.touch_off import Homing, TouchOff
-from core.executor.interruption_watch import StoreInterruptedJob
+from core.executor.interruption_watch import StoreFunction
 from core.executor.job import Job, ProgramPass
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.cycle import Cycle
 from core.executor.program_run import ProgramRun
 from core.executor.raised_alarm import (
     AlarmError,
-    Attempt,
+    CaughtAttempt,
     format_log_line,
     log_alarm,
     make_alarm_and_reaction,
 )
 from core.executor.safety.safe_stop import SafeStop
-from core.executor.safety.supervision import OutputsWatch, Supervisor
+from core.executor.safety.supervision import OutputWatch, Supervisor
 from core.executor.snapshot import (
     ACTIVE_STATES,
     CLOSED_REASON,
@@ -52,7 +52,7 @@ _CONTINUED_STATES = frozenset(
         MachineState.IDLE,
         MachineState.DISABLED,
         MachineState.JOG,
-        MachineState.HOME,
+        MachineState.HOMING,
     }
 )
 CONFIRMATION_DELAY_S = (
@@ -68,7 +68,7 @@ class MachineControl:
         self,
         context: MachineContext,
         start_pass: Callable[[Job, Setup], ProgramPass],
-        store_interruption: StoreInterruptedJob,
+        store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
     ) -> None:
         self._context = context
@@ -76,7 +76,7 @@ class MachineControl:
             context, start_pass, self.change_state, store_interruption, interrupted_job
         )
         self.status = self.program_run.status
-        self.status.modal = make_power_up_modal(context)
+        self.status.modal_state = make_power_up_modal_state(context)
         self.counters = self.program_run.counters
         self.supervisor = Supervisor(context)
         self.safe_stop = SafeStop(context)
@@ -86,7 +86,7 @@ class MachineControl:
         self.touch_off = TouchOff(context, self.jogger)
         self.homing = Homing(context)
         self.announcement = StartAnnouncement()
-        self.outputs_watch = OutputsWatch(context, self.program_run)
+        self.outputs_watch = OutputWatch(context, self.program_run)
         warnings = StartWarnings(context, self.status, self.counters)
         self.announcement.sources += [
             warnings.iter_spindle_starts,
@@ -111,9 +111,9 @@ class MachineControl:
         return self.program_run.cycle
 
     @property
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state of the block being executed, or the modal state between two programs."""
-        return self.program_run.modal
+        return self.program_run.modal_state
 
     def change_state(self, state: MachineState) -> None:
         """Change the state and log the change. Raises TransitionError if the change is not permitted."""
@@ -121,11 +121,11 @@ class MachineControl:
             return
         require_transition(self.state, state)
         self.status.state = state
-        if state is MachineState.BLOCK_END:
+        if state is MachineState.SINGLE_BLOCK_STOP:
             self._context.show_stop("single-block")
         elif state in _CONTINUED_STATES:
             self._context.stop = None
-        self._context.log("state", state.value)
+        self._context.log_text("state", state.value)
 
     # --- requests -----------------------------------------------------------------------------------------
 
@@ -158,7 +158,7 @@ class MachineControl:
         """Store and log a start refusal; return whether ``reason`` contains a reason."""
         self.status.start_refusal = reason
         if reason:
-            self._context.log("refused", reason)
+            self._context.log_text("refused", reason)
         return bool(reason)
 
     def _clear_start_refusal(self) -> None:
@@ -181,7 +181,7 @@ class MachineControl:
             self._context.now, SPINDLE_FUNCTION
         )
         if why:
-            self._context.log("refused", why)
+            self._context.log_text("refused", why)
         else:
             self.announcement.start_functions(SPINDLE_FUNCTION)
 
@@ -212,13 +212,13 @@ class MachineControl:
             self.handwheel.disable(reason.lower() or "feed hold", self.state)
         if self.state is MachineState.JOG:
             self.stop_jog(reason.lower() or "feed hold")
-        elif self.state is MachineState.HOME:
+        elif self.state is MachineState.HOMING:
             self._stop_homing()
         elif self.cycle is not None and self.state in ACTIVE_STATES:
             self._context.spindle.cancel_orientation()
             self.cycle.start_feed_hold(reason, source, code)
 
-    def reset(self) -> None:
+    def reset_machine(self) -> None:
         """Cancel the program, stop the spindle and acknowledge alarms."""
         self.status.start_refusal = ""
         self.safe_stop.switch_functions_off()
@@ -234,12 +234,12 @@ class MachineControl:
             self._leave()
         elif self.state is MachineState.JOG:
             self.start_feed_hold("reset")
-        elif self.state is MachineState.HOME:
+        elif self.state is MachineState.HOMING:
             self._stop_homing()
 
     def stop_jog(self, reason: str) -> None:
         """Stop manual motion and a touch-off for the given reason. Raises DriverError."""
-        self.touch_off.cancel(reason)
+        self.touch_off.cancel_touch_off(reason)
         self.jogger.stop()
 
     def release_jog_key(self) -> None:
@@ -273,7 +273,7 @@ class MachineControl:
         if self.handwheel.axis:
             self.handwheel.disable(why, self.state)
         else:
-            self._context.log("refused", Message("jog: {why}", why=why))
+            self._context.log_text("refused", Message("jog: {why}", why=why))
 
     def _ran_into_setter(self) -> None:
         why = "the tool setter is triggered; jog the tool away from it"
@@ -281,29 +281,29 @@ class MachineControl:
         if self.handwheel.axis:
             self.handwheel.disable(why, self.state)
         else:
-            self._context.log("refused", Message("jog: {why}", why=why))
+            self._context.log_text("refused", Message("jog: {why}", why=why))
 
-    def follow_handwheel(self) -> None:
+    def move_by_handwheel(self) -> None:
         """Move the selected axis as the handwheel turns. Raises DriverError if a driver fails."""
         if self.handwheel.follow_clicks(self.state):
             self.change_state(MachineState.JOG)
 
-    def follow_estop(self, pressed: bool) -> None:
+    def handle_estop(self, is_pressed: bool) -> None:
         """React to the hardware E-stop, which has already stopped the machine.
 
         Nothing starts when the E-stop is released.
         """
-        if pressed and self.state is not MachineState.ESTOP:
+        if is_pressed and self.state is not MachineState.ESTOP:
             self.safe_stop.run_steps(Reaction.DRIVES_OFF)
             self._context.show_stop("estop")
             self._cancel_active_function(ESTOP_REASON)
             self.change_state(MachineState.ESTOP)
-        elif not pressed and self.state is MachineState.ESTOP:
+        elif not is_pressed and self.state is MachineState.ESTOP:
             self.change_state(MachineState.DISABLED)
 
     # --- actions in every tick ----------------------------------------------------------------------------
 
-    def advance(self) -> None:
+    def advance_one_tick(self) -> None:
         """Advance the active function by one tick. Raises AlarmError, MotionError or DriverError."""
         self._finish_stopping()
         self._clear_start_refusal()
@@ -317,16 +317,16 @@ class MachineControl:
                 return
             if self.state in ACTIVE_STATES:
                 self._check_queue(self.cycle)
-            self.cycle.advance()
+            self.cycle.advance_one_tick()
         elif self.state is MachineState.JOG:
             self._advance_manual_motion()
-        elif self.state is MachineState.HOME and self.homing.advance():
+        elif self.state is MachineState.HOMING and self.homing.home_next_axis():
             self.change_state(MachineState.IDLE)
 
     def _advance_manual_motion(self) -> None:
         """Advance a touch-off or a jog. The jog ends when the axis is at rest."""
         if self.touch_off.phase is not None:
-            self.touch_off.advance()
+            self.touch_off.advance_one_tick()
             return
         self.drive_tester.check_guard()
         self.jogger.check_button()
@@ -338,8 +338,8 @@ class MachineControl:
         motion = self.program_run.motion
         left = motion.starvation_time_s - self._context.now
         if motion.has_section and left < self._context.machine.timing.low_water:
-            self.counters.underruns += 1
-            self._context.log("starved", "feed hold: computer busy; the axes stop on the path")
+            self.counters.underrun_count += 1
+            self._context.log_text("starved", "feed hold: computer busy; the axes stop on the path")
             cycle.hold_for_underrun()
 
     def _leave(self) -> None:
@@ -355,14 +355,16 @@ class MachineControl:
     def raise_alarm(self, error: AlarmError) -> None:
         """Stop the machine and show the alarm. An alarm that is already active is ignored."""
         context = self._context
-        alarm, reaction = make_alarm_and_reaction(error, context.line, context.now)
+        alarm, reaction = make_alarm_and_reaction(error, context.line_number, context.now)
         if any(old.code == alarm.code for old in self.status.alarms):
             return
         log_alarm(alarm)
         if reaction is Reaction.HOLD and self._handle_hold_alarm(error):
             return
         self.status.alarms = (*self.status.alarms, alarm)
-        self.status.drives_switched_off = self.status.drives_switched_off or reaction is Reaction.DRIVES_OFF
+        self.status.are_drives_switched_off = (
+            self.status.are_drives_switched_off or reaction is Reaction.DRIVES_OFF
+        )
         self.safe_stop.run_steps(reaction)
         self._cancel_active_function(
             Message("ALARM {number}: {alarms}", number=alarm.number, alarms=alarm.text)
@@ -378,7 +380,7 @@ class MachineControl:
         elif self.state in MANUAL_STATES:
             self.jogger.stop()
             stop = self._context.log_stop(error.code, error.detail)
-            self._context.log("refused", stop.text.lower())
+            self._context.log_text("refused", stop.text.lower())
         else:
             return False
         return True
@@ -398,11 +400,11 @@ class MachineControl:
         """Cancel the active function, even if its driver no longer responds."""
         self._giving_up = False
         self.jogger.clear_jog()  # The stop has ended the jog, so a later release must not stop anything.
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             self.program_run.cancel_run(reason)
         if trial.error is not None:
             self.program_run.discard_run()
-            self._context.log(
+            self._context.log_text(
                 "alarm", Message("fault while canceling the program: {error}", error=trial.error)
             )
 
@@ -436,9 +438,9 @@ class MachineControl:
 
         A failure is ignored if the drives no longer communicate.
         """
-        with Attempt() as off:
+        with CaughtAttempt() as off:
             self._context.ports.axes.enable(False)
-        if off.error is not None and UnknownPart.AXES not in self._context.unknown_items:
+        if off.error is not None and UnknownPart.AXES not in self._context.unknown_parts:
             raise off.error
 
     def _acknowledge(self) -> None:
@@ -447,15 +449,15 @@ class MachineControl:
         Drives that an alarm has switched off remain off.
         """
         context, status = self._context, self.status
-        if context.sample.moving:
-            context.log("refused", "reset: wait until the axes have stopped")
+        if context.axis_sample.moving:
+            context.log_text("refused", "reset: wait until the axes have stopped")
             return
-        if status.drives_switched_off:
+        if status.are_drives_switched_off:
             self._switch_drives_off()
         context.ports.axes.clear_fault()
-        status.drives_switched_off, status.alarms = False, ()
+        status.are_drives_switched_off, status.alarms = False, ()
         self.safe_stop.discard_failed_steps()
         self.supervisor.accept_positions()
-        context.sample = context.ports.axes.sample()
+        context.axis_sample = context.ports.axes.sample()
         if self.state is MachineState.FAULT:
-            self.change_state(MachineState.IDLE if context.sample.enabled else MachineState.DISABLED)
+            self.change_state(MachineState.IDLE if context.axis_sample.enabled else MachineState.DISABLED)

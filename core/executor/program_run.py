@@ -12,14 +12,14 @@ from core.executor import start_conditions
 from core.executor.commands import START_UNCHECKED, ChangeOffsets
 from core.executor.control_status import (
     ControlStatus,
-    PartCount,
-    apply_offsets_to_modal,
-    modal_after_cancel,
-    modal_after_mdi_cancel,
-    sync_modal_with_machine,
+    PartCounter,
+    apply_offsets_to_modal_state,
+    make_modal_state_after_cancel,
+    make_modal_state_after_mdi_cancel,
+    sync_modal_state_with_machine,
 )
-from core.executor.interruption_watch import InterruptionWatch, StoreInterruptedJob
-from core.executor.job import Job, ProgramPass, find_outdated_setting, setup_at_start
+from core.executor.interruption_watch import InterruptionWatch, StoreFunction
+from core.executor.job import Job, ProgramPass, find_outdated_setting, make_start_setup
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
 from core.executor.program_motion.cycle import Cycle, PathMotion
@@ -90,8 +90,10 @@ class ChangedOffsets:
         if asked.job is not None:
             setup = asked.job.setup
             status.job = asked.job
-            status.modal = apply_offsets_to_modal(status.modal, setup.tools, setup.secondary)
-            self._context.log("offsets", "the changed offsets are in effect")
+            status.modal_state = apply_offsets_to_modal_state(
+                status.modal_state, setup.tools, setup.secondary
+            )
+            self._context.log_text("offsets", "the changed offsets are in effect")
 
     def discard_request(self) -> None:
         """Discard the request because another program is loaded."""
@@ -106,7 +108,7 @@ class ProgramRun:
         context: MachineContext,
         start_pass: Callable[[Job, Setup], ProgramPass],
         change_state: Callable[[MachineState], None],
-        store_interruption: StoreInterruptedJob,
+        store_interruption: StoreFunction,
         interrupted_job: InterruptedJob | None,
     ) -> None:
         self._context = context
@@ -114,7 +116,7 @@ class ProgramRun:
         self._enter = change_state
         self.motion = _make_motion(context)
         self.status = ControlStatus()
-        self.part_count = PartCount(context)
+        self.part_count = PartCounter(context)
         self.counters = self.part_count.counters
         self.interruption_watch = InterruptionWatch(
             context, self.status, self.part_count, store_interruption, interrupted_job
@@ -146,7 +148,7 @@ class ProgramRun:
         A prepared job is used only once.
         """
         status, context = self.status, self._context
-        job = start_conditions.selected_job(status)
+        job = start_conditions.get_selected_job(status)
         assert job is not None
         self.counters.cycle_time_s = 0.0
         self.counters.started_run_count += 1
@@ -160,10 +162,12 @@ class ProgramRun:
             self.interruption_watch.record_start(job.setup.begin)
         self._open_pass(job)
         self._enter(MachineState.RUN)
-        context.log("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
+        context.log_text("mdi" if self._line else "start", job.source.text if self._line else job.source.name)
         begin = job.setup.begin
         if begin is not None and not begin.is_mdi_line:
-            context.log("restart", Message("the program restarts at line {line}", line=begin.line_number))
+            context.log_text(
+                "restart", Message("the program restarts at line {line}", line=begin.line_number)
+            )
 
     @property
     def will_count_part(self) -> bool:
@@ -196,7 +200,7 @@ class ProgramRun:
         kind = "mdi" if self._line else "end"
         self.cancel_run(RESET_REASON)
         self._enter(MachineState.IDLE)
-        self._context.log(kind, said)
+        self._context.log_text(kind, said)
         return True
 
     def cancel_run(self, reason: str) -> None:
@@ -210,15 +214,15 @@ class ProgramRun:
             return
         if not (self._line or self._between):
             self.interruption_watch.record_interruption(cycle.current_block, reason)
-        language = self._context.machine.language
-        given_up = modal_after_cancel(cycle.modal, language)
-        self._finish_run(modal_after_mdi_cancel(cycle.modal) if self._line else given_up)
+        language = self._context.machine.mdi_language
+        given_up = make_modal_state_after_cancel(cycle.modal, language)
+        self._finish_run(make_modal_state_after_mdi_cancel(cycle.modal) if self._line else given_up)
 
     def discard_run(self) -> None:
         """Discard the run without calling the drivers. This is used after a driver failure."""
         self.cycle = self._source = None
         self._between = False
-        self._context.line = 0
+        self._context.line_number = 0
 
     def _finish_run(self, final_modal: ModalState, *, tool_open: bool = False) -> None:
         """End the run, store its final modal state, and apply offsets that were changed during the run."""
@@ -227,7 +231,7 @@ class ProgramRun:
             self.status.saved_pass = None
         self.cycle = self._source = None
         self._between = False
-        self._context.line = 0
+        self._context.line_number = 0
         self.motion.clear_section()
         self.changed_offsets.apply_changes(self.status)
 
@@ -236,10 +240,10 @@ class ProgramRun:
 
         The units and the rapid rate are adopted only from OmniTurn programs.
         """
-        before = self.status.modal
+        before = self.status.modal_state
         if self._dialect is not Dialect.OMNITURN:
             modal = modal._replace(metric=before.metric, rapid_rate=before.rapid_rate)
-        self.status.modal, self.status.is_tool_move_pending = modal, tool_open
+        self.status.modal_state, self.status.is_tool_move_pending = modal, tool_open
 
     def update_between_cycles(self) -> None:
         """Update the state between two cycles.
@@ -248,14 +252,14 @@ class ProgramRun:
         """
         self.interruption_watch.record_progress(None if self._line or self._between else self.cycle)
         if self.cycle is None:
-            self.status.modal = sync_modal_with_machine(self.status.modal, self._context)
+            self.status.modal_state = sync_modal_state_with_machine(self.status.modal_state, self._context)
         elif self._between and self.status.state in {MachineState.RUN, MachineState.WAIT}:
             self._repeat_program(self.cycle)
 
     def _open_pass(self, job: Job) -> None:
         """Start a pass through ``job`` from the present position of the axes."""
         at, _ = self._context.ports.axes.demand_at(self._context.now)
-        setup = setup_at_start(job.setup, at, self._context.is_input_on)
+        setup = make_start_setup(job.setup, at, self._context.is_input_on)
         self.motion.clear_section()
         diameter = job.source.dialect is Dialect.SINUMERIK
         begins = ModalState(metric=setup.metric, diameter=diameter, rapid_rate=setup.last_rapid)
@@ -297,7 +301,7 @@ class ProgramRun:
         self.interruption_watch.record_start(None)
         self._open_pass(self.status.job)
         self._enter(MachineState.RUN)
-        self._context.log("repeat", self.status.job.source.name)
+        self._context.log_text("repeat", self.status.job.source.name)
 
     def _why_not_again(self, left: ModalState) -> str:
         if self.status.next_part_block_reason:
@@ -314,11 +318,11 @@ class ProgramRun:
 
     def _program_ended(self, no_repeat: str = "") -> None:
         if no_repeat:
-            self._context.log(
+            self._context.log_text(
                 "refused", Message("the cycle is not repeated: {no_repeat}", no_repeat=no_repeat)
             )
-        self._context.log("end", "program end")
-        self._finish_run(self.modal)
+        self._context.log_text("end", "program end")
+        self._finish_run(self.modal_state)
         self._enter(MachineState.IDLE)
 
     def _end_mdi_line(self, end: ProgramEnd | None) -> None:
@@ -328,22 +332,22 @@ class ProgramRun:
         """
         source = self._source
         left = source.make_checkpoint() if source is not None and source.make_checkpoint is not None else None
-        modal = self.modal if left is None else sync_modal_with_machine(left.modal, self._context)
+        modal = self.modal_state if left is None else sync_modal_state_with_machine(left.modal, self._context)
         self.status.saved_pass = left.kept if left is not None and end is None else None
         self._finish_run(modal, tool_open=left is not None and left.tool_line != 0)
         self._enter(MachineState.IDLE)
-        self._context.log("mdi", "done")
+        self._context.log_text("mdi", "done")
 
     @property
-    def modal(self) -> ModalState:
+    def modal_state(self) -> ModalState:
         """Return the modal state of the block being executed, or the modal state between two programs."""
-        return self.cycle.modal if self.cycle is not None else self.status.modal
+        return self.cycle.modal if self.cycle is not None else self.status.modal_state
 
     def _end_functions(self) -> None:
         """Stop the spindle and turn off all outputs except the collet at M30."""
         context = self._context
         context.spindle.stop()
-        for name, on in context.ports.io.outputs().items():
+        for name, on in context.ports.io.get_outputs().items():
             if on and name != "collet":
                 context.ports.io.write(name, False)
 

@@ -8,13 +8,13 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import ClassVar
 
-from core.alarms import CATALOGUE, AlarmCode, Reaction
+from core.alarms import CATALOG, AlarmCode, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message
 
 _log = logging.getLogger(__name__)
 HOLD_CODES: dict[str, AlarmCode] = {
-    entry.text.upper(): code for code, entry in CATALOGUE.items() if entry.reaction is Reaction.HOLD
+    entry.text.upper(): code for code, entry in CATALOG.items() if entry.reaction is Reaction.HOLD
 }
 
 
@@ -26,7 +26,7 @@ class AlarmError(Exception):
     """
 
     def __init__(self, code: AlarmCode, detail: str = "", line: int = 0) -> None:
-        super().__init__(detail or CATALOGUE[code].text)
+        super().__init__(detail or CATALOG[code].text)
         self.code: AlarmCode = code
         self.detail = detail
         self.line = line
@@ -38,12 +38,12 @@ def make_alarm_and_reaction(error: AlarmError, line: int, now: float) -> tuple[A
     ``line`` is used if the error has no line.
     """
     alarm = make_alarm(error.code, error.detail, error.line or line, now)
-    return alarm, CATALOGUE[error.code].reaction
+    return alarm, CATALOG[error.code].reaction
 
 
 def make_alarm(code: AlarmCode, detail: str, line: int, now: float) -> Alarm:
     """Return an alarm, a hold or a stop with the texts of the catalog entry and the given detail."""
-    entry = CATALOGUE[code]
+    entry = CATALOG[code]
     exactly = detail if entry.shows_detail else ""
     return Alarm(
         number=entry.number,
@@ -81,7 +81,7 @@ def log_alarm(alarm: Alarm) -> None:
     _log.warning("alarm %d %s%s: %s", alarm.number, alarm.code, where, alarm.detail or alarm.cause)
 
 
-class Attempt:
+class CaughtAttempt:
     """A context manager that catches an error of its ``with`` block and stores it in ``error``.
 
     SystemExit is caught too. Only KeyboardInterrupt is raised again, because it is meant for the main
@@ -91,7 +91,7 @@ class Attempt:
     def __init__(self) -> None:
         self.error: BaseException | None = None
 
-    def __enter__(self) -> Attempt:
+    def __enter__(self) -> CaughtAttempt:
         return self
 
     def __exit__(
@@ -101,7 +101,7 @@ class Attempt:
         return not isinstance(error, KeyboardInterrupt)
 
 
-class ReportedAttempt(Attempt):
+class ReportedAttempt(CaughtAttempt):
     """A context manager that logs an error of its block and passes it to ``handle_failure``.
 
     An error in ``handle_failure`` is logged too. If an error repeats in every tick, its first, tenth,
@@ -121,7 +121,7 @@ class ReportedAttempt(Attempt):
         if error is None or not swallowed:
             return swallowed
         self._write(error)
-        with Attempt() as telling:
+        with CaughtAttempt() as telling:
             self._failed(error)
         if telling.error is not None:
             _log.error("and could not say so", exc_info=telling.error)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from core.executor.machine_context import MachineContext
-from core.executor.raised_alarm import Attempt
+from core.executor.raised_alarm import CaughtAttempt
 from core.executor.snapshot import ACTIVE_STATES, STOPPED_STATES, MachineState
 from core.machine.hardware_model import BLINK_HALF_PERIOD_S, BUZZER, MACHINE_SIGNALS
 from core.message import Message
@@ -33,17 +33,17 @@ class SignalSelector:
     _made: bool = False
 
     def update_signals(
-        self, state: MachineState, program_end_count: int, *, next_part_blocked: bool
+        self, state: MachineState, program_end_count: int, *, is_next_part_blocked: bool
     ) -> tuple[str, ...]:
         """Return the names of all active signals.
 
-        ``program_end_count`` is the number of finished programs. ``next_part_blocked`` is True if no other
+        ``program_end_count`` is the number of finished programs. ``is_next_part_blocked`` is True if no other
         part may start.
         """
         self._made = (self._made or program_end_count > self._ends >= 0) and state is MachineState.IDLE
         self._ends = program_end_count
         found = [kind for kind in (_of_state(state),) if kind]
-        if next_part_blocked and state not in _NO_PARTS:
+        if is_next_part_blocked and state not in _NO_PARTS:
             found.append("tool-life")
         elif self._made:
             found.append("part")
@@ -82,18 +82,22 @@ class SignalLamps:
     def __post_init__(self) -> None:
         self._lamps = self.context.machine.lamp_outputs
 
-    def update_lamps(self, state: MachineState, program_end_count: int, *, next_part_blocked: bool) -> None:
+    def update_lamps(
+        self, state: MachineState, program_end_count: int, *, is_next_part_blocked: bool
+    ) -> None:
         """Update the lamps of the signal tower.
 
-        ``next_part_blocked`` is True if a tool or a measurement prevents the next part.
+        ``is_next_part_blocked`` is True if a tool or a measurement prevents the next part.
         """
         if not self._lamps:
             return
-        with Attempt():  # A driver error of a lamp must not stop the machine.
+        with CaughtAttempt():  # A driver error of a lamp must not stop the machine.
             self._see(
-                self._signals.update_signals(state, program_end_count, next_part_blocked=next_part_blocked)
+                self._signals.update_signals(
+                    state, program_end_count, is_next_part_blocked=is_next_part_blocked
+                )
             )
-            if UnknownPart.OUTPUTS not in self.context.unknown_items:
+            if UnknownPart.OUTPUTS not in self.context.unknown_parts:
                 self._switch(self._required_states(state))
 
     def _see(self, kinds: tuple[str, ...]) -> None:
@@ -108,7 +112,7 @@ class SignalLamps:
         After a fault, a lamp without an active signal is in its safe state; otherwise it is off.
         """
         now, outputs = self.context.now, self.context.machine.outputs
-        if now < self.context.lamp_test_end:
+        if now < self.context.lamp_test_end_s:
             return dict.fromkeys(self._lamps, True)
         fault = machine_state in {MachineState.FAULT, MachineState.ESTOP}
         wanted = {name: fault and bool(outputs[name].safe_state) for name in self._lamps}
@@ -126,7 +130,7 @@ class SignalLamps:
         return wanted
 
     def _switch(self, wanted: dict[str, bool]) -> None:
-        actual, now = self.io.outputs(), self.context.now
+        actual, now = self.io.get_outputs(), self.context.now
         for name, on in wanted.items():
             new = self._sent.get(name) is not on
             waits = now < self._refused.get(name, 0.0) or (not new and now < self._due.get(name, 0.0))
@@ -134,7 +138,7 @@ class SignalLamps:
                 self._write(name, on, now)
 
     def _write(self, name: str, on: bool, now: float) -> None:
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             self.io.write(name, on)
         if trial.error is None:
             self._sent[name], self._due[name] = on, now + _RETRY_INTERVAL_S
@@ -143,4 +147,4 @@ class SignalLamps:
         why = Message("{name} CANNOT BE SWITCHED: {error}", name=name.upper(), error=trial.error)
         if why != self._told:
             self._told = why
-            self.context.log("disturbed", why)
+            self.context.log_text("disturbed", why)

@@ -69,7 +69,7 @@ class InterruptedJob:
         )
 
 
-def interrupted_job_to_json(interrupted_job: InterruptedJob) -> dict[str, object]:
+def convert_interrupted_job_to_json(interrupted_job: InterruptedJob) -> dict[str, object]:
     """Return the interrupted job as a dictionary for JSON."""
     return asdict(interrupted_job) | {
         "axes": list(interrupted_job.axes),
@@ -77,7 +77,7 @@ def interrupted_job_to_json(interrupted_job: InterruptedJob) -> dict[str, object
     }
 
 
-def interrupted_job_from_json(value: object) -> InterruptedJob | None:
+def parse_interrupted_job(value: object) -> InterruptedJob | None:
     """Return the interrupted job read from JSON, or None if the value is missing or invalid."""
     if not isinstance(value, Mapping):
         return None
@@ -92,7 +92,7 @@ def interrupted_job_from_json(value: object) -> InterruptedJob | None:
     return InterruptedJob(**texts, **numbers, axes=axes, where=where) if known else None  # type: ignore[arg-type]
 
 
-def utc_timestamp() -> str:
+def make_utc_timestamp() -> str:
     """Return the present time in UTC in ISO 8601 format, with a resolution of 1 s."""
     return datetime.now(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")
 
@@ -104,13 +104,13 @@ class MachineState(StrEnum):
     DISABLED = "DRIVES OFF"
     IDLE = "READY"
     RUN = "RUNNING"
-    HOLDING = "STOPPING"
+    STOPPING = "STOPPING"
     HOLD = "FEED HOLD"
-    BLOCK_END = "SINGLE BLOCK"
+    SINGLE_BLOCK_STOP = "SINGLE BLOCK"
     PROGRAM_STOP = "PROGRAM STOP"
     WAIT = "WAITING"
     JOG = "JOG"
-    HOME = "HOMING"
+    HOMING = "HOMING"
     FAULT = "ALARM"
 
 
@@ -156,7 +156,7 @@ class DriveTestState(NamedTuple):
     """
 
     barred: str = ""
-    axis: str = ""
+    tested_axis: str = ""
     number: int = 0
     start_time_s: float = 0.0
     completed_test_count: int = 0
@@ -171,7 +171,7 @@ class TouchPhase(StrEnum):
 
     SEARCH = "search"
     BACK_OFF = "back off"
-    SLOW = "slow"
+    SLOW_TOUCH = "slow"
     RETREAT = "retreat"
     RETURN = "return"  # no touch detected: return to the start
 
@@ -180,15 +180,15 @@ class TouchPhase(StrEnum):
 class TouchResult:
     """The result of a touch-off.
 
-    ``touch_position`` is the encoder position of the axis at the touch, in machine coordinates in mm, and
-    ``uncertainty_mm`` is its uncertainty. If the touch-off failed, ``touch_position`` is None and ``why``
+    ``touch_position_mm`` is the encoder position of the axis at the touch, in machine coordinates in mm, and
+    ``uncertainty_mm`` is its uncertainty. If the touch-off failed, ``touch_position_mm`` is None and ``why``
     is the reason.
     """
 
     number: int  # number of touch-offs that have ended
     axis: str
     sign: int
-    touch_position: float | None = None
+    touch_position_mm: float | None = None
     uncertainty_mm: float = 0.0
     why: str = ""
 
@@ -324,7 +324,7 @@ class LogEvent:
     # interrupted, late, cleared, refused, override, switch, force, load, offsets, test
     kind: str
     text: str
-    line: int = 0
+    line_number: int = 0
     alarm: Alarm | None = None  # catalog entry of an alarm, an E-stop or a stop
     record_name: str = ""  # file of the scope record before the event, in the folder ``records``
     part_number: int = 0  # number of the part among those of the program
@@ -353,42 +353,48 @@ _ALWAYS_ALLOWED = {MachineState.ESTOP, MachineState.FAULT}
 _RUNNING_STATES = {
     MachineState.RUN,
     MachineState.WAIT,
-    MachineState.HOLDING,
+    MachineState.STOPPING,
     MachineState.HOLD,
-    MachineState.BLOCK_END,
+    MachineState.SINGLE_BLOCK_STOP,
     MachineState.PROGRAM_STOP,
 }
 
-TRANSITIONS: dict[MachineState, frozenset[MachineState]] = {
+STATE_TRANSITIONS: dict[MachineState, frozenset[MachineState]] = {
     MachineState.ESTOP: frozenset({MachineState.DISABLED}),
     MachineState.DISABLED: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
     MachineState.IDLE: frozenset(
-        {MachineState.RUN, MachineState.JOG, MachineState.HOME, MachineState.DISABLED, *_ALWAYS_ALLOWED}
+        {MachineState.RUN, MachineState.JOG, MachineState.HOMING, MachineState.DISABLED, *_ALWAYS_ALLOWED}
     ),
     MachineState.RUN: frozenset({*_RUNNING_STATES, MachineState.IDLE, *_ALWAYS_ALLOWED} - {MachineState.RUN}),
     MachineState.WAIT: frozenset(
         {*_RUNNING_STATES, MachineState.IDLE, *_ALWAYS_ALLOWED} - {MachineState.WAIT}
     ),
-    MachineState.HOLDING: frozenset(
-        {MachineState.HOLD, MachineState.BLOCK_END, MachineState.IDLE, *_ALWAYS_ALLOWED}
+    MachineState.STOPPING: frozenset(
+        {MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE, *_ALWAYS_ALLOWED}
     ),
     MachineState.HOLD: frozenset({MachineState.RUN, MachineState.WAIT, MachineState.IDLE, *_ALWAYS_ALLOWED}),
-    MachineState.BLOCK_END: frozenset(
+    MachineState.SINGLE_BLOCK_STOP: frozenset(
         {MachineState.RUN, MachineState.WAIT, MachineState.HOLD, MachineState.IDLE, *_ALWAYS_ALLOWED}
     ),
     MachineState.PROGRAM_STOP: frozenset(
-        {MachineState.RUN, MachineState.WAIT, MachineState.BLOCK_END, MachineState.IDLE, *_ALWAYS_ALLOWED}
+        {
+            MachineState.RUN,
+            MachineState.WAIT,
+            MachineState.SINGLE_BLOCK_STOP,
+            MachineState.IDLE,
+            *_ALWAYS_ALLOWED,
+        }
     ),
     MachineState.JOG: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
-    MachineState.HOME: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
+    MachineState.HOMING: frozenset({MachineState.IDLE, *_ALWAYS_ALLOWED}),
     MachineState.FAULT: frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE}),
 }
 
 ACTIVE_STATES = frozenset(
-    {MachineState.RUN, MachineState.WAIT, MachineState.HOLDING}
+    {MachineState.RUN, MachineState.WAIT, MachineState.STOPPING}
 )  # the cycle advances automatically
 STOPPED_STATES = frozenset(
-    {MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP}
+    {MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP}
 )  # Cycle Start resumes the cycle
 CYCLE_STATES = ACTIVE_STATES | STOPPED_STATES
 # manual operation, in which the spindle switch starts the spindle
@@ -401,7 +407,7 @@ class TransitionError(Exception):
 
 def require_transition(old_state: MachineState, new_state: MachineState) -> None:
     """Raise TransitionError unless ``new_state`` may follow ``old_state``."""
-    if new_state not in TRANSITIONS[old_state]:
+    if new_state not in STATE_TRANSITIONS[old_state]:
         raise TransitionError(
             Message(
                 "the machine state cannot change from {old} to {new}",

@@ -46,12 +46,12 @@ class SnapshotPublisher:
         """Return the snapshot of this tick."""
         cycle, status, counters = control.cycle, control.status, control.counters
         block = cycle.current_block if cycle else None
-        job, modal = status.job, control.modal
+        job, modal = status.job, control.modal_state
         self._swivel = self._working_plane(
             block, is_running=cycle is not None or status.saved_pass is not None
         )
         return Snapshot(
-            **_block_values(block, modal, context.sample),
+            **_block_values(block, modal, context.axis_sample),
             next_text=_next_text(cycle),
             t=context.now,
             state=status.state,
@@ -59,16 +59,16 @@ class SnapshotPublisher:
             program=job.source.name if job else "",
             job=job.digest if job else "",
             axes=tuple(axis.name for axis in context.machine.axes),
-            demand=context.sample.demand,
-            actual=context.sample.actual,
-            following_error=context.sample.following_error,
-            homed=context.sample.homed,
-            powered=context.sample.enabled,
+            demand=context.axis_sample.demand,
+            actual=context.axis_sample.actual,
+            following_error=context.axis_sample.following_error,
+            homed=context.axis_sample.homed,
+            powered=context.axis_sample.enabled,
             modal=modal,
             x_diameter=self._is_x_diameter(block, modal, status),
             swivel=self._swivel,
             velocity=self._measure_velocity(
-                context.sample, sum(not axis.rotary for axis in context.machine.axes)
+                context.axis_sample, sum(not axis.is_rotary for axis in context.machine.axes)
             ),
             rpm_command=context.spindle.commanded_rpm,
             rpm_actual=context.spindle.measured_rpm,
@@ -86,7 +86,7 @@ class SnapshotPublisher:
             no_count=context.switches.no_count,
             counts=control.program_run.will_count_part,
             absent=context.machine.missing_outputs,
-            outputs=frozenset(name for name, on in context.outputs.all_outputs().items() if on),
+            outputs=frozenset(name for name, on in context.commanded_outputs.get_all_outputs().items() if on),
             inputs=frozenset(name for name, on in context.inputs.items() if on),
             comment=modal.comment,
             message=cycle.message if cycle else "",
@@ -101,8 +101,8 @@ class SnapshotPublisher:
             cutting=counters.cutting_times_s,
             next_barred=status.next_part_block_reason,
             ends=counters.program_end_count,
-            underruns=counters.underruns,
-            hold_delay_s=context.lateness.hold_delay_s,
+            underruns=counters.underrun_count,
+            hold_delay_s=context.tick_lateness.hold_delay_s,
             max_following_error=control.supervisor.max_following_error,
             needs_proof=job is not None and (status.proof is None or status.proof.digest != job.digest),
             starts=status.start_action,
@@ -118,7 +118,7 @@ class SnapshotPublisher:
             begun=counters.started_run_count,
             wheel=control.handwheel.axis,
             wheel_ended=control.handwheel.end_reason,
-            unknown=context.unknown_items,
+            unknown=context.unknown_parts,
             drive_test=control.drive_tester.state,
             touch_phase=control.touch_off.phase,
             touched=control.touch_off.last_result,

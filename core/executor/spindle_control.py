@@ -32,7 +32,7 @@ class SpindleRequest(NamedTuple):
     """
 
     rpm: float
-    surface_speed: float | None = None
+    surface_speed_mm_s: float | None = None
     min_rpm: float = 0.0
     max_rpm: float | None = None
 
@@ -198,7 +198,7 @@ class SpindleControl:
         self._let_go()
         self._send(0.0, self._now)
 
-    def prepare_safe_stop(self, *, coast: bool) -> list[tuple[str, Callable[[], None]]]:
+    def prepare_safe_stop(self, *, should_coast: bool) -> list[tuple[str, Callable[[], None]]]:
         """Return the steps of a safe stop of the spindle.
 
         Each step must be run even if another step raises an error. The call discards the request. The steps
@@ -206,25 +206,25 @@ class SpindleControl:
         """
         self._ask, self._in_band_since = None, None
         self._forget_waiting()
-        if coast:
+        if should_coast:
             self._coasting = True
         return [
             ("C", self._free_c),
-            ("the spindle orientation", self.orientation.release),
-            ("the spindle", partial(self._tell_off, coast=coast)),
+            ("the spindle orientation", self.orientation.release_spindle),
+            ("the spindle", partial(self._tell_off, coast=should_coast)),
         ]
 
     def _tell_off(self, *, coast: bool) -> None:
         if coast:
             self.commanded_rpm = 0.0
-            self._port.coast()
+            self._port.start_coasting()
         else:
             if self.commanded_rpm != 0.0:  # a repeated stop does not restart the time limit
                 self._record_fall(0.0, self._now)
             self.commanded_rpm = 0.0
-            self._port.run_at(0.0)
+            self._port.set_speed(0.0)
 
-    def engage_c_axis(self, *, orient: bool) -> bool:
+    def engage_c_axis(self, *, should_orient: bool) -> bool:
         """Switch the spindle to C-axis mode (M19, M89); return whether it is engaged.
 
         Raises DriverError if the drive rejects the change.
@@ -232,7 +232,7 @@ class SpindleControl:
         if self._lock is None:
             return True
         if not self._lock.is_c_ready():
-            self._lock.set_c_mode(True, orient)
+            self._lock.set_c_mode(True, should_orient)
         return self._lock.is_c_ready()
 
     def orient_spindle(self, angle: float, direction: int) -> bool:
@@ -241,7 +241,7 @@ class SpindleControl:
         A condition that prevents a spindle start also prevents orienting. Raises AlarmError or DriverError.
         """
         if self.start_inhibit_reason and self.orientation.angle_deg is None:
-            self.orientation.release()
+            self.orientation.release_spindle()
             return False
         return self.orientation.request_angle(angle, direction)
 
@@ -250,7 +250,7 @@ class SpindleControl:
         if not self.is_c_axis_ready:
             self._free_c()
         if self.orientation.angle_deg is None:
-            self.orientation.release()
+            self.orientation.release_spindle()
 
     @property
     def is_c_axis_ready(self) -> bool:
@@ -258,7 +258,7 @@ class SpindleControl:
         return self._lock is None or self._lock.is_c_ready()
 
     def _let_go(self) -> None:
-        self.orientation.release()
+        self.orientation.release_spindle()
         self._free_c()
 
     def _free_c(self) -> None:
@@ -324,10 +324,13 @@ class SpindleControl:
 
     def _request_rpm(self, request: SpindleRequest, max_rpm: float) -> float:
         """Return the unsigned speed of a request in rpm. ``max_rpm`` limits a surface speed."""
-        if request.surface_speed is None:
+        if request.surface_speed_mm_s is None:
             return abs(request.rpm)
         return find_surface_rpm(
-            request.surface_speed, self._radius, request.min_rpm, min(request.max_rpm or max_rpm, max_rpm)
+            request.surface_speed_mm_s,
+            self._radius,
+            request.min_rpm,
+            min(request.max_rpm or max_rpm, max_rpm),
         )
 
     def _send(self, rpm: float, now: float) -> None:
@@ -344,12 +347,12 @@ class SpindleControl:
             self._turned, self._stands = False, None
         self.commanded_rpm = rpm
         self._lay_out(self._max_css_rpm())
-        self._port.run_at(rpm)
+        self._port.set_speed(rpm)
 
     def _max_css_rpm(self) -> float:
         """Return the highest speed in rpm that the radius may require, or 0 without a surface speed."""
         ask = self._ask
-        if ask is None or ask.surface_speed is None:
+        if ask is None or ask.surface_speed_mm_s is None:
             return 0.0
         return min(min(ask.max_rpm or self.max_rpm, self.max_rpm) * self.override, self._model.max_rpm)
 

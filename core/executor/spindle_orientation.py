@@ -52,7 +52,7 @@ class OrientationControl:
         self._reached = self._reached or self._port.is_oriented()
         return self._reached
 
-    def release(self) -> None:
+    def release_spindle(self) -> None:
         """Release the requested angle, whether it has been reached or not."""
         asked, self._asked, self._reached = self._asked, None, False
         if asked is not None and self._port is not None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from core.executor.commands import START_UNCHECKED, Clearance, find_clearance
-from core.executor.control_status import ControlStatus, sync_modal_with_machine
+from core.executor.control_status import ControlStatus, sync_modal_state_with_machine
 from core.executor.job import Job, Proof, find_outdated_setting
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import MachineState, StartAction
@@ -27,7 +27,7 @@ _BUSY_STATES = {
     MachineState.FAULT: "an alarm is active: clear its cause and press Reset",
     MachineState.DISABLED: "the drives are off: switch them on",
     MachineState.JOG: "the machine is being jogged",
-    MachineState.HOME: "the machine is homing",
+    MachineState.HOMING: "the machine is homing",
 }
 
 
@@ -41,7 +41,7 @@ def is_guard_open(context: MachineContext) -> bool:
 
 def find_station_refusal(context: MachineContext) -> str:
     """Return the condition of the operator station that prevents a cycle, or an empty string."""
-    if context.signals.hold_requested:
+    if context.signals.is_hold_requested:
         return "feed hold is pressed"
     if is_guard_open(context):
         return "the guard is open: close it"
@@ -63,7 +63,7 @@ def find_program_collet_refusal(context: MachineContext) -> str:
     If the program has opened the collet, the operator must press Reset before closing the collet.
     """
     why = find_collet_refusal(context)
-    if why and not context.outputs.outputs().get("collet", True):
+    if why and not context.commanded_outputs.get_outputs().get("collet", True):
         return (
             "the program has opened the collet, so the spindle does not start: press Reset, "
             "close the collet and start again"
@@ -79,9 +79,11 @@ def find_state_refusal(context: MachineContext, state: MachineState) -> str:
         return find_station_refusal(context)
     if context.ports.blocks is not None and context.ports.blocks.state().start_refusal:
         return context.ports.blocks.state().start_refusal
-    name = context.machine.displayed_axis_name
+    name = context.machine.get_displayed_axis_name
     away = [
-        name(a.name) for a, homed in zip(context.machine.axes, context.sample.homed, strict=True) if not homed
+        name(a.name)
+        for a, homed in zip(context.machine.axes, context.axis_sample.homed, strict=True)
+        if not homed
     ]
     if away:
         return Message("{away} must be homed first", away=", ".join(away))
@@ -157,14 +159,14 @@ _NOTHING = {
 _POSITION_TOLERANCE = 0.01  # mm or degrees, tolerance between the axes and the planned start position
 
 
-def selected_job(status: ControlStatus) -> Job | None:
+def get_selected_job(status: ControlStatus) -> Job | None:
     """Return the job that Cycle Start would run, or None."""
     return status.job if status.start_action is StartAction.PROGRAM else status.prepared_job
 
 
 def find_start_refusal(context: MachineContext, state: MachineState, status: ControlStatus) -> str:
     """Return why Cycle Start is refused now, or an empty string if it may start."""
-    job, proof = selected_job(status), status.proof
+    job, proof = get_selected_job(status), status.proof
     if status.start_action is not StartAction.PROGRAM:
         proof = status.prepared_proof
     if job is None and status.start_action in _NOTHING:
@@ -182,7 +184,7 @@ def find_first_move_refusal(
 
     Both are empty if the first move is permitted.
     """
-    job = selected_job(status)
+    job = get_selected_job(status)
     if not status.requires_clearance or job is None:
         return "", ""
     found = find_first_move_clearance(context, status, run_count)
@@ -198,7 +200,7 @@ def find_first_move_clearance(
 
     If ``for_repeat`` is True, the clearance is for the first move after Cycle Repeat.
     """
-    job, known = selected_job(status), status.clearances
+    job, known = get_selected_job(status), status.clearances
     if for_repeat:
         job = status.job
     elif status.start_action is not StartAction.PROGRAM:
@@ -227,13 +229,13 @@ def _find_change(context: MachineContext, status: ControlStatus, job: Job | None
         return ""
     begin = job.setup.begin
     if begin is None:
-        old = find_outdated_setting(job, status.modal)
+        old = find_outdated_setting(job, status.modal_state)
         return (
             Message("{old}, but the program does not specify this setting; load the program again", old=old)
             if old
             else ""
         )
-    now = sync_modal_with_machine(status.modal, context)
+    now = sync_modal_state_with_machine(status.modal_state, context)
     if not begin.is_mdi_line:
         return _find_restart_change(status, job, begin, now)
     same = now == begin.checkpoint.modal
@@ -276,7 +278,7 @@ def _find_restart_change(status: ControlStatus, job: Job, begin: PassStart, now:
 
 
 SPINDLE_FUNCTION = "spindle"
-READING_TIME_S = 0.3  # s for which an announcement must have been displayed before a start
+MIN_READING_TIME_S = 0.3  # s for which an announcement must have been displayed before a start
 _VALUE_CHANGE_FRACTION = 0.1  # relative change of a value that makes a new announcement
 
 
@@ -285,12 +287,12 @@ class AnnouncedStart(NamedTuple):
 
     ``function_name`` identifies the function, and the operator reads ``text``. ``displayed_value`` is a
     value of the function, such as the rpm of a spindle. A large change of this value creates a new
-    announcement. ``start_function`` turns the function on after the announced start.
+    announcement. ``turn_on`` turns the function on after the announced start.
     """
 
     function_name: str
     text: str
-    start_function: Callable[[], None]
+    turn_on: Callable[[], None]
     displayed_value: float = 0.0
 
 
@@ -317,14 +319,14 @@ class StartAnnouncement:
         """
         for item in self._items(function_name):
             since, figure = self._since.get(item.function_name, (math.inf, 0.0))
-            if now - since < READING_TIME_S - 1e-9 or _differ(item.displayed_value, figure):
+            if now - since < MIN_READING_TIME_S - 1e-9 or _differ(item.displayed_value, figure):
                 return Message("read this message first: {item}; then start again", item=item.text)
         return ""
 
     def start_functions(self, function_name: str = "") -> None:
         """Turn on the named function, or all announced functions, after a permitted start."""
         for item in self._items(function_name):
-            item.start_function()
+            item.turn_on()
 
     def _items(self, what: str = "") -> list[AnnouncedStart]:
         return [item for source in self.sources for item in source() if what in {"", item.function_name}]

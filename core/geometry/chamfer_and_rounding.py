@@ -14,9 +14,9 @@ from core.geometry.lines_and_arcs import (
     Arc,
     Element,
     Line,
-    extended_intersections,
-    left_normal,
-    turn_angle,
+    compute_turn_angle,
+    find_extended_intersections,
+    get_left_normal,
 )
 from core.message import CodedError, Message
 
@@ -64,7 +64,7 @@ def chamfer(first_element: Element, second_element: Element, leg: float) -> tupl
     out = first.end_direction if first.length > SAME_POINT_TOLERANCE_MM else first_element.start_direction
     into = last.start_direction if last.length > SAME_POINT_TOLERANCE_MM else second_element.end_direction
     cut = between.start_direction
-    if turn_angle(out, cut) * angle <= 0.0 or turn_angle(cut, into) * angle <= 0.0:
+    if compute_turn_angle(out, cut) * angle <= 0.0 or compute_turn_angle(cut, into) * angle <= 0.0:
         raise CornerError("the chamfer would cross one of the two moves", "crosses")
     return first, between, last
 
@@ -74,7 +74,7 @@ def _turn_between(before: Element, after: Element) -> float:
     for element in (before, after):
         if element.length < SAME_POINT_TOLERANCE_MM:
             raise CornerTooLargeError(0.0, is_first_move=element is before)
-    angle = turn_angle(before.end_direction, after.start_direction)
+    angle = compute_turn_angle(before.end_direction, after.start_direction)
     if abs(angle) < STRAIGHT_TOLERANCE_RAD:
         raise NoCornerError("the two moves have the same direction", "no-corner")
     if abs(angle) > pi - STRAIGHT_TOLERANCE_RAD:
@@ -94,8 +94,8 @@ def _shorten(before: Element, after: Element, leg: float) -> tuple[Element, Elem
         before.length - _removed_length(before, leg, is_first=True),
         _removed_length(after, leg, is_first=False),
     )
-    return before.section_between(before.start, before.point_at(max(end, 0.0))), after.section_between(
-        after.point_at(start), after.end
+    return before.cut_section(before.start, before.get_point(max(end, 0.0))), after.cut_section(
+        after.get_point(start), after.end
     )
 
 
@@ -135,7 +135,7 @@ def make_rounding(
     """
     if isinstance(first_element, Line) and isinstance(second_element, Line):
         return _fillet(first_element, second_element, radius)
-    angle = turn_angle(first_element.end_direction, second_element.start_direction)
+    angle = compute_turn_angle(first_element.end_direction, second_element.start_direction)
     if abs(angle) < STRAIGHT_TOLERANCE_RAD:
         raise NoCornerError("the two moves have the same direction", "no-corner")
     side = radius if angle > 0 else -radius
@@ -146,8 +146,12 @@ def make_rounding(
             Message("the arc does not fit one of the two moves: {problem}", problem=problem), "no-arc"
         ) from None
     touched = [
-        (first_element.distance_from_start(centre), second_element.distance_from_start(centre), centre)
-        for centre in extended_intersections(*aside)
+        (
+            first_element.get_distance_from_start(centre),
+            second_element.get_distance_from_start(centre),
+            centre,
+        )
+        for centre in find_extended_intersections(*aside)
     ]
     fitting = [
         (first_element.length - end + start, end, start, centre)
@@ -160,8 +164,8 @@ def make_rounding(
             "no arc of this radius is tangent to both moves within their length", "no-touching-arc"
         )
     _, end, start, centre = min(fitting)
-    first = first_element.section_between(first_element.start, first_element.point_at(end))
-    last = second_element.section_between(second_element.point_at(start), second_element.end)
+    first = first_element.cut_section(first_element.start, first_element.get_point(end))
+    last = second_element.cut_section(second_element.get_point(start), second_element.end)
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
 
@@ -169,7 +173,7 @@ def _fillet(before: Line, after: Line, radius: float) -> tuple[Element, Arc, Ele
     angle = _turn_between(before, after)
     first, last = _shorten(before, after, radius * tan(abs(angle) / 2))
     side = radius if angle > 0 else -radius
-    left = left_normal(before.end_direction)
+    left = get_left_normal(before.end_direction)
     centre = first.end[0] + left[0] * side, first.end[1] + left[1] * side
     return first, Arc(first.end, last.start, centre, clockwise=angle < 0), last
 
@@ -187,7 +191,10 @@ def find_chamfer_leg(first_element: Element, second_element: Element, length: fl
         # The chamfer and its two legs are an isosceles triangle.
         return length / (
             2.0
-            * max(abs(cos(turn_angle(first_element.end_direction, second_element.start_direction) / 2)), 1e-9)
+            * max(
+                abs(cos(compute_turn_angle(first_element.end_direction, second_element.start_direction) / 2)),
+                1e-9,
+            )
         )
     _turn_between(first_element, second_element)
     most = min(_max_leg(first_element), _max_leg(second_element))
@@ -208,12 +215,12 @@ def _found(before: Element, after: Element, length: float, short: float, long: f
 
 def _chamfer_length(before: Element, after: Element, leg: float) -> float:
     """Return the length of the chamfer with this leg."""
-    one = before.point_at(before.length - _way(before, leg))
-    return dist(one, after.point_at(_way(after, leg)))
+    one = before.get_point(before.length - _way(before, leg))
+    return dist(one, after.get_point(_way(after, leg)))
 
 
 def _max_leg(element: Element) -> float:
     """Return the longest leg that ends on the element."""
     if isinstance(element, Line):
         return element.length
-    return 2.0 * element.radius * sin(min(abs(element.sweep), pi) / 2.0)
+    return 2.0 * element.radius * sin(min(abs(element.sweep_rad), pi) / 2.0)

@@ -13,12 +13,12 @@ from math import dist
 
 from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Line, Point
 from core.geometry.pocket_area import (
-    AreaCheck,
+    AreaChecker,
     AreaError,
     ElementLoop,
-    Winding,
-    inset_loops,
+    WindingCalculator,
     is_counterclockwise,
+    make_inset_loops,
     start_loop_near,
 )
 from core.message import Message
@@ -54,7 +54,10 @@ class _AreaPatch:
     inner: list[_AreaPatch] = field(default_factory=list)
 
     def holds(self, point: Point) -> bool:
-        return sum(Winding(loop).winding_number(point) for loop in (self.outer, *self.holes)) > 0
+        return (
+            sum(WindingCalculator(loop).compute_winding_number(point) for loop in (self.outer, *self.holes))
+            > 0
+        )
 
 
 def make_clearing_rings(
@@ -63,7 +66,7 @@ def make_clearing_rings(
     ring_distance: float,
     radius: float,
     *,
-    conventional: bool,
+    is_conventional: bool,
     position: Point,
 ) -> list[ClearingRing]:
     """Return the rings that clear an area.
@@ -72,13 +75,13 @@ def make_clearing_rings(
     If ``conventional`` is True, the rings are clockwise (conventional milling with M3). Raises AreaError if
     the tool does not fit.
     """
-    outmost = _find_patches(inset_loops(area, first_inset))
+    outmost = _find_patches(make_inset_loops(area, first_inset))
     if not outmost:
         raise AreaError("the tool does not fit anywhere inside the contour")
     layer, apart = outmost, first_inset
     for _ in range(_MAX_RINGS):
         apart += ring_distance
-        within = _find_patches(inset_loops(area, apart))
+        within = _find_patches(make_inset_loops(area, apart))
         for patch in within:
             home = next((each for each in layer if each.holds(patch.outer[0].start)), None)
             (home.inner if home is not None else outmost).append(patch)
@@ -90,7 +93,7 @@ def make_clearing_rings(
             Message("clearing needs more than {most_rings} concentric passes", most_rings=_MAX_RINGS)
         )
     return _order_rings(
-        outmost, AreaCheck(area), first_inset, radius, conventional=conventional, position=position
+        outmost, AreaChecker(area), first_inset, radius, conventional=is_conventional, position=position
     )
 
 
@@ -101,7 +104,14 @@ def _find_patches(loops: Sequence[ElementLoop]) -> list[_AreaPatch]:
     for hole in loops:
         if is_counterclockwise(hole):
             continue
-        home = next((each for each in found if Winding(each.outer).winding_number(hole[0].start) > 0), None)
+        home = next(
+            (
+                each
+                for each in found
+                if WindingCalculator(each.outer).compute_winding_number(hole[0].start) > 0
+            ),
+            None,
+        )
         if home is None:
             raise AreaError("an island touches the edge of its pocket")
         home.holes.append(hole)
@@ -114,7 +124,7 @@ def _size(loop: ElementLoop) -> float:
 
 def _order_rings(
     outmost: Sequence[_AreaPatch],
-    room: AreaCheck,
+    room: AreaChecker,
     distance: float,
     radius: float,
     *,
@@ -155,4 +165,4 @@ def _iter_inner_first(
 
 
 def _sense(loop: ElementLoop, *, against: bool) -> ElementLoop:
-    return [element.reversed() for element in reversed(loop)] if against else list(loop)
+    return [element.make_reversed() for element in reversed(loop)] if against else list(loop)

@@ -25,12 +25,12 @@ from core.geometry.lines_and_arcs import (
     Element,
     Line,
     Point,
+    compute_distance_to_point,
+    compute_min_distance,
+    compute_turn_angle,
     contains_point,
-    distance_to_point,
-    intersections,
-    left_normal,
-    min_distance,
-    turn_angle,
+    find_intersections,
+    get_left_normal,
 )
 
 # mm. Offsets whose ends are closer than this are joined at their midpoint. Programs round their numbers to
@@ -46,7 +46,7 @@ REVERSAL_TOLERANCE_RAD = 1e-6
 
 # Number of elements before and after that are checked for a second wall. The output is delayed by the same
 # number, so that it is not used before it has been checked.
-WINDOW_ELEMENTS = 128
+GOUGE_CHECK_ELEMENT_COUNT = 128
 # mm by which a path may be closer, because offsets of tangent elements are joined across rounding errors.
 _NEARER = 0.0005
 # mm between the end of one piece and the start of the next. Short arcs in rounded words are tangent only to
@@ -91,8 +91,8 @@ def offset_element(element: Element, distance_left: float) -> Element:
     A negative value offsets the element to the right. Arcs remain concentric. Raises GougeError (index 0)
     for an arc whose radius would vanish.
     """
-    ax, az = left_normal(element.start_direction)
-    bx, bz = left_normal(element.end_direction)
+    ax, az = get_left_normal(element.start_direction)
+    bx, bz = get_left_normal(element.end_direction)
     start = element.start[0] + ax * distance_left, element.start[1] + az * distance_left
     end = element.end[0] + bx * distance_left, element.end[1] + bz * distance_left
     if isinstance(element, Line):
@@ -110,7 +110,7 @@ class OffsetBuilder:
     ends square to the contour. Each element must have a length and must start at the end of the previous
     element. GougeError is raised if an inside arc is too small, if an element vanishes or would be
     reversed, or if the path is closer to any element than the distance. A second wall that is more than
-    WINDOW_ELEMENTS elements away is not detected.
+    GOUGE_CHECK_ELEMENT_COUNT elements away is not detected.
     """
 
     def __init__(self, distance_left: float) -> None:
@@ -133,10 +133,10 @@ class OffsetBuilder:
             moved = self._join_offsets(*self._last, element, moved, index)
         self._guard.contour(index, element)
         self._last = element, moved
-        while len(self._ready) > WINDOW_ELEMENTS:
+        while len(self._ready) > GOUGE_CHECK_ELEMENT_COUNT:
             yield self._ready.popleft()
 
-    def finish(self) -> Iterator[OffsetPiece]:
+    def finish_contour(self) -> Iterator[OffsetPiece]:
         """Yield the remaining pieces after the last element. Raises GougeError."""
         if self._last is not None:
             self._keep(self._count - 1, self._last[1], corner=False)
@@ -149,7 +149,7 @@ class OffsetBuilder:
     ) -> Element:
         """Join the offsets of two elements; return the second offset with its new start."""
         corner = after.start
-        angle = turn_angle(before.end_direction, after.start_direction)
+        angle = compute_turn_angle(before.end_direction, after.start_direction)
         if abs(angle) > pi - REVERSAL_TOLERANCE_RAD and self._distance:
             raise GougeError(index, "the move reverses the direction of the previous move")
         if dist(first_offset.end, second_offset.start) <= JOIN_TOLERANCE_MM:
@@ -158,7 +158,7 @@ class OffsetBuilder:
             self._keep(
                 index - 1, _cut_offset(first_offset, first_offset.start, joint, index - 1), corner=False
             )
-            return second_offset.section_between(joint, second_offset.end)
+            return second_offset.cut_section(joint, second_offset.end)
         if (angle > 0) != (self._distance > 0):
             self._keep(index - 1, first_offset, corner=False)
             around = Arc(first_offset.end, second_offset.start, corner, clockwise=angle < 0)
@@ -178,7 +178,7 @@ def offset_known_contour(elements: Iterable[Element], distance_left: float) -> l
     """Return the complete offset of a known contour. Raises GougeError as ``OffsetBuilder`` does."""
     offset = OffsetBuilder(distance_left)
     found = [piece for element in elements for piece in offset.add(element)]
-    return [*found, *offset.finish()]
+    return [*found, *offset.finish_contour()]
 
 
 def _middle(a: Point, b: Point) -> Point:
@@ -187,7 +187,7 @@ def _middle(a: Point, b: Point) -> Point:
 
 def _inside_corner(first_offset: Element, second_offset: Element, corner: Point, index: int) -> Point:
     """Return the intersection of two offsets that is nearest to their inside corner."""
-    found = intersections(first_offset, second_offset)
+    found = find_intersections(first_offset, second_offset)
     if not found:
         shorter = index - 1 if first_offset.length < second_offset.length else index
         raise GougeError(shorter, "the neighboring moves leave no room for the offset path of the move")
@@ -200,11 +200,11 @@ def _cut_offset(element: Element, start: Point, end: Point, index: int) -> Eleme
     # otherwise an arc could become a full circle
     if (
         not whole
-        and element.distance_from_start(end) - element.distance_from_start(start)
+        and element.get_distance_from_start(end) - element.get_distance_from_start(start)
         < 2 * SAME_POINT_TOLERANCE_MM
     ):
         raise GougeError(index, "the neighboring moves leave no room for the offset path of the move")
-    return element.section_between(start, end)
+    return element.cut_section(start, end)
 
 
 class _GougeGuard:
@@ -212,8 +212,8 @@ class _GougeGuard:
 
     def __init__(self, apart: float) -> None:
         self._least = apart - OFFSET_TOLERANCE_MM
-        self._contour: deque[tuple[Element, BoundingBox]] = deque(maxlen=WINDOW_ELEMENTS)
-        self._path: deque[tuple[Element, BoundingBox]] = deque(maxlen=WINDOW_ELEMENTS)
+        self._contour: deque[tuple[Element, BoundingBox]] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
+        self._path: deque[tuple[Element, BoundingBox]] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
 
     def contour(self, index: int, element: Element) -> None:
         box = element.bounding_box
@@ -237,7 +237,7 @@ class _GougeGuard:
         for other, (low_x, high_x, low_z, high_z) in others:
             if low_x > x1 or high_x < x0 or low_z > z1 or high_z < z0:
                 continue  # true for nearly all elements; the exact check takes a hundred times as long
-            if min_distance(element, other) < least:
+            if compute_min_distance(element, other) < least:
                 return True
         return False
 
@@ -252,8 +252,8 @@ class TrimError(Exception):
 def make_region_edges(element: Element, distance: float) -> list[Element]:
     """Return curves that contain the edge of the region within ``distance`` mm of an element."""
     return [
-        *offset_to_left(element, distance),
-        *offset_to_left(element, -distance),
+        *offset_element_to_left(element, distance),
+        *offset_element_to_left(element, -distance),
         *(_ring(p, distance) for p in _ends(element)),
     ]
 
@@ -297,12 +297,12 @@ class ElementIndex:
 
 def _offset_pieces(elements: Sequence[Element], distance: float) -> list[Element]:
     """Return the left offset of each element, and an arc around each corner that turns right."""
-    pieces = offset_to_left(elements[0], distance)
+    pieces = offset_element_to_left(elements[0], distance)
     for before, after in pairwise(elements):
-        angle = turn_angle(before.end_direction, after.start_direction)
+        angle = compute_turn_angle(before.end_direction, after.start_direction)
         if angle < 0:
             pieces += _corner_arc(before, after, distance)
-        pieces += offset_to_left(after, distance)
+        pieces += offset_element_to_left(after, distance)
     return pieces
 
 
@@ -313,14 +313,14 @@ def _corner_arc(before: Element, after: Element, distance: float) -> list[Elemen
     """
     first, last = (
         (after.start[0] + side[0] * distance, after.start[1] + side[1] * distance)
-        for side in (left_normal(before.end_direction), left_normal(after.start_direction))
+        for side in (get_left_normal(before.end_direction), get_left_normal(after.start_direction))
     )
     return (
         [] if dist(first, last) < SAME_POINT_TOLERANCE_MM else [Arc(first, last, after.start, clockwise=True)]
     )
 
 
-def offset_to_left(element: Element, distance: float) -> list[Element]:
+def offset_element_to_left(element: Element, distance: float) -> list[Element]:
     """Return the element offset to its left, as a list.
 
     The list is empty for an arc whose radius would vanish.
@@ -345,13 +345,13 @@ def split_at_edges(piece: Element, edges: ElementIndex) -> list[Element]:
     length = piece.length
     at = {0.0: piece.start, length: piece.end}
     for edge in edges.find_near(piece.bounding_box, SAME_POINT_TOLERANCE_MM):
-        for point in intersections(piece, edge):
-            along = piece.distance_from_start(point)
+        for point in find_intersections(piece, edge):
+            along = piece.get_distance_from_start(point)
             if SAME_POINT_TOLERANCE_MM < along < length - SAME_POINT_TOLERANCE_MM:
                 at[along] = point
     places = sorted(at)
     return [
-        piece.section_between(at[a], at[b])
+        piece.cut_section(at[a], at[b])
         for a, b in pairwise(places)
         if b - a > SAME_POINT_TOLERANCE_MM or len(places) == 2
     ]
@@ -362,9 +362,9 @@ def _is_far_enough(part: Element, contour: ElementIndex, min_distance: float) ->
 
     If so, the whole part is far enough.
     """
-    x, z = middle = part.point_at(part.length / 2)
+    x, z = middle = part.get_point(part.length / 2)
     return all(
-        distance_to_point(element, middle) >= min_distance
+        compute_distance_to_point(element, middle) >= min_distance
         for element in contour.find_near((x, x, z, z), min_distance)
     )
 
@@ -455,10 +455,10 @@ def _split_by_depth(element: Element) -> list[Element]:
     turns = {
         at: point
         for point in ((cx - radius, cz), (cx + radius, cz))
-        if _TOUCH < (at := element.distance_from_start(point)) < length - _TOUCH
+        if _TOUCH < (at := element.get_distance_from_start(point)) < length - _TOUCH
     }
     points = [element.start, *(turns[at] for at in sorted(turns)), element.end]
-    return [element.section_between(a, b) for a, b in pairwise(points)]
+    return [element.cut_section(a, b) for a, b in pairwise(points)]
 
 
 def _span_at_depth(wall: Sequence[Element], depth: float) -> ZSpan | None:

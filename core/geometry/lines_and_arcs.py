@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass
 from math import acos, atan2, cos, dist, hypot, pi, sin, sqrt
 
-FULL_TURN = 2 * math.pi
+FULL_TURN_RAD = 2 * math.pi
 
 # mm. Ends of an arc that are closer than this are one point and make a full circle. The value is far below
 # the control's resolution of 1.27 µm.
@@ -27,46 +27,46 @@ TOUCH_TOLERANCE_MM = 1e-6
 PARALLEL_TOLERANCE = 1e-9
 
 
-def arc_sweep(
-    x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
+def compute_arc_sweep(
+    start_x: float, start_z: float, x: float, z: float, center_x: float, center_z: float, is_clockwise: bool
 ) -> tuple[float, float]:
     """Return the start angle and the signed sweep of an arc in radians, measured from Z+ toward X+.
 
     Seen from above (X+ down, Z+ right), this direction is clockwise, so G02 has a positive sweep. Equal
     start and end points result in a full circle.
     """
-    start = math.atan2(x0 - cx, z0 - cz)
-    if math.hypot(x - x0, z - z0) < SAME_POINT_TOLERANCE_MM:
-        return start, FULL_TURN if clockwise else -FULL_TURN
-    turned = (math.atan2(x - cx, z - cz) - start) % FULL_TURN
-    return start, turned if clockwise else turned - FULL_TURN
+    start = math.atan2(start_x - center_x, start_z - center_z)
+    if math.hypot(x - start_x, z - start_z) < SAME_POINT_TOLERANCE_MM:
+        return start, FULL_TURN_RAD if is_clockwise else -FULL_TURN_RAD
+    turned = (math.atan2(x - center_x, z - center_z) - start) % FULL_TURN_RAD
+    return start, turned if is_clockwise else turned - FULL_TURN_RAD
 
 
-def arc_extent(
-    x0: float, z0: float, x: float, z: float, cx: float, cz: float, clockwise: bool
+def compute_arc_extent(
+    start_x: float, start_z: float, x: float, z: float, center_x: float, center_z: float, is_clockwise: bool
 ) -> tuple[float, float, float, float]:
     """Return the extent of an arc as (minimum x, maximum x, minimum z, maximum z), in mm."""
-    a, b, c, d = x0 - cx, z0 - cz, x - cx, z - cz
+    a, b, c, d = start_x - center_x, start_z - center_z, x - center_x, z - center_z
     turned = b * c - a * d
     if (
         a * c > 0.0
         and b * d > 0.0
-        and (turned > 0.0 if clockwise else turned < 0.0)
-        and abs(x - x0) + abs(z - z0) > 2.0 * SAME_POINT_TOLERANCE_MM
+        and (turned > 0.0 if is_clockwise else turned < 0.0)
+        and abs(x - start_x) + abs(z - start_z) > 2.0 * SAME_POINT_TOLERANCE_MM
     ):  # within a quadrant, the ends are the extremes
-        return min(x0, x), max(x0, x), min(z0, z), max(z0, z)
-    start, sweep = arc_sweep(x0, z0, x, z, cx, cz, clockwise)
-    radius = math.hypot(x0 - cx, z0 - cz)
+        return min(start_x, x), max(start_x, x), min(start_z, z), max(start_z, z)
+    start, sweep = compute_arc_sweep(start_x, start_z, x, z, center_x, center_z, is_clockwise)
+    radius = math.hypot(start_x - center_x, start_z - center_z)
     low, high = sorted((start, start + sweep))
-    xs, zs = [x0, x], [z0, z]
+    xs, zs = [start_x, x], [start_z, z]
     quarter = math.pi / 2
     for k in range(math.ceil(low / quarter), math.floor(high / quarter) + 1):
-        xs.append(cx + radius * math.sin(k * quarter))
-        zs.append(cz + radius * math.cos(k * quarter))
+        xs.append(center_x + radius * math.sin(k * quarter))
+        zs.append(center_z + radius * math.cos(k * quarter))
     return min(xs), max(xs), min(zs), max(zs)
 
 
-def center_from_radius(start: Point, end: Point, radius: float, *, clockwise: bool) -> Point:
+def find_arc_center(start: Point, end: Point, radius: float, *, is_clockwise: bool) -> Point:
     """Return the center of the arc of at most 180 degrees from ``start`` to ``end``.
 
     If the chord is longer than the diameter, the result is the midpoint of the chord. Raises ValueError if
@@ -77,15 +77,15 @@ def center_from_radius(start: Point, end: Point, radius: float, *, clockwise: bo
     if chord == 0.0:
         raise ValueError("an arc given by its radius needs two different ends")
     rise = sqrt(max(radius * radius - chord * chord / 4, 0.0)) / chord
-    side = rise if clockwise else -rise  # the center of a clockwise arc is to the right of its direction
+    side = rise if is_clockwise else -rise  # the center of a clockwise arc is to the right of its direction
     return (start[0] + end[0]) / 2 + side * dz, (start[1] + end[1]) / 2 - side * dx
 
 
-def arc_length(start: Point, end: Point, center: Point, *, clockwise: bool) -> float:
+def compute_arc_length(start: Point, end: Point, center: Point, *, is_clockwise: bool) -> float:
     """Return the length of an arc, or of a spiral if the radii at its ends differ slightly."""
     first = hypot(start[0] - center[0], start[1] - center[1])
     last = hypot(end[0] - center[0], end[1] - center[1])
-    _, sweep = arc_sweep(*start, *end, *center, clockwise)
+    _, sweep = compute_arc_sweep(*start, *end, *center, is_clockwise)
     return (first + last) / 2 * abs(sweep)
 
 
@@ -119,12 +119,12 @@ class Line:
         (x0, z0), (x1, z1) = self.start, self.end
         return min(x0, x1), max(x0, x1), min(z0, z1), max(z0, z1)
 
-    def point_at(self, distance: float) -> Point:
+    def get_point(self, distance: float) -> Point:
         """Return the point at ``distance`` mm from the start, on the infinite line."""
         dx, dz = self.start_direction
         return self.start[0] + dx * distance, self.start[1] + dz * distance
 
-    def distance_from_start(self, point: Point) -> float:
+    def get_distance_from_start(self, point: Point) -> float:
         """Return the distance in mm from the start to the projection of ``point`` on the infinite line.
 
         The distance is negative before the start.
@@ -132,11 +132,11 @@ class Line:
         dx, dz = self.start_direction
         return (point[0] - self.start[0]) * dx + (point[1] - self.start[1]) * dz
 
-    def section_between(self, start: Point, end: Point) -> Line:
+    def cut_section(self, start: Point, end: Point) -> Line:
         """Return the section of the line between two of its points."""
         return Line(start, end)
 
-    def reversed(self) -> Line:
+    def make_reversed(self) -> Line:
         """Return a line in the opposite direction."""
         return Line(self.end, self.start)
 
@@ -159,14 +159,14 @@ class Arc:
         return dist(self.start, self.center)
 
     @property
-    def sweep(self) -> float:
+    def sweep_rad(self) -> float:
         """Return the signed angle of the arc in radians, positive for a clockwise arc."""
-        return arc_sweep(*self.start, *self.end, *self.center, self.clockwise)[1]
+        return compute_arc_sweep(*self.start, *self.end, *self.center, self.clockwise)[1]
 
     @property
     def length(self) -> float:
         """Return the length of the arc, in mm."""
-        return self.radius * abs(self.sweep)
+        return self.radius * abs(self.sweep_rad)
 
     @property
     def start_direction(self) -> Point:
@@ -181,16 +181,16 @@ class Arc:
     @property
     def bounding_box(self) -> BoundingBox:
         """Return the bounding box of the arc."""
-        return arc_extent(*self.start, *self.end, *self.center, self.clockwise)
+        return compute_arc_extent(*self.start, *self.end, *self.center, self.clockwise)
 
-    def point_at(self, distance: float) -> Point:
+    def get_point(self, distance: float) -> Point:
         """Return the point at ``distance`` mm from the start, on the full circle."""
         radius = self.radius
         angle = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
         angle += distance / radius if self.clockwise else -distance / radius
         return self.center[0] + radius * sin(angle), self.center[1] + radius * cos(angle)
 
-    def distance_from_start(self, point: Point) -> float:
+    def get_distance_from_start(self, point: Point) -> float:
         """Return the distance in mm from the start to ``point`` along the circle.
 
         The distance of a point outside the arc is negative if the point is nearer to the start, and greater
@@ -198,17 +198,17 @@ class Arc:
         """
         angle = atan2(point[0] - self.center[0], point[1] - self.center[1])
         first = atan2(self.start[0] - self.center[0], self.start[1] - self.center[1])
-        turned = (angle - first if self.clockwise else first - angle) % FULL_TURN
-        off = FULL_TURN - abs(self.sweep)
-        if turned > FULL_TURN - off / 2:
-            turned -= FULL_TURN
+        turned = (angle - first if self.clockwise else first - angle) % FULL_TURN_RAD
+        off = FULL_TURN_RAD - abs(self.sweep_rad)
+        if turned > FULL_TURN_RAD - off / 2:
+            turned -= FULL_TURN_RAD
         return turned * self.radius
 
-    def section_between(self, start: Point, end: Point) -> Arc:
+    def cut_section(self, start: Point, end: Point) -> Arc:
         """Return the section of the arc between two of its points."""
         return Arc(start, end, self.center, self.clockwise)
 
-    def reversed(self) -> Arc:
+    def make_reversed(self) -> Arc:
         """Return an arc in the opposite direction."""
         return Arc(self.end, self.start, self.center, not self.clockwise)
 
@@ -221,7 +221,7 @@ class Arc:
 Element = Line | Arc
 
 
-def make_arc(start: Point, end: Point, center: Point, *, clockwise: bool) -> Arc:
+def make_arc(start: Point, end: Point, center: Point, *, is_clockwise: bool) -> Arc:
     """Return an arc whose center is moved to the perpendicular bisector of the chord.
 
     The radii at both ends are then equal. Programs round centers to the resolution, and the motion planner
@@ -230,10 +230,10 @@ def make_arc(start: Point, end: Point, center: Point, *, clockwise: bool) -> Arc
     dx, dz = end[0] - start[0], end[1] - start[1]
     chord = hypot(dx, dz)
     if chord < SAME_POINT_TOLERANCE_MM:
-        return Arc(start, end, center, clockwise)
+        return Arc(start, end, center, is_clockwise)
     ux, uz = dx / chord, dz / chord
     off = (center[0] - (start[0] + end[0]) / 2) * ux + (center[1] - (start[1] + end[1]) / 2) * uz
-    return Arc(start, end, (center[0] - off * ux, center[1] - off * uz), clockwise)
+    return Arc(start, end, (center[0] - off * ux, center[1] - off * uz), is_clockwise)
 
 
 def shift_element(element: Element, x: float, z: float) -> Element:
@@ -246,23 +246,23 @@ def shift_element(element: Element, x: float, z: float) -> Element:
     return Arc(start, end, (element.center[0] + x, element.center[1] + z), element.clockwise)
 
 
-def left_normal(direction: Point) -> Point:
+def get_left_normal(direction: Point) -> Point:
     """Return the unit vector to the left of a direction, seen from above."""
     return -direction[1], direction[0]
 
 
-def tangent_point(point: Point, center: Point, radius: float, *, clockwise: bool) -> Point:
+def find_tangent_point(point: Point, center: Point, radius: float, *, is_clockwise: bool) -> Point:
     """Return the point at which a line from a point outside a circle is tangent to the circle.
 
     The path follows the line and then the circle in the direction ``clockwise``.
     """
     half = acos(min(1.0, radius / dist(point, center)))
     # In the direction of the circle, the tangent point is ``half`` after the direction of the point.
-    angle = atan2(point[0] - center[0], point[1] - center[1]) + (half if clockwise else -half)
+    angle = atan2(point[0] - center[0], point[1] - center[1]) + (half if is_clockwise else -half)
     return center[0] + radius * sin(angle), center[1] + radius * cos(angle)
 
 
-def turn_angle(first: Point, second: Point) -> float:
+def compute_turn_angle(first: Point, second: Point) -> float:
     """Return the angle in radians from one direction to the next, positive to the left, in (-pi, pi]."""
     cross = first[0] * second[1] - first[1] * second[0]
     dot = first[0] * second[0] + first[1] * second[1]
@@ -270,25 +270,25 @@ def turn_angle(first: Point, second: Point) -> float:
     return pi if angle == -pi else angle
 
 
-def extended_intersections(a: Element, b: Element) -> list[Point]:
+def find_extended_intersections(first: Element, second: Element) -> list[Point]:
     """Return the intersections of the infinite lines or full circles of two elements, at most two points.
 
     A tangent point counts once. Elements on the same line or circle have no intersections.
     """
-    if isinstance(a, Line):
-        return _lines(a, b) if isinstance(b, Line) else _line_circle(a, b)
-    return _line_circle(b, a) if isinstance(b, Line) else _circles(a, b)
+    if isinstance(first, Line):
+        return _lines(first, second) if isinstance(second, Line) else _line_circle(first, second)
+    return _line_circle(second, first) if isinstance(second, Line) else _circles(first, second)
 
 
-def intersections(a: Element, b: Element) -> list[Point]:
+def find_intersections(first: Element, second: Element) -> list[Point]:
     """Return the points that both elements share, including their ends.
 
     For elements on the same line or circle, the list is empty.
     """
     return [
         point
-        for point in extended_intersections(a, b)
-        if contains_point(a, point) and contains_point(b, point)
+        for point in find_extended_intersections(first, second)
+        if contains_point(first, point) and contains_point(second, point)
     ]
 
 
@@ -296,7 +296,7 @@ def contains_point(element: Element, point: Point) -> bool:
     """Return whether a point on the infinite line or full circle of an element is within the element."""
     return (
         -SAME_POINT_TOLERANCE_MM
-        <= element.distance_from_start(point)
+        <= element.get_distance_from_start(point)
         <= element.length + SAME_POINT_TOLERANCE_MM
     )
 
@@ -307,16 +307,18 @@ def _lines(a: Line, b: Line) -> list[Point]:
     if abs(cross) < PARALLEL_TOLERANCE:
         return []
     dx, dz = b.start[0] - a.start[0], b.start[1] - a.start[1]
-    return [a.point_at((dx * bz - dz * bx) / cross)]
+    return [a.get_point((dx * bz - dz * bx) / cross)]
 
 
 def _line_circle(line: Line, arc: Arc) -> list[Point]:
-    foot = line.distance_from_start(arc.center)
-    off, radius = dist(line.point_at(foot), arc.center), arc.radius
+    foot = line.get_distance_from_start(arc.center)
+    off, radius = dist(line.get_point(foot), arc.center), arc.radius
     if off > radius + TOUCH_TOLERANCE_MM:
         return []
     half = sqrt(max(radius * radius - off * off, 0.0))
-    return [line.point_at(foot)] if half == 0.0 else [line.point_at(foot - half), line.point_at(foot + half)]
+    return (
+        [line.get_point(foot)] if half == 0.0 else [line.get_point(foot - half), line.get_point(foot + half)]
+    )
 
 
 def _circles(a: Arc, b: Arc) -> list[Point]:
@@ -335,27 +337,30 @@ def _circles(a: Arc, b: Arc) -> list[Point]:
     return [(x, z)] if half == 0.0 else [(x - uz * half, z + ux * half), (x + uz * half, z - ux * half)]
 
 
-def distance_to_point(element: Element, point: Point) -> float:
+def compute_distance_to_point(element: Element, point: Point) -> float:
     """Return the distance from a point to the nearest point of an element, in mm."""
-    at = element.distance_from_start(point)
+    at = element.get_distance_from_start(point)
     if 0.0 <= at <= element.length:
         if isinstance(element, Arc):
             return abs(dist(point, element.center) - element.radius)
-        return dist(point, element.point_at(at))
+        return dist(point, element.get_point(at))
     return min(dist(point, element.start), dist(point, element.end))
 
 
-def min_distance(a: Element, b: Element) -> float:
+def compute_min_distance(first: Element, second: Element) -> float:
     """Return the minimum distance between two elements in mm, or 0 if they intersect.
 
     The minimum is at an end of an element or on a common normal, which passes through the centers of arcs.
     """
-    if intersections(a, b):
+    if find_intersections(first, second):
         return 0.0
-    points_a, points_b = [a.start, a.end, *_facing_points(a, b)], [b.start, b.end, *_facing_points(b, a)]
+    points_a, points_b = (
+        [first.start, first.end, *_facing_points(first, second)],
+        [second.start, second.end, *_facing_points(second, first)],
+    )
     return min(
-        [distance_to_point(b, point) for point in points_a]
-        + [distance_to_point(a, point) for point in points_b]
+        [compute_distance_to_point(second, point) for point in points_a]
+        + [compute_distance_to_point(first, point) for point in points_b]
     )
 
 
@@ -364,8 +369,8 @@ def _facing_points(element: Element, other: Element) -> list[Point]:
     if isinstance(other, Line):
         return []
     if isinstance(element, Line):
-        foot = element.distance_from_start(other.center)
-        return [element.point_at(foot)] if 0.0 < foot < element.length else []
+        foot = element.get_distance_from_start(other.center)
+        return [element.get_point(foot)] if 0.0 < foot < element.length else []
     dx, dz = other.center[0] - element.center[0], other.center[1] - element.center[1]
     apart, radius = hypot(dx, dz), element.radius
     if apart < TOUCH_TOLERANCE_MM:
@@ -375,4 +380,4 @@ def _facing_points(element: Element, other: Element) -> list[Point]:
         (element.center[0] + rx, element.center[1] + rz),
         (element.center[0] - rx, element.center[1] - rz),
     )
-    return [point for point in both if 0.0 < element.distance_from_start(point) < element.length]
+    return [point for point in both if 0.0 < element.get_distance_from_start(point) < element.length]

@@ -6,8 +6,8 @@ are X and Y in mm.
 
 The offset is exact, because lines remain lines and arcs remain arcs. A point belongs to the inset area if
 no point of the boundary is closer than the distance. Every section of an offset element that is closer to
-any other element is therefore omitted (``offset_to_left``, ``split_at_edges``). This also applies if the
-area is divided into several parts or an island merges with a wall.
+any other element is therefore omitted (``offset_element_to_left``, ``split_at_edges``). This also applies if
+the area is divided into several parts or an island merges with a wall.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from math import ceil, dist, pi
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.contour_offset import ElementIndex, offset_to_left, split_at_edges
+from core.geometry.contour_offset import ElementIndex, offset_element_to_left, split_at_edges
 from core.geometry.lines_and_arcs import (
     SAME_POINT_TOLERANCE_MM,
     Arc,
     Element,
     Line,
     Point,
-    distance_to_point,
-    left_normal,
+    compute_distance_to_point,
+    compute_min_distance,
+    compute_turn_angle,
+    get_left_normal,
     make_arc,
-    min_distance,
-    turn_angle,
 )
 
 ElementLoop = list[Element]
@@ -63,7 +63,7 @@ def close_loop(elements: Sequence[Element]) -> ElementLoop:
 # --- inside or outside ----------------------------------------------------------------------------------
 
 
-class Winding:
+class WindingCalculator:
     """Calculator of the winding number of a loop around points that are not on the loop.
 
     Counterclockwise is positive.
@@ -78,7 +78,7 @@ class Winding:
         self._sense = np.array([(-1.0 if part.clockwise else 1.0) if isinstance(part, Arc) else 0.0
                                 for part in halves])  # fmt: skip
 
-    def winding_number(self, point: Point) -> int:
+    def compute_winding_number(self, point: Point) -> int:
         """Return the winding number of the loop around ``point``.
 
         The method adds the angles of the chords as seen from the point, and a full revolution for each arc
@@ -95,23 +95,23 @@ class Winding:
 
 def _split_large_arcs(element: Element) -> Iterator[Element]:
     """Yield the element. An arc of more than half a circle is divided into shorter arcs."""
-    if isinstance(element, Line) or abs(element.sweep) <= _HALF_TURN:
+    if isinstance(element, Line) or abs(element.sweep_rad) <= _HALF_TURN:
         yield element
         return
-    count = ceil(abs(element.sweep) / (pi / 2.0))
-    points = [element.start, *(element.point_at(element.length * at / count) for at in range(1, count))]
+    count = ceil(abs(element.sweep_rad) / (pi / 2.0))
+    points = [element.start, *(element.get_point(element.length * at / count) for at in range(1, count))]
     for start, end in pairwise((*points, element.end)):
-        yield element.section_between(start, end)
+        yield element.cut_section(start, end)
 
 
-def signed_area(loop: Sequence[Element]) -> float:
+def compute_signed_area(loop: Sequence[Element]) -> float:
     """Return the area within a closed loop in mm², which is negative for a clockwise loop."""
     total = 0.0
     for element in loop:
         (x0, y0), (x1, y1) = element.start, element.end
         total += x0 * y1 - x1 * y0
         if isinstance(element, Arc):
-            sweep = -element.sweep  # counterclockwise is positive
+            sweep = -element.sweep_rad  # counterclockwise is positive
             chord = (x0 - element.center[0], y0 - element.center[1])
             last = (x1 - element.center[0], y1 - element.center[1])
             total += element.radius**2 * sweep - (chord[0] * last[1] - chord[1] * last[0])
@@ -120,7 +120,7 @@ def signed_area(loop: Sequence[Element]) -> float:
 
 def is_counterclockwise(loop: Sequence[Element]) -> bool:
     """Return whether the loop is counterclockwise. The result is also True if the loop encloses no area."""
-    return signed_area(loop) > -_JOIN_TOLERANCE_MM * sum(element.length for element in loop)
+    return compute_signed_area(loop) > -_JOIN_TOLERANCE_MM * sum(element.length for element in loop)
 
 
 # --- boundary and offset ----------------------------------------------------------------------------------
@@ -155,11 +155,11 @@ def _divide_at_crossings(element: Element, every: ElementIndex) -> list[Element]
 
 def _cut(part: Element, at: Point) -> list[Element]:
     if (
-        distance_to_point(part, at) > SAME_POINT_TOLERANCE_MM
+        compute_distance_to_point(part, at) > SAME_POINT_TOLERANCE_MM
         or min(dist(at, part.start), dist(at, part.end)) <= 2 * SAME_POINT_TOLERANCE_MM
     ):
         return [part]
-    return [part.section_between(part.start, at), part.section_between(at, part.end)]
+    return [part.cut_section(part.start, at), part.cut_section(at, part.end)]
 
 
 def _orient_boundary(part: Element, contains_point: ContainsPoint) -> Element | None:
@@ -167,21 +167,21 @@ def _orient_boundary(part: Element, contains_point: ContainsPoint) -> Element | 
 
     The result is None if the area is on both sides of the part or on neither side.
     """
-    x, y = part.point_at(part.length / 2.0)
-    dx, dy = left_normal(_direction_halfway(part))
+    x, y = part.get_point(part.length / 2.0)
+    dx, dy = get_left_normal(_direction_halfway(part))
     left = contains_point((x + dx * _SIDE_OFFSET_MM, y + dy * _SIDE_OFFSET_MM))
     right = contains_point((x - dx * _SIDE_OFFSET_MM, y - dy * _SIDE_OFFSET_MM))
     if left == right:
         return None
-    return part if left else part.reversed()
+    return part if left else part.make_reversed()
 
 
 def _direction_halfway(part: Element) -> Point:
-    middle = part.point_at(part.length / 2.0)
-    return part.section_between(middle, part.end).start_direction
+    middle = part.get_point(part.length / 2.0)
+    return part.cut_section(middle, part.end).start_direction
 
 
-def inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLoop]:
+def make_inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLoop]:
     """Return the boundary of the points inside the loops that are at least ``distance`` mm from the loops.
 
     Raises AreaError if the boundary is not closed.
@@ -194,7 +194,7 @@ def inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLo
         return []
     every = ElementIndex(pieces)
     parts = [part for piece in pieces for part in split_at_edges(piece, every)]
-    within = [Winding(loop) for loop in loops]
+    within = [WindingCalculator(loop) for loop in loops]
     long = (part for part in parts if part.length > _MIN_PART_MM)
     kept = [part for part in long if _apart(part, contour, distance - _OFFSET_TOLERANCE_MM, within)]
     return _chain_loops(_remove_duplicates(kept))
@@ -203,20 +203,23 @@ def inset_loops(loops: Sequence[ElementLoop], distance: float) -> list[ElementLo
 def _offset_inward(loop: ElementLoop, distance: float) -> Iterator[Element]:
     """Yield each element offset to its left, and an arc around each corner that turns right."""
     for before, after in zip(loop, [*loop[1:], loop[0]], strict=True):
-        first, last = offset_to_left(before, distance), offset_to_left(after, distance)
+        first, last = offset_element_to_left(before, distance), offset_element_to_left(after, distance)
         for each in first:
             yield from _split_large_arcs(each)
-        if turn_angle(before.end_direction, after.start_direction) < 0.0 and first and last:
+        if compute_turn_angle(before.end_direction, after.start_direction) < 0.0 and first and last:
             start, end = first[0].end, last[0].start
             if dist(start, end) > SAME_POINT_TOLERANCE_MM:
                 yield from _split_large_arcs(Arc(start, end, after.start, clockwise=True))
 
 
-def _apart(part: Element, contour: ElementIndex, least: float, within: Sequence[Winding]) -> bool:
-    x, y = middle = part.point_at(part.length / 2.0)
-    if any(distance_to_point(element, middle) < least for element in contour.find_near((x, x, y, y), least)):
+def _apart(part: Element, contour: ElementIndex, least: float, within: Sequence[WindingCalculator]) -> bool:
+    x, y = middle = part.get_point(part.length / 2.0)
+    if any(
+        compute_distance_to_point(element, middle) < least
+        for element in contour.find_near((x, x, y, y), least)
+    ):
         return False
-    return sum(each.winding_number(middle) for each in within) > 0
+    return sum(each.compute_winding_number(middle) for each in within) > 0
 
 
 def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
@@ -228,7 +231,7 @@ def _remove_duplicates(parts: Sequence[Element]) -> list[Element]:
     for part in parts:
         if part.length < SAME_POINT_TOLERANCE_MM:
             continue
-        places = (*part.start, *part.end, *part.point_at(part.length / 2.0))
+        places = (*part.start, *part.end, *part.get_point(part.length / 2.0))
         key = tuple(round(value / (4 * SAME_POINT_TOLERANCE_MM)) for value in places)
         found.setdefault(key, part)
     return list(found.values())
@@ -290,7 +293,7 @@ def _turn_between(before: Element, after: Element) -> float:
 
     The caller selects the sharpest left turn, which separates loops that touch at a point.
     """
-    angle = turn_angle(before.end_direction, after.start_direction)
+    angle = compute_turn_angle(before.end_direction, after.start_direction)
     return angle if angle < _HALF_TURN else -pi  # a reversal comes last
 
 
@@ -302,7 +305,7 @@ def _close_gaps(loop: ElementLoop) -> ElementLoop:
         if element.start == here:
             made.append(element)
         elif isinstance(element, Arc):
-            made.append(make_arc(here, element.end, element.center, clockwise=element.clockwise))
+            made.append(make_arc(here, element.end, element.center, is_clockwise=element.clockwise))
         elif dist(here, element.end) > SAME_POINT_TOLERANCE_MM:
             made.append(Line(here, element.end))
         else:
@@ -314,12 +317,12 @@ def _close_gaps(loop: ElementLoop) -> ElementLoop:
 # --- moves within an area ---------------------------------------------------------------------------------
 
 
-class AreaCheck:
+class AreaChecker:
     """Checker that determines whether moves remain inside an area."""
 
     def __init__(self, loops: Sequence[ElementLoop]) -> None:
         self._contour = ElementIndex([element for loop in loops for element in loop])
-        self._windings = [Winding(loop) for loop in loops]
+        self._windings = [WindingCalculator(loop) for loop in loops]
 
     def contains_element(self, element: Element, distance: float) -> bool:
         """Return whether the whole element is inside the area.
@@ -327,9 +330,15 @@ class AreaCheck:
         The distance from the boundary must be at least ``distance`` mm.
         """
         near = self._contour.find_near(element.bounding_box, distance)
-        if any(min_distance(other, element) < distance - 2 * _OFFSET_TOLERANCE_MM for other in near):
+        if any(compute_min_distance(other, element) < distance - 2 * _OFFSET_TOLERANCE_MM for other in near):
             return False
-        return sum(each.winding_number(element.point_at(element.length / 2.0)) for each in self._windings) > 0
+        return (
+            sum(
+                each.compute_winding_number(element.get_point(element.length / 2.0))
+                for each in self._windings
+            )
+            > 0
+        )
 
 
 def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
@@ -340,7 +349,7 @@ def start_loop_near(loop: ElementLoop, point: Point) -> ElementLoop:
     best, cut = min(
         (dist(place, point), (index, half))
         for index, element in enumerate(loop)
-        for half, place in ((False, element.start), (True, element.point_at(element.length / 2.0)))
+        for half, place in ((False, element.start), (True, element.get_point(element.length / 2.0)))
     )
     del best
     index, half = cut
@@ -353,11 +362,11 @@ def start_loop_at(loop: ElementLoop, index: int, distance: float) -> ElementLoop
     turned = [*loop[index + 1 :], *loop[:index]]
     if distance <= SAME_POINT_TOLERANCE_MM or distance >= element.length - SAME_POINT_TOLERANCE_MM:
         return [element, *turned] if distance <= SAME_POINT_TOLERANCE_MM else [*turned, element]
-    middle = element.point_at(distance)
+    middle = element.get_point(distance)
     return [
-        element.section_between(middle, element.end),
+        element.cut_section(middle, element.end),
         *turned,
-        element.section_between(element.start, middle),
+        element.cut_section(element.start, middle),
     ]
 
 
@@ -371,7 +380,7 @@ def split_loop(loop: ElementLoop, length: float) -> tuple[list[Element], Element
     while left > SAME_POINT_TOLERANCE_MM:
         element = loop[at % len(loop)]
         if element.length > left + SAME_POINT_TOLERANCE_MM:
-            first_elements.append(element.section_between(element.start, element.point_at(left)))
+            first_elements.append(element.cut_section(element.start, element.get_point(left)))
             return first_elements, start_loop_at(loop, at % len(loop), left)
         first_elements.append(element)
         left -= element.length

@@ -23,8 +23,8 @@ from core.geometry.rotation_frames import (
     Vector,
     add_vectors,
     apply_matrix,
+    make_rotation,
     multiply_matrices,
-    rotation_about,
     scale_vector,
     subtract_vectors,
     transpose_matrix,
@@ -57,7 +57,7 @@ class RotaryAxis:
     name: str
     is_table: bool
     direction: Vector
-    point: Vector
+    point_on_axis: Vector
     travel_min: float = -math.inf
     travel_max: float = math.inf
     is_modulo: bool = False
@@ -70,7 +70,7 @@ class RotaryAxis:
             or self.travel_min - RANGE_TOLERANCE_DEG <= angle <= self.travel_max + RANGE_TOLERANCE_DEG
         )
 
-    def displayed_angle(self, angle: float) -> float:
+    def get_displayed_angle(self, angle: float) -> float:
         """Return the angle as it is displayed, which is 0 to 360 degrees on a modulo axis."""
         if not self.is_modulo:
             return angle + 0.0
@@ -100,11 +100,11 @@ class FrameTransform:
     rotation: Matrix
     translation: Vector
 
-    def to_machine_position(self, point: Vector) -> Vector:
+    def convert_to_machine_position(self, point: Vector) -> Vector:
         """Convert a point of the system to the machine position of the linear axes."""
         return add_vectors(apply_matrix(self.rotation, point), self.translation)
 
-    def to_frame_point(self, machine: Vector) -> Vector:
+    def convert_to_frame_point(self, machine: Vector) -> Vector:
         """Convert a machine position of the linear axes to the point of the system."""
         return apply_matrix(transpose_matrix(self.rotation), subtract_vectors(machine, self.translation))
 
@@ -145,14 +145,14 @@ class Kinematics:
     def workpiece_rotation(self) -> Matrix:
         """Return the rotation of the workpiece system in machine coordinates with all rotary axes at 0."""
         turn, _ = self._table_transform(self.zero_angles)
-        return multiply_matrices(transpose_matrix(turn), rotation_about(Z_AXIS, self.basic_rotation_deg))
+        return multiply_matrices(transpose_matrix(turn), make_rotation(Z_AXIS, self.basic_rotation_deg))
 
     @cached_property
     def zero_angles(self) -> Mapping[str, float]:
         """Return the machine angle at which each rotary axis reads 0, by axis name."""
         return {axis.name: 0.0 for axis in self.rotary_axes} | dict(self.axis_zeros)
 
-    def with_preset(self, preset: DatumPreset) -> Kinematics:
+    def apply_preset(self, preset: DatumPreset) -> Kinematics:
         """Return the machine kinematics with the workpiece zero and rotation of a preset."""
         zeros = tuple(
             each for each in preset.axis_zeros if self.find_rotary_axis(each[0]) is not None and each[1]
@@ -177,9 +177,9 @@ class Kinematics:
         turn, shift = self._table_transform(self.zero_angles)
         return add_vectors(apply_matrix(turn, point), shift)
 
-    def displayed_angle(self, axis: RotaryAxis, angle: float) -> float:
+    def get_displayed_angle(self, axis: RotaryAxis, angle: float) -> float:
         """Return the displayed value of a machine angle, relative to the zero of the axis."""
-        return axis.displayed_angle(angle - self.zero_angles[axis.name])
+        return axis.get_displayed_angle(angle - self.zero_angles[axis.name])
 
     @property
     def axis_names(self) -> tuple[str, ...]:
@@ -190,13 +190,13 @@ class Kinematics:
         """Return the rotary axis with this name, or None if the machine has no such axis."""
         return next((axis for axis in self.rotary_axes if axis.name == name), None)
 
-    def tool_frame(self, angles: Mapping[str, float]) -> Matrix:
+    def compute_tool_frame(self, angles: Mapping[str, float]) -> Matrix:
         """Return the tool's frame as seen from the workpiece at the given angles.
 
         ``angles`` contains angles by axis name; the angle of a missing axis is 0.
         """
         return multiply_matrices(
-            *(rotation_about(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotary_axes)
+            *(make_rotation(axis.direction, angles.get(axis.name, 0.0)) for axis in self.rotary_axes)
         )
 
     def make_transform(
@@ -219,14 +219,14 @@ class Kinematics:
             multiply_matrices(turn, frame), subtract_vectors(add_vectors(spot, shift), nose)
         )
 
-    def tool_direction(self, angles: Mapping[str, float]) -> Vector:
+    def compute_tool_direction(self, angles: Mapping[str, float]) -> Vector:
         """Return the direction from the tip to the spindle, in machine coordinates."""
         return apply_matrix(
-            multiply_matrices(*(rotation_about(a.direction, angles.get(a.name, 0.0)) for a in self._heads)),
+            multiply_matrices(*(make_rotation(a.direction, angles.get(a.name, 0.0)) for a in self._heads)),
             Z_AXIS,
         )
 
-    def tip_position(
+    def compute_tip_position(
         self, angles: Mapping[str, float], positions: Vector, tool_length: float = 0.0
     ) -> Vector:
         """Return the machine position of the tool tip in mm for the given positions of the linear axes."""
@@ -241,9 +241,11 @@ class Kinematics:
         turn, shift = IDENTITY, (0.0, 0.0, 0.0)
         for axis in self.rotary_axes:
             if axis.is_table:
-                back = rotation_about(axis.direction, -angles.get(axis.name, 0.0))
+                back = make_rotation(axis.direction, -angles.get(axis.name, 0.0))
                 turn = multiply_matrices(back, turn)
-                shift = add_vectors(apply_matrix(back, subtract_vectors(shift, axis.point)), axis.point)
+                shift = add_vectors(
+                    apply_matrix(back, subtract_vectors(shift, axis.point_on_axis)), axis.point_on_axis
+                )
         return turn, shift
 
     def _nose_to_tip(self, angles: Mapping[str, float], tool_length: float) -> Vector:
@@ -253,8 +255,10 @@ class Kinematics:
         """
         tip = scale_vector(Z_AXIS, -tool_length)
         for axis in reversed(self._heads):
-            turn = rotation_about(axis.direction, angles.get(axis.name, 0.0))
-            tip = add_vectors(apply_matrix(turn, subtract_vectors(tip, axis.point)), axis.point)
+            turn = make_rotation(axis.direction, angles.get(axis.name, 0.0))
+            tip = add_vectors(
+                apply_matrix(turn, subtract_vectors(tip, axis.point_on_axis)), axis.point_on_axis
+            )
         return tip
 
 
@@ -289,7 +293,7 @@ class PivotMove:
         """Return False, because linear axes and angles are not proportional."""
         return False
 
-    def machine_positions(self, fractions: FloatArray) -> FloatArray:
+    def compute_machine_positions(self, fractions: FloatArray) -> FloatArray:
         """Return the machine positions (k, axes) at fractions (k,) of the move.
 
         The columns are in the machine's axis order.
@@ -306,14 +310,18 @@ class PivotMove:
         rows: FloatArray = np.stack([at[name] for name in self.kinematics.axis_names], axis=1)
         return rows
 
-    def end_positions(self) -> dict[str, float]:
+    def compute_end_positions(self) -> dict[str, float]:
         """Return the machine positions of all axes at the end of the move, by axis name."""
         there = dict(
-            zip(self.kinematics.axis_names, self.machine_positions(np.ones(1))[0].tolist(), strict=True)
+            zip(
+                self.kinematics.axis_names,
+                self.compute_machine_positions(np.ones(1))[0].tolist(),
+                strict=True,
+            )
         )
         return {**there, **self.end_angles}
 
-    def workpiece_points(self, positions: FloatArray) -> FloatArray:
+    def compute_workpiece_points(self, positions: FloatArray) -> FloatArray:
         """Return the positions of the tip on the workpiece (k, 3) in mm for machine positions (k, axes)."""
         at = dict(zip(self.kinematics.axis_names, positions.T, strict=True))
         spots: FloatArray = np.stack([at[name] for name in "XYZ"], axis=1)
@@ -324,7 +332,7 @@ class PivotMove:
         spots -= np.array(self.kinematics.origin)
         return spots
 
-    def critical_fraction(self) -> float:
+    def get_critical_fraction(self) -> float:
         """Return 0.5, because no fraction of the move is more critical than another."""
         return 0.5
 
@@ -369,4 +377,4 @@ def _rotation_terms(axis: RotaryAxis) -> tuple[FloatArray, FloatArray, FloatArra
     """Return a point of the axis, the projection onto the axis direction, and the cross-product matrix."""
     x, y, z = axis.direction
     aside = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-    return np.array(axis.point), np.outer(axis.direction, axis.direction), aside
+    return np.array(axis.point_on_axis), np.outer(axis.direction, axis.direction), aside

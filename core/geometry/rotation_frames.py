@@ -28,7 +28,7 @@ class InvalidFrameError(CodedError, ValueError):
     """An error raised if values do not define a plane. ``str()`` returns the reason."""
 
 
-def exact_cos_sin(degrees: float) -> tuple[float, float]:
+def compute_exact_cos_sin(degrees: float) -> tuple[float, float]:
     """Return the cosine and the sine of an angle, exact at multiples of 90 degrees.
 
     Without exact values, a table at 90 degrees would be tilted by 6e-17.
@@ -65,14 +65,14 @@ def cross_product(a: Vector, b: Vector) -> Vector:
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-def apply_matrix(m: Matrix, v: Vector) -> Vector:
+def apply_matrix(matrix: Matrix, vector: Vector) -> Vector:
     """Return the product of a matrix and a vector."""
-    return dot_product(m[0], v), dot_product(m[1], v), dot_product(m[2], v)
+    return dot_product(matrix[0], vector), dot_product(matrix[1], vector), dot_product(matrix[2], vector)
 
 
-def transpose_matrix(m: Matrix) -> Matrix:
+def transpose_matrix(matrix: Matrix) -> Matrix:
     """Return the transposed matrix, which is the inverse of a rotation."""
-    (a, b, c), (d, e, f), (g, h, i) = m
+    (a, b, c), (d, e, f), (g, h, i) = matrix
     return (a, d, g), (b, e, h), (c, f, i)
 
 
@@ -89,10 +89,10 @@ def multiply_matrices(*factors: Matrix) -> Matrix:
     return made
 
 
-def rotation_about(axis: Vector, degrees: float) -> Matrix:
+def make_rotation(axis: Vector, degrees: float) -> Matrix:
     """Return the matrix of a right-handed rotation about a unit vector by an angle (Rodrigues' formula)."""
     x, y, z = axis
-    c, s = exact_cos_sin(degrees)
+    c, s = compute_exact_cos_sin(degrees)
     d = 1.0 - c
     return (
         (c + x * x * d, x * y * d - z * s, x * z * d + y * s),
@@ -101,13 +101,13 @@ def rotation_about(axis: Vector, degrees: float) -> Matrix:
     )
 
 
-def frame_from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
+def make_frame_from_points(first: Vector, second: Vector, third: Vector) -> Matrix:
     """Return the frame defined by three points.
 
     X' points from the first to the second point, and the third point is on the side of +Y'. Only the
     directions matter. Raises InvalidFrameError if two points are equal or all three points are on one line.
     """
-    u, v = subtract_vectors(p2, p1), subtract_vectors(p3, p1)
+    u, v = subtract_vectors(second, first), subtract_vectors(third, first)
     along, aside = math.hypot(*u), math.hypot(*v)
     if along < MIN_DISTANCE_MM:
         raise InvalidFrameError("the first and second points are the same", "first-and-second-point-equal")
@@ -122,19 +122,23 @@ def frame_from_points(p1: Vector, p2: Vector, p3: Vector) -> Matrix:
     return transpose_matrix((x, cross_product(z, x), z))
 
 
-def frame_from_spatial_angles(a: float, b: float, c: float) -> Matrix:
-    """Return the rotation by ``a`` about X, then by ``b`` about Y, then by ``c`` about Z, with fixed axes."""
-    return multiply_matrices(rotation_about(Z_AXIS, c), rotation_about(Y_AXIS, b), rotation_about(X_AXIS, a))
-
-
-def frame_from_euler_angles(precession: float, nutation: float, rotation: float) -> Matrix:
-    """Return the rotation by Euler angles: about Z, then about the rotated X', then about the tilted Z'."""
+def make_frame_from_spatial_angles(x_angle: float, y_angle: float, z_angle: float) -> Matrix:
+    """Return the rotation by ``a`` about X, then by ``b`` about Y, then by ``z_angle`` about Z, with fixed
+    axes.
+    """
     return multiply_matrices(
-        rotation_about(Z_AXIS, precession), rotation_about(X_AXIS, nutation), rotation_about(Z_AXIS, rotation)
+        make_rotation(Z_AXIS, z_angle), make_rotation(Y_AXIS, y_angle), make_rotation(X_AXIS, x_angle)
     )
 
 
-def frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
+def make_frame_from_euler_angles(precession: float, nutation: float, rotation: float) -> Matrix:
+    """Return the rotation by Euler angles: about Z, then about the rotated X', then about the tilted Z'."""
+    return multiply_matrices(
+        make_rotation(Z_AXIS, precession), make_rotation(X_AXIS, nutation), make_rotation(Z_AXIS, rotation)
+    )
+
+
+def make_frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
     """Return the frame with Z' along ``normal`` and X' along the component of ``base`` perpendicular to it.
 
     Raises InvalidFrameError if a vector has no length or if the vectors are parallel.
@@ -151,21 +155,21 @@ def frame_from_vectors(base: Vector, normal: Vector) -> Matrix:
     return transpose_matrix((cross_product(y, z), y, z))
 
 
-def frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
+def make_frame_from_projections(first: float, second: float, rotation: float) -> Matrix:
     """Return the frame of the plane whose projections have the angle ``first`` in ZX and ``second`` in YZ.
 
     X' is in the plane ZX before the frame is rotated by ``rotation`` about Z'. Angles are measured upward
     from X and from Y. Raises InvalidFrameError at 90 degrees.
     """
-    (c1, s1), (c2, s2) = exact_cos_sin(first), exact_cos_sin(second)
+    (c1, s1), (c2, s2) = compute_exact_cos_sin(first), compute_exact_cos_sin(second)
     if min(abs(c1), abs(c2)) < MIN_SINE:
         raise InvalidFrameError("a projection angle is 90 degrees", "projection-angle")
     along, aside = (c1, 0.0, s1), (0.0, c2, s2)
     return multiply_matrices(
-        frame_from_vectors(along, cross_product(along, aside)), rotation_about(Z_AXIS, rotation)
+        make_frame_from_vectors(along, cross_product(along, aside)), make_rotation(Z_AXIS, rotation)
     )
 
 
-def z_rotation_deg(frame: Matrix) -> float:
+def compute_z_rotation_deg(frame: Matrix) -> float:
     """Return the angle of a frame that is rotated about Z only, in degrees from -180 to 180."""
     return math.degrees(math.atan2(frame[1][0] - frame[0][1], frame[0][0] + frame[1][1]))

@@ -19,17 +19,17 @@ from core.geometry.rotation_frames import (
     Matrix,
     Vector,
     apply_matrix,
+    compute_z_rotation_deg,
     cross_product,
     dot_product,
+    make_rotation,
     multiply_matrices,
-    rotation_about,
     scale_vector,
     subtract_vectors,
     transpose_matrix,
-    z_rotation_deg,
 )
 
-PARALLEL_TOLERANCE = math.radians(1e-9)  # =
+PARALLEL_TOLERANCE_RAD = math.radians(1e-9)  # =
 REACHED_TOLERANCE = 1e-9  # sine of the angle below which a tool direction counts as reached
 TRAVEL_TOLERANCE_DEG = 1e-6  # degrees by which two travels must differ to count as different
 
@@ -50,15 +50,15 @@ class SolutionSide(StrEnum):
 class SwivelSolution:
     """Angles of the rotary axes, by axis name, that orient the tool.
 
-    ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis. ``symmetry_angle`` is
-    the angle of the primary axis from its symmetry point, and ``primary_angle`` is its angle from the basic
-    position 0.
+    ``tool_rotation_deg`` is the remaining mathematical rotation about the tool axis. ``symmetry_angle_deg``
+    is the angle of the primary axis from its symmetry point, and ``primary_angle_deg`` is its angle from the
+    basic position 0.
     """
 
     axis_angles: Mapping[str, float]
     tool_rotation_deg: float
-    symmetry_angle: float = 0.0
-    primary_angle: float = 0.0
+    symmetry_angle_deg: float = 0.0
+    primary_angle_deg: float = 0.0
 
     def is_on_side(self, side: SolutionSide | None) -> bool:
         """Return whether the solution is on this side.
@@ -68,9 +68,9 @@ class SwivelSolution:
         if side is None:
             return True
         angle = (
-            self.symmetry_angle
+            self.symmetry_angle_deg
             if side in {SolutionSide.SYM_PLUS, SolutionSide.SYM_MINUS}
-            else self.primary_angle
+            else self.primary_angle_deg
         )
         return (
             angle >= -TRAVEL_TOLERANCE_DEG
@@ -92,13 +92,15 @@ def find_all_solutions(
     found: list[SwivelSolution] = []
     for angles, symmetry, primary in _iter_tilt_angles(machine, normal):
         spin = _wrap_angle(
-            z_rotation_deg(multiply_matrices(transpose_matrix(machine.tool_frame(angles)), frame))
+            compute_z_rotation_deg(
+                multiply_matrices(transpose_matrix(machine.compute_tool_frame(angles)), frame)
+            )
         )
         first = machine.rotary_axes[0] if machine.rotary_axes else None
         if (
             rotates_table
             and first is not None
-            and math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE
+            and math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
         ):
             angles[first.name] += math.copysign(1.0, dot_product(first.direction, normal)) * spin
             spin = 0.0
@@ -147,7 +149,7 @@ def find_reachable_solutions(
         for made in find_all_solutions(machine, frame, rotates_table=rotates_table)
     ]
     fits = [made for made in near if made is not None and made.is_on_side(side)]
-    return sorted(fits, key=lambda each: -each.symmetry_angle)
+    return sorted(fits, key=lambda each: -each.symmetry_angle_deg)
 
 
 def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dict[str, float], float, float]]:
@@ -170,8 +172,8 @@ def _iter_tilt_angles(machine: Kinematics, normal: Vector) -> Iterator[tuple[dic
     else:
         first, second = tilting[-2:]
         for tilt, symmetry in _iter_second_angles(first.direction, second.direction, normal):
-            tool = apply_matrix(rotation_about(second.direction, tilt), Z_AXIS)
-            free = math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE
+            tool = apply_matrix(make_rotation(second.direction, tilt), Z_AXIS)
+            free = math.hypot(*cross_product(first.direction, normal)) < PARALLEL_TOLERANCE_RAD
             turn = angles[first.name] if free else _angle_about(first.direction, tool, normal)
             yield angles | {first.name: turn, second.name: tilt}, symmetry, tilt
 
@@ -219,7 +221,7 @@ def _choose_nearest_turn(
     for axis in machine.rotary_axes:
         angle, now = solution.axis_angles[axis.name], present_angles.get(axis.name, 0.0)
         if axis.is_modulo:
-            angles[axis.name] = axis.displayed_angle(angle)
+            angles[axis.name] = axis.get_displayed_angle(angle)
             continue
         nearest = angle + FULL_TURN_DEG * round((now - angle) / FULL_TURN_DEG)
         turns = [angle, nearest, nearest - FULL_TURN_DEG, nearest + FULL_TURN_DEG]
@@ -227,7 +229,9 @@ def _choose_nearest_turn(
         if not inside:
             return None
         angles[axis.name] = min(inside, key=lambda each: abs(each - now))
-    return SwivelSolution(angles, solution.tool_rotation_deg, solution.symmetry_angle, solution.primary_angle)
+    return SwivelSolution(
+        angles, solution.tool_rotation_deg, solution.symmetry_angle_deg, solution.primary_angle_deg
+    )
 
 
 def _way(machine: Kinematics, made: SwivelSolution, present: Mapping[str, float]) -> float:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,11 +36,11 @@ class FacePlane:
         """Return the angle on the part to which mill X points, in degrees from the negative X side at C0."""
         return _heading(self.c_start_deg, far=self.is_far_side)
 
-    def to_lathe(self, points: FloatArray, theta: FloatArray) -> FloatArray:
+    def convert_to_lathe(self, points: FloatArray, polar_angles: FloatArray) -> FloatArray:
         """Convert mill points X, Y, Z (n, 3) to lathe X (radius), Z, C (n, 3), in mm and degrees.
 
-        ``theta`` (n,) is the continuous polar angle of the points in radians. A point closer to the axis
-        than |h|, the tool height, cannot be reached and is treated as if it were at |h|.
+        ``polar_angles`` (n,) is the continuous polar angle of the points in radians. A point closer to the
+        axis than |h|, the tool height, cannot be reached and is treated as if it were at |h|.
         """
         rho = np.hypot(points[:, 0], points[:, 1])
         x = np.sqrt(np.maximum((rho - self.tool_height_mm) * (rho + self.tool_height_mm), 0.0))
@@ -48,10 +48,10 @@ class FacePlane:
             np.arctan2(np.full(len(x), self.tool_height_mm), x) if self.tool_height_mm else np.zeros(len(x))
         )
         return np.column_stack(
-            [x if self.is_far_side else -x, points[:, 2], self.c_start_deg + np.degrees(lead - theta)]
+            [x if self.is_far_side else -x, points[:, 2], self.c_start_deg + np.degrees(lead - polar_angles)]
         )
 
-    def to_mill(self, machine: FloatArray) -> FloatArray:
+    def convert_to_mill(self, machine: FloatArray) -> FloatArray:
         """Convert lathe X, Z, C (n, 3) to the mill points X, Y, Z (n, 3) under the tool."""
         x = machine[:, 0] if self.is_far_side else -machine[:, 0]
         rho = np.hypot(x, self.tool_height_mm)
@@ -61,29 +61,29 @@ class FacePlane:
 
 @dataclass(frozen=True, slots=True)
 class SidePlane:
-    """The side plane ZC, unrolled at ``diameter``.
+    """The side plane ZC, unrolled at ``diameter_mm``.
 
     ``c_start_deg`` (degrees) and ``z_start_mm`` (mm) are C and lathe Z at X0 Y0. Mill X points toward the
-    spindle, Y is measured at ``diameter``, and Z is the radius of the tip. Lengths are in mm.
+    spindle, Y is measured at ``diameter_mm``, and Z is the radius of the tip. Lengths are in mm.
     """
 
     c_start_deg: float
     z_start_mm: float
-    diameter: float
+    diameter_mm: float
     is_far_side: bool = False
 
-    def to_lathe(self, points: FloatArray) -> FloatArray:
+    def convert_to_lathe(self, points: FloatArray) -> FloatArray:
         """Convert mill points X, Y, Z (n, 3) to lathe X (radius), Z, C (n, 3). Mill Z is a radius."""
         x, y, z = points.T
-        c = self.c_start_deg - y * (360.0 / (math.pi * self.diameter))
+        c = self.c_start_deg - y * (360.0 / (math.pi * self.diameter_mm))
         return np.column_stack([z if self.is_far_side else -z, self.z_start_mm - x, c])
 
-    def to_mill(self, machine: FloatArray) -> FloatArray:
+    def convert_to_mill(self, machine: FloatArray) -> FloatArray:
         """Convert lathe X, Z, C (n, 3) to mill points X, Y, Z (n, 3). Mill Z is a radius."""
         x, z, c = machine.T
         up = x if self.is_far_side else -x
         return np.column_stack(
-            [self.z_start_mm - z, (self.c_start_deg - c) * (math.pi * self.diameter / 360.0), up]
+            [self.z_start_mm - z, (self.c_start_deg - c) * (math.pi * self.diameter_mm / 360.0), up]
         )
 
 
@@ -101,7 +101,7 @@ _SAMPLES = 721  # points of an arc at which its extent is sampled: 0.5 degree of
 class PlaneMove:
     """A straight line or, with ``center``, an arc in the mill's frame, with X, Y and Z in mm.
 
-    On the side of the part, Z is a radius. ``start_angle`` is the continuous polar angle of the start in
+    On the side of the part, Z is a radius. ``start_angle_rad`` is the continuous polar angle of the start in
     radians, so that C never jumps by a revolution. It is used only on the face. If the start is the center,
     it is the direction of departure. The end of an arc is within the control's tolerance of its circle.
     """
@@ -109,7 +109,7 @@ class PlaneMove:
     frame: FacePlane | SidePlane
     start: MillPoint
     end: MillPoint
-    start_angle: float = 0.0
+    start_angle_rad: float = 0.0
     center: tuple[float, float] | None = None
     clockwise: bool = False
 
@@ -141,7 +141,7 @@ class PlaneMove:
         """Return whether the lathe axes move proportionally."""
         return self.center is None and isinstance(self.frame, SidePlane)
 
-    def mill_points(self, fractions: FloatArray) -> FloatArray:
+    def compute_mill_points(self, fractions: FloatArray) -> FloatArray:
         """Return the mill points (n, 3) at fractions (n,) of the path."""
         start, end = np.array(self.start), np.array(self.end)
         points = np.asarray(start + fractions[:, None] * (end - start), dtype=np.float64)
@@ -152,31 +152,31 @@ class PlaneMove:
             points[:, 0], points[:, 1] = cx + self.radius * np.cos(angle), cy + self.radius * np.sin(angle)
         return points
 
-    def machine_positions(self, fractions: FloatArray) -> FloatArray:
+    def compute_machine_positions(self, fractions: FloatArray) -> FloatArray:
         """Return lathe X (radius), Z, C (n, 3) at fractions (n,) of the path, with continuous C."""
-        points = self.mill_points(fractions)
+        points = self.compute_mill_points(fractions)
         if isinstance(self.frame, SidePlane):
-            return self.frame.to_lathe(points)
-        return self.frame.to_lathe(points, self.polar_angles(points, fractions))
+            return self.frame.convert_to_lathe(points)
+        return self.frame.convert_to_lathe(points, self.compute_polar_angles(points, fractions))
 
-    def workpiece_points(self, positions: FloatArray) -> FloatArray:
+    def compute_workpiece_points(self, positions: FloatArray) -> FloatArray:
         """Convert lathe X, Z, C (n, 3) to mill points (n, 3)."""
-        return self.frame.to_mill(positions)
+        return self.frame.convert_to_mill(positions)
 
-    def polar_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
+    def compute_polar_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
         """Return the continuous polar angles (n,) of ``points`` on this path in radians.
 
-        The angles start at ``start_angle``.
+        The angles start at ``start_angle_rad``.
         """
         if self.center is None:
             x0, y0, _ = self.start if math.hypot(*self.start[:2]) > AXIS_TOLERANCE_MM else self.end
             at_centre = np.hypot(points[:, 0], points[:, 1]) <= AXIS_TOLERANCE_MM
             turned = np.arctan2(x0 * points[:, 1] - y0 * points[:, 0], x0 * points[:, 0] + y0 * points[:, 1])
-            along: FloatArray = self.start_angle + np.where(at_centre, 0.0, turned)
+            along: FloatArray = self.start_angle_rad + np.where(at_centre, 0.0, turned)
             return along
         both = np.array([0.0, 1.0])
-        begin = self._continuous_angles(self.mill_points(both), both)[0]
-        wound: FloatArray = self.start_angle - begin + self._continuous_angles(points, fractions)
+        begin = self._continuous_angles(self.compute_mill_points(both), both)[0]
+        wound: FloatArray = self.start_angle_rad - begin + self._continuous_angles(points, fractions)
         return wound
 
     def split_at_axis(self) -> list[PlaneMove]:
@@ -186,12 +186,12 @@ class PlaneMove:
         """
         if isinstance(self.frame, SidePlane) or self.length <= AXIS_TOLERANCE_MM:
             return [self]
-        share = self.critical_fraction()
-        if self.distance_from_axis(share) > AXIS_TOLERANCE_MM or any(
+        share = self.get_critical_fraction()
+        if self.compute_distance_from_axis(share) > AXIS_TOLERANCE_MM or any(
             math.hypot(*end[:2]) <= AXIS_TOLERANCE_MM for end in (self.start, self.end)
         ):
             return [self]
-        z = float(self.mill_points(np.array([share]))[0, 2])
+        z = float(self.compute_mill_points(np.array([share]))[0, 2])
         return [replace(self, end=(0.0, 0.0, z)), replace(self, start=(0.0, 0.0, z))]
 
     def find_start_rotation(self) -> float:
@@ -205,17 +205,17 @@ class PlaneMove:
             or self.length <= AXIS_TOLERANCE_MM
         ):
             return 0.0
-        x, y = self.mill_points(np.array([0.0, 1.0]))[1][:2].tolist()
+        x, y = self.compute_mill_points(np.array([0.0, 1.0]))[1][:2].tolist()
         if self.center is not None:
             i, j = self.center
             x, y = (-j, i) if self.clockwise else (j, -i)
-        turn = (math.atan2(y, x) - self.start_angle + math.pi) % (2 * math.pi) - math.pi
+        turn = (math.atan2(y, x) - self.start_angle_rad + math.pi) % (2 * math.pi) - math.pi
         if abs(abs(turn) - math.pi) < 1e-6:
             # The path passes straight through the axis. C decreases, as for a center on the left.
             return abs(turn)
         return turn
 
-    def critical_fraction(self) -> float:
+    def get_critical_fraction(self) -> float:
         """Return the fraction of the path that is closest to the axis."""
         if self.center is None:
             dx, dy = self.end[0] - self.start[0], self.end[1] - self.start[1]
@@ -224,15 +224,17 @@ class PlaneMove:
             return min(max(foot, 0.0), 1.0)
         return self._fraction_at_angle(math.atan2(-self._adjusted_center()[1], -self._adjusted_center()[0]))
 
-    def distance_from_axis(self, fraction: float) -> float:
+    def compute_distance_from_axis(self, fraction: float) -> float:
         """Return the distance from the axis in mm at a fraction of the path."""
-        x, y, _ = self.mill_points(np.array([fraction]))[0].tolist()
+        x, y, _ = self.compute_mill_points(np.array([fraction]))[0].tolist()
         return math.hypot(x, y)
 
     def find_travel_range(self) -> tuple[FloatArray, FloatArray]:
         """Return the minimum and the maximum of lathe X, Z, C (3,) along the path."""
         count = 2 if self.is_straight else _SAMPLES
-        table = self.machine_positions(np.append(np.linspace(0.0, 1.0, count), self.critical_fraction()))
+        table = self.compute_machine_positions(
+            np.append(np.linspace(0.0, 1.0, count), self.get_critical_fraction())
+        )
         return table.min(axis=0), table.max(axis=0)
 
     def _fraction_at_angle(self, angle: float) -> float:
@@ -247,7 +249,7 @@ class PlaneMove:
         share = swept_angle / abs(sweep)
         if share <= 1.0:
             return share
-        return 0.0 if self.distance_from_axis(0.0) <= self.distance_from_axis(1.0) else 1.0
+        return 0.0 if self.compute_distance_from_axis(0.0) <= self.compute_distance_from_axis(1.0) else 1.0
 
     def _adjusted_center(self) -> tuple[float, float]:
         """Return the center, moved to the perpendicular bisector of the chord.
@@ -271,7 +273,7 @@ class PlaneMove:
         cx, cy = self._adjusted_center()
         (x0, y0, _), (x1, y1, _) = self.start, self.end
         # With Y up, the angle from X toward Y is counterclockwise.
-        return arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
+        return compute_arc_sweep(y0, x0, y1, x1, cy, cx, not self.clockwise)
 
     def _continuous_angles(self, points: FloatArray, fractions: FloatArray) -> FloatArray:
         """Return the polar angles (n,) of points on the arc, except for a constant.

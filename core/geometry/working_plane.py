@@ -14,25 +14,25 @@ import numpy.typing as npt
 
 from core.geometry.lines_and_arcs import Arc, Point
 from core.geometry.rotary_axes import FrameTransform, PivotMove
-from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, exact_cos_sin
+from core.geometry.rotation_frames import IDENTITY, Matrix, Vector, compute_exact_cos_sin
 from core.geometry.virtual_mill import PlaneMove
 
 AxisOrder = tuple[int, int, int]
 """Columns of X Y Z: the two that a plane lies in, from the first to the second, and the third."""
 
-XY: AxisOrder = (0, 1, 2)
-YZ: AxisOrder = (1, 2, 0)
-ZX: AxisOrder = (2, 0, 1)
+XY_ORDER: AxisOrder = (0, 1, 2)
+YZ_ORDER: AxisOrder = (1, 2, 0)
+ZX_ORDER: AxisOrder = (2, 0, 1)
 FloatArray = npt.NDArray[np.float64]
 _SAMPLES = 65
 
 
-def to_plane_order(order: AxisOrder, point: Vector) -> Vector:
+def convert_to_plane_order(order: AxisOrder, point: Vector) -> Vector:
     """Convert a point from the order X Y Z to the axis order of a plane."""
     return point[order[0]], point[order[1]], point[order[2]]
 
 
-def from_plane_order(order: AxisOrder, point: Vector) -> Vector:
+def convert_from_plane_order(order: AxisOrder, point: Vector) -> Vector:
     """Convert a point from the axis order of a plane to the order X Y Z."""
     at = [0.0, 0.0, 0.0]
     for column, value in zip(order, point, strict=True):
@@ -58,15 +58,15 @@ class ProgramTransform:
         """Return whether arcs change their direction because only one of X and Y is mirrored."""
         return ("X" in self.mirrored_axes) != ("Y" in self.mirrored_axes)
 
-    def to_plane(self, point: Vector) -> Vector:
+    def convert_to_plane(self, point: Vector) -> Vector:
         """Convert a point of the program to the point of the plane."""
         x, y, z = (at * self._sign(axis) * self.scale_factor for axis, at in zip("XYZ", point, strict=True))
-        c, s = exact_cos_sin(self.rotation_deg)
+        c, s = compute_exact_cos_sin(self.rotation_deg)
         return c * x - s * y, s * x + c * y, z
 
-    def to_program(self, point: Vector) -> Vector:
+    def convert_to_program(self, point: Vector) -> Vector:
         """Convert a point of the plane to the point of the program."""
-        c, s = exact_cos_sin(self.rotation_deg)
+        c, s = compute_exact_cos_sin(self.rotation_deg)
         turned = c * point[0] + s * point[1], -s * point[0] + c * point[1], point[2]
         x, y, z = (at * self._sign(axis) / self.scale_factor for axis, at in zip("XYZ", turned, strict=True))
         return x, y, z
@@ -87,14 +87,15 @@ class ProgramTransform:
             (at[0] * self.scale_factor, at[1] * self.scale_factor) for at in (arc.start, arc.end, arc.center)
         )
         units = (
-            from_plane_order(order, unit) for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+            convert_from_plane_order(order, unit)
+            for unit in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
         )
-        u, v, w = (tuple(part / self.scale_factor for part in self.to_plane(unit)) for unit in units)
+        u, v, w = (tuple(part / self.scale_factor for part in self.convert_to_plane(unit)) for unit in units)
         rows = tuple((u[row], v[row], w[row]) for row in range(3))
         return Arc(start, end, centre, arc.clockwise), (rows[0], rows[1], rows[2])
 
     def _flat(self, at: Point) -> Point:
-        return self.to_plane((*at, 0.0))[:2]
+        return self.convert_to_plane((*at, 0.0))[:2]
 
     def _sign(self, axis: str) -> float:
         return -1.0 if axis in self.mirrored_axes else 1.0
@@ -137,14 +138,14 @@ class HelixMove:
         """Return False, because the linear axes do not move proportionally."""
         return False
 
-    def machine_positions(self, fractions: FloatArray) -> FloatArray:
+    def compute_machine_positions(self, fractions: FloatArray) -> FloatArray:
         """Return the machine positions (k, axes) at fractions (k,) of the move.
 
         The columns are in the machine's axis order.
         """
         (cx, cy), (x0, y0), radius = self.arc.center, self.arc.start, self.arc.radius
         # A positive sweep is clockwise, seen with X to the right and Y up.
-        angle = math.atan2(y0 - cy, x0 - cx) - self.arc.sweep * fractions
+        angle = math.atan2(y0 - cy, x0 - cx) - self.arc.sweep_rad * fractions
         z = self.z_start + fractions * (self.z_end - self.z_start)
         points = np.stack([cx + radius * np.cos(angle), cy + radius * np.sin(angle), z], axis=1)
         rows = np.repeat(np.array([self.base_position]), len(fractions), axis=0)
@@ -152,14 +153,14 @@ class HelixMove:
         rows[:, self.xyz_columns] = points @ turn.T + np.array(self.transform.translation)
         return rows
 
-    def workpiece_points(self, positions: FloatArray) -> FloatArray:
+    def compute_workpiece_points(self, positions: FloatArray) -> FloatArray:
         """Return the points (k, 3) in the system of the working plane for machine positions (k, axes)."""
         spots: FloatArray = (
             positions[:, self.xyz_columns] - np.array(self.transform.translation)
         ) @ np.array(self.transform.rotation)
         return spots
 
-    def critical_fraction(self) -> float:
+    def get_critical_fraction(self) -> float:
         """Return 0.5, because no fraction of the move is more critical than another."""
         return 0.5
 
@@ -168,9 +169,9 @@ CurvedMove = HelixMove | PivotMove | PlaneMove
 """A way on which the axes do not run in proportion, unless it is ``is_straight`` after all.
 
 All tell ``length`` (what the feed counts: mm, or ``is_feed_in_degrees`` where rotary axes are meant),
-``machine_positions`` positions (k, axes) at fractions (k,) from 0 to 1, without a jump, where the tool is on
-the ``workpiece_points`` (k, 3) at machine positions, and the fraction ``critical_fraction`` to where the axes
-turn most for the way.
+``compute_machine_positions`` positions (k, axes) at fractions (k,) from 0 to 1, without a jump, where the
+tool is on the ``compute_workpiece_points`` (k, 3) at machine positions, and the fraction
+``get_critical_fraction`` to where the axes turn most for the way.
 """
 
 
@@ -197,5 +198,5 @@ class AxisMove:
         """
         if self.way is None:
             return np.array(self.end), np.array(self.end)
-        points = self.way.machine_positions(np.linspace(0.0, 1.0, _SAMPLES))
+        points = self.way.compute_machine_positions(np.linspace(0.0, 1.0, _SAMPLES))
         return points.min(axis=0), points.max(axis=0)

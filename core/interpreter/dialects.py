@@ -161,7 +161,7 @@ class SharedProgram:
         """
         return _unread, (self.source, self._strict)
 
-    def read(self) -> None:
+    def parse_text(self) -> None:
         """Parse the program now, so that the first pass does not have to parse it."""
         _ = self._begin
 
@@ -178,8 +178,9 @@ class SharedProgram:
             return interpret_mdi_line(self.source, setup)
         return self._begin(setup)
 
-    def start_branching_pass(self, setup: Setup, guide: BranchRecord) -> BranchingPass | None:
-        """Return a pass that can execute both branches of conditional calls, as directed by ``guide``.
+    def start_branching_pass(self, setup: Setup, branch_record: BranchRecord) -> BranchingPass | None:
+        """Return a pass that can execute both branches of conditional calls, as directed by
+        ``branch_record``.
 
         Returns None if the program does not read any inputs.
         """
@@ -190,10 +191,10 @@ class SharedProgram:
             return None
         from core.interpreter.omniturn.flow.conditional_calls import BranchingPass
 
-        return BranchingPass(read.program.copy_for_pass(), setup, guide)
+        return BranchingPass(read.program.copy_for_pass(), setup, branch_record)
 
     @property
-    def program(self) -> Program | None:
+    def omniturn_program(self) -> Program | None:
         """Return the OmniTurn program ready for execution, or None for other dialects."""
         read = self._begin
         return read.program if isinstance(read, _OmniTurn) else None

@@ -161,7 +161,7 @@ class CodeBook:
         """Return the index of the chapter that contains an entry, or 0 for None."""
         return next((n for n, (_, entries) in enumerate(self.chapters) if entry in entries), 0)
 
-    def with_compiled_patterns(self) -> CodeBook:
+    def compile_patterns(self) -> CodeBook:
         """Compile the patterns of the book, which takes some milliseconds, and return the book."""
         _ = self._patterns, self._heads
         return self

@@ -91,7 +91,7 @@ class FormulaGrammar:
     constants: Mapping[str, float] = field(default_factory=dict)
     operand_separator: str = ""
     negation_precedence: int = 50  # precedence of a sign before an operand
-    allows_index: bool = False  # the number of a parameter may be a formula in square brackets
+    has_index: bool = False  # the number of a parameter may be a formula in square brackets
     _sign: re.Pattern[str] = field(init=False, repr=False)
     _word: re.Pattern[str] = field(init=False, repr=False)
     _constant: re.Pattern[str] = field(init=False, repr=False)
@@ -202,7 +202,7 @@ class FormulaReader(LineReader):
         if match := grammar.parameter_pattern.match(self.uppercase_text, index):
             self.index = match.end()
             letters, number = match.group(1), match.group(2)
-            if not number and grammar.allows_index and self.uppercase_text.startswith("[", self.index):
+            if not number and grammar.has_index and self.uppercase_text.startswith("[", self.index):
                 return Parameter(letters, self.read_index(), index + 1)
             return Parameter(letters, int(number) if number else None, index + 1)
         if match := grammar.number_pattern.match(self.uppercase_text, index):

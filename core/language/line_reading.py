@@ -95,7 +95,7 @@ def describe_typographic_character(character: str) -> tuple[str, str] | None:
     return _SIGNS.get(character)
 
 
-def to_ascii_upper(text: str) -> str:
+def uppercase_ascii(text: str) -> str:
     """Return the text in capitals with the same length.
 
     Non-ASCII characters such as ``ß`` do not change.

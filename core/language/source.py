@@ -29,7 +29,7 @@ _DIALECT_BY_EXTENSION = {".h": Dialect.KLARTEXT, ".mpf": Dialect.SINUMERIK, ".sp
 _USUAL_ENDINGS = {Dialect.OMNITURN: ".nc", Dialect.KLARTEXT: ".h", Dialect.SINUMERIK: ".mpf"}
 
 
-def default_extension(dialect: Dialect) -> str:
+def get_default_extension(dialect: Dialect) -> str:
     """Return the default file extension of a dialect, such as ``.nc``."""
     return _USUAL_ENDINGS[dialect]
 
@@ -43,7 +43,7 @@ def guess_dialect(name: str) -> Dialect:
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _MAX_LINE_LENGTH = 8192
 _LONG = 4 * 1024 * 1024  # characters; the lines of longer texts are not stored
-MAX_FILE_SIZE = 64 * 1024 * 1024
+MAX_FILE_BYTES = 64 * 1024 * 1024
 _DOS_END_OF_FILE = "\x1a"
 _UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 
@@ -101,7 +101,7 @@ def load_source(path: Path, specified_dialect: Dialect | None = None) -> Program
     Raises SourceError if the file cannot be read or is not text.
     """
     try:
-        data = read_input_bytes(path, MAX_FILE_SIZE)
+        data = read_input_bytes(path, MAX_FILE_BYTES)
     except TooLargeError as problem:
         raise _too_large(path.name) from problem
     except OSError as problem:
@@ -119,7 +119,7 @@ def decode_source(name: str, data: bytes, specified_dialect: Dialect | None = No
 
     Raises SourceError if the bytes are not text.
     """
-    if len(data) > MAX_FILE_SIZE:
+    if len(data) > MAX_FILE_BYTES:
         raise _too_large(name)
     return ProgramSource(name, _decoded(name, data), specified_dialect)
 

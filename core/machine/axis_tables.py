@@ -51,7 +51,7 @@ class LinearAxisKeys:
     )
     fe_window: float = declare_key(
         KeyRange(0.005, 10.0, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Largest following error at `vmax`; at lower speeds the limit falls to `still_window`. "
         "Default: the value of the first linear axis that specifies it, or `vmax` × 15.9 ms.",
     )
@@ -62,13 +62,13 @@ class LinearAxisKeys:
     )
     in_pos: float = declare_key(
         KeyRange(1e-5, 0.5, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Distance from the target within which the axis is in position. Default: the value of the "
         "first linear axis that specifies it, or 4 × `count`.",
     )
     still_window: float = declare_key(
         KeyRange(0.005, 5.0, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Largest position error while the axis is at rest. Default: the value of the first linear "
         "axis that specifies it, or 0.2 mm (at least 4 × `in_pos`, at most `fe_window`).",
     )
@@ -132,18 +132,18 @@ class LatheCAxisKeys:
     )
     vmax: float = declare_key(
         KeyRange(6.0, 6000.0, FileUnit.C_AXIS_RPM),
-        derived=True,
+        is_derived=True,
         meaning="Highest speed of C. Required if C is enabled.",
     )
     amax: float = declare_key(
         KeyRange(36.0, 360000.0, FileUnit.C_AXIS_RPM_PER_SECOND),
-        derived=True,
+        is_derived=True,
         meaning="Acceleration of C. Default: 3 × `vmax` per second, but not more than `accel_rpm_s` of the "
         "spindle.",
     )
     count: float = declare_key(
         KeyRange(0.0001, 1.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Angle of one encoder count. Required if C is enabled.",
     )
     fe_window: float = declare_key(
@@ -158,12 +158,12 @@ class LatheCAxisKeys:
     )
     in_pos: float = declare_key(
         KeyRange(0.0001, 5.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Angle from the target within which C is in position. Default: 5 × `count`.",
     )
     still_window: float = declare_key(
         KeyRange(0.001, 45.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Largest position error while the axis is at rest. Default: 1° (at least 4 × `in_pos`, at "
         "most `fe_window`).",
     )
@@ -196,19 +196,19 @@ class LinearThirdAxisKeys:
     count: float = LinearAxisKeys.count
     fe_window: float = declare_key(
         KeyRange(0.005, 10.0, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Largest following error at `vmax`; at lower speeds the limit falls to `still_window`. "
         "Default: `vmax` × 15.9 ms.",
     )
     fe_time_ms: float = LinearAxisKeys.fe_time_ms
     in_pos: float = declare_key(
         KeyRange(1e-5, 0.5, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Distance from the target within which the axis is in position. Default: 5 × `count`.",
     )
     still_window: float = declare_key(
         KeyRange(0.005, 5.0, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Largest position error while the axis is at rest. Default: 1 mm (at least 4 × `in_pos`, "
         "at most `fe_window`).",
     )
@@ -241,7 +241,7 @@ class RotaryAxisKeys:
     count: float = declare_key(KeyRange(1e-6, 1.0, FileUnit.DEGREES), meaning="Angle of one encoder count.")
     fe_window: float = declare_key(
         KeyRange(0.001, 90.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Largest following error at `vmax`; at lower speeds the limit falls to `still_window`. "
         "Default: `vmax` × 15.9 ms.",
     )
@@ -252,12 +252,12 @@ class RotaryAxisKeys:
     )
     in_pos: float = declare_key(
         KeyRange(1e-6, 5.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Angle from the target within which the axis is in position. Default: 5 × `count`.",
     )
     still_window: float = declare_key(
         KeyRange(0.0005, 45.0, FileUnit.DEGREES),
-        derived=True,
+        is_derived=True,
         meaning="Largest position error while the axis is at rest. Default: 1° (at least 4 × `in_pos`, at "
         "most `fe_window`).",
     )

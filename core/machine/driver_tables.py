@@ -26,23 +26,23 @@ ANALOG_INPUT_NAMES = ("feed_pot", "spindle_pot", "handwheel", "spindle_load")
 _AXES = "XYZABC"
 
 
-def all_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTable, ...]:
+def list_driver_tables(drivers: Sequence[DriverDeclaration]) -> tuple[DriverTable, ...]:
     """Return the tables of all drivers in the order of the drivers."""
     return tuple(table for driver in drivers for table in driver.tables)
 
 
-def driver_subtables(drivers: Sequence[DriverDeclaration], path: str) -> tuple[str, ...]:
+def list_driver_subtables(drivers: Sequence[DriverDeclaration], table_path: str) -> tuple[str, ...]:
     """Return the names of the tables that drivers add to the table ``path`` of the control."""
-    parted = (table.path.rpartition(".") for table in all_driver_tables(drivers))
-    return tuple(name for parent, _, name in parted if parent == path)
+    parted = (table.path.rpartition(".") for table in list_driver_tables(drivers))
+    return tuple(name for parent, _, name in parted if parent == table_path)
 
 
-class DriverReading:
+class DriverTableReader:
     """Parser of the driver tables of a machine file; ``findings`` contains the errors in these tables."""
 
     def __init__(self, file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> None:
         self.file = file
-        self._tables = [table for table in all_driver_tables(drivers) if table.path in file.tables]
+        self._tables = [table for table in list_driver_tables(drivers) if table.path in file.tables]
         self.findings: list[FileFinding] = []
         for table in self._tables:
             raw = file.raw(table.path)
@@ -76,11 +76,13 @@ class DriverReading:
         )
 
 
-def existing_tables(file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
+def list_existing_tables(
+    file_data: Mapping[str, object], drivers: Sequence[DriverDeclaration]
+) -> tuple[str, ...]:
     """Return the paths of the driver tables that a file contains or that always exist."""
     return tuple(
         table.path
-        for table in all_driver_tables(drivers)
+        for table in list_driver_tables(drivers)
         if table.is_always_read or find_raw_value(file_data, table.path) is not None
     )
 
@@ -107,7 +109,7 @@ def check_driver_tables(
     yield from _renewed(file)
     yield from _guard(file)
     yield from _check_serial_ports(file.values, drivers)
-    for table in all_driver_tables(drivers):
+    for table in list_driver_tables(drivers):
         yield from table.check_rules(file)
 
 
@@ -115,16 +117,16 @@ def _backend(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
     for driver in drivers:
         path = driver.tables[0].path
         if (
-            driver.backend
+            driver.backend_name
             and path not in file.tables
-            and file.values.has_text("machine.backend", driver.backend)
+            and file.values.has_text("machine.backend", driver.backend_name)
         ):
             yield FileFinding(
                 Message("[{path}]", path=path),
                 "",
                 Message(
                     'this table is missing but required by machine.backend = "{backend}"',
-                    backend=driver.backend,
+                    backend=driver.backend_name,
                 ),
                 "missing",
             )
@@ -136,10 +138,12 @@ def _spindle(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> 
         return
     word, backend = values.text(path), values.text("machine.backend")
     table_path_by_driver = {
-        driver.spindle: driver.tables[0].path for driver in drivers if driver.spindle and not driver.backend
+        driver.spindle: driver.tables[0].path
+        for driver in drivers
+        if driver.spindle and not driver.backend_name
     }
     allowed = [
-        *(driver.spindle for driver in drivers if driver.spindle and driver.backend == backend),
+        *(driver.spindle for driver in drivers if driver.spindle and driver.backend_name == backend),
         *table_path_by_driver,
     ]
     if word not in allowed:
@@ -186,7 +190,7 @@ def _check_orientation(
 
 def _check_count_rates(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     """Check that the counts per second of each axis do not exceed the limit of the backend."""
-    rates = {driver.backend: driver.count_rate for driver in drivers}
+    rates = {driver.backend_name: driver.max_count_rate for driver in drivers}
     for axis in _AXES:
         path, count = f"axis.{axis}.vmax", f"axis.{axis}.count"
         if not values.has_values(path, count, "machine.backend"):
@@ -243,7 +247,7 @@ def _guard(file: MachineFileReading) -> Iterator[FileFinding]:
 def _check_serial_ports(values: FileValues, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
     """Check that each serial port is used only once."""
     taken: dict[str, str] = {}
-    for path in (table.serial_port_key for table in all_driver_tables(drivers) if table.serial_port_key):
+    for path in (table.serial_port_key for table in list_driver_tables(drivers) if table.serial_port_key):
         if values.has_values(path):
             port = values.text(path)
             first = taken.setdefault(port, path)

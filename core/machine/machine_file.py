@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from core.input_file import TooLargeError, parse_toml, read_input_text
 from core.machine import driver_tables, machine_reading, machine_rules, machine_tables, signal_rules
-from core.machine.driver_tables import DriverReading, existing_tables
+from core.machine.driver_tables import DriverTableReader, list_existing_tables
 from core.machine.machine_model import (
     Axis,
     ClampingModel,
@@ -24,7 +24,7 @@ from core.machine.machine_model import (
     Timing,
 )
 from core.machine.machine_reading import MachineReading
-from core.machine.mill_kinematics import KinematicsReading
+from core.machine.mill_kinematics import KinematicsTableReader
 from core.machine.station_rules import check_handwheel, check_jog_buttons, check_palm_buttons
 from core.message import Message
 from core.table_schema import (
@@ -79,7 +79,7 @@ def parse_machine(text: str, source: str, drivers: Sequence[DriverDeclaration]) 
 
     Raises MachineFileError with all findings if the text has errors.
     """
-    return machine_of(parse_tables(text, source), text, source, drivers)
+    return build_machine(parse_tables(text, source), text, source, drivers)
 
 
 def parse_tables(text: str, source: str) -> dict[str, object]:
@@ -90,22 +90,22 @@ def parse_tables(text: str, source: str) -> dict[str, object]:
         raise MachineFileError([FileFinding("TOML", "", str(error), "not-toml")], source) from error
 
 
-def machine_of(
+def build_machine(
     data: Mapping[str, object], text: str, source: str, drivers: Sequence[DriverDeclaration]
 ) -> Machine:
     """Return the machine that parsed tables describe; ``parse_machine`` does the same for a text."""
     reading = MachineReading(data, drivers)
     untold = [*machine_reading.fill_missing_values(reading)]
-    axes, said = _axis_names(reading), signal_rules.terminals_by_signal(reading)
+    axes, said = _axis_names(reading), signal_rules.map_terminals_by_signal(reading)
     prefixes = tuple(driver.address_prefix for driver in drivers if driver.address_prefix)
     elsewhere = {path: at for path, at in said.items() if at.startswith(prefixes)}
     wired = {path: at for path, at in said.items() if path not in elsewhere}
     file = MachineFileReading(
-        data, reading.values, axes, wired, existing_tables(data, drivers), elsewhere, prefixes
+        data, reading.values, axes, wired, list_existing_tables(data, drivers), elsewhere, prefixes
     )
-    added = DriverReading(file, drivers)
+    added = DriverTableReader(file, drivers)
     rotary = [name for name in axes if name not in machine_tables.LINEAR_AXES[reading.kind]]
-    kinematics = KinematicsReading(data, reading.values, reading.kind, rotary)
+    kinematics = KinematicsTableReader(data, reading.values, reading.kind, rotary)
     findings = [
         *reading.findings,
         *untold,
@@ -114,7 +114,7 @@ def machine_of(
         *machine_rules.check_rules(reading.values),
         *signal_rules.check_signals(reading),
         *signal_rules.check_shared_terminals(file, drivers),
-        *signal_rules.check_pots(file, drivers),
+        *signal_rules.check_potentiometers(file, drivers),
         *signal_rules.check_missing_devices(file),
         *check_handwheel(file),
         *check_jog_buttons(file),
@@ -127,15 +127,15 @@ def machine_of(
 
 
 def _machine(
-    reading: MachineReading, added: DriverReading, kinematics: KinematicsReading, source: str
+    reading: MachineReading, added: DriverTableReader, kinematics: KinematicsTableReader, source: str
 ) -> Machine:
     values = reading.values
     return Machine(
         name=values.text("machine.name"),
         backend=values.text("machine.backend"),
         axes=_axes(reading),
-        c_enabled=reading.kind == "lathe" and values.read_flag("axis.C.enabled"),
-        c_feedback=values.read_flag("c_axis.feedback"),
+        is_c_enabled=reading.kind == "lathe" and values.read_flag("axis.C.enabled"),
+        has_c_feedback=values.read_flag("c_axis.feedback"),
         spindle=values.make_model(SpindleModel, "spindle"),
         timing=values.make_model(Timing, "machine"),
         limits=values.make_model(LimitsModel, "limits"),
@@ -149,15 +149,15 @@ def _machine(
         },
         missing_outputs=frozenset(reading.missing_outputs),
         inputs={name: values.make_model(InputModel, f"io.in.{name}", name=name) for name in reading.inputs},
-        m_codes={code: (output, on) for code, output, on in signal_rules.enabled_m_codes(reading)},
-        disabled_m_codes=frozenset(signal_rules.disabled_m_codes(reading)),
-        ignored_m_codes=frozenset(signal_rules.ignored_m_codes(reading)),
+        m_codes={code: (output, on) for code, output, on in signal_rules.list_enabled_m_codes(reading)},
+        disabled_m_codes=frozenset(signal_rules.list_disabled_m_codes(reading)),
+        ignored_m_codes=frozenset(signal_rules.list_ignored_m_codes(reading)),
         source=source,
         is_inch=bool(values.is_inch),
         kind=reading.kind,
-        language=values.text("machine.language"),
-        control=values.text("machine.control"),
-        third_axis=values.text("axis.C.name") if reading.kind == "lathe" else "C",
+        mdi_language=values.text("machine.language"),
+        control_model=values.text("machine.control"),
+        third_axis_name=values.text("axis.C.name") if reading.kind == "lathe" else "C",
         is_c_modulo=_c_axis_flag(reading, "modulo") and not _c_axis_flag(reading, "linear"),
         has_c_own_drive=_c_axis_flag(reading, "own_drive") or _c_axis_flag(reading, "linear"),
         is_third_axis_linear=_c_axis_flag(reading, "linear"),
@@ -170,7 +170,7 @@ def _axis_names(reading: MachineReading) -> tuple[str, ...]:
     rotary = ("C",) if reading.kind == "lathe" else machine_tables.ROTARY_AXES[reading.kind]
     return (
         *machine_tables.LINEAR_AXES[reading.kind],
-        *(name for name in rotary if reading.values.is_stated(f"axis.{name}.vmax")),
+        *(name for name in rotary if reading.values.is_specified(f"axis.{name}.vmax")),
     )
 
 
@@ -199,7 +199,7 @@ def _axis(reading: MachineReading, name: str) -> Axis:
         travel=travel if math.isfinite(travel[0]) else None,
         home_order=values.read_integer(f"{path}.home.order") if homed else 0,
         home_speed=values.read_number(f"{path}.home.speed") if homed else 0.0,
-        rotary=not slide and not (of_lathe and _c_axis_flag(reading, "linear")),
+        is_rotary=not slide and not (of_lathe and _c_axis_flag(reading, "linear")),
     )
 
 
@@ -217,12 +217,12 @@ class KeyChange(NamedTuple):
         return Message("{path}: {old} → {new}", path=self.path, old=self.old, new=self.new)
 
 
-def compare_machine_files(old: str, new: str) -> tuple[KeyChange, ...]:
+def compare_machine_files(old_text: str, new_text: str) -> tuple[KeyChange, ...]:
     """Return every key whose value differs, in the order of the new file, followed by the removed keys.
 
     Raises ValueError if a text is not valid TOML.
     """
-    before, after = dict(_leaves(parse_toml(old))), dict(_leaves(parse_toml(new)))
+    before, after = dict(_leaves(parse_toml(old_text))), dict(_leaves(parse_toml(new_text)))
     places = [*after, *(place for place in before if place not in after)]
     return tuple(
         KeyChange(place, _shown(before, place), _shown(after, place))

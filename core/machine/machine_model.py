@@ -22,21 +22,21 @@ class Axis:
 
     name: str
     travel: tuple[float, float] | None  # from home; None: no limits
-    vmax: float
-    amax: float
-    count: float  # encoder and command step
+    max_speed: float
+    max_acceleration: float
+    count_size: float  # encoder and command step
     following_window: float
-    following_time: float
-    in_position: float
-    absolute: bool  # the position is known at power-up, so no homing is needed
+    following_time_s: float
+    in_position_tolerance: float
+    is_position_absolute: bool  # the position is known at power-up, so no homing is needed
     home_order: int = 0
     home_speed: float = 0.0
-    rotary: bool = False
+    is_rotary: bool = False
     # positions from home, X as a radius: targets of G75, or the zero of M92 on a mill
     fixed_points: tuple[float, ...] = ()
-    still_window: float = 0.2  # permitted position error at rest
-    # s after a motion before ``still_window`` applies, and s for which it must be exceeded
-    still_time: float = 0.2
+    standstill_tolerance: float = 0.2  # permitted position error at rest
+    # s after a motion before ``standstill_tolerance`` applies, and s for which it must be exceeded
+    standstill_time_s: float = 0.2
 
     @property
     def travel_with_margin(self) -> tuple[float, float]:
@@ -44,13 +44,13 @@ class Axis:
         low, high = self.travel or (-inf, inf)
         return low - _ROUNDING, high + _ROUNDING
 
-    def max_following_error(self, speed: float) -> float:
+    def compute_max_following_error(self, speed: float) -> float:
         """Return the permitted following error at a commanded speed.
 
-        The limit increases linearly from the standstill tolerance to ``following_window`` at ``vmax``.
+        The limit increases linearly from the standstill tolerance to ``following_window`` at ``max_speed``.
         """
-        share = min(abs(speed) / self.vmax, 1.0)
-        return self.still_window + (self.following_window - self.still_window) * share
+        share = min(abs(speed) / self.max_speed, 1.0)
+        return self.standstill_tolerance + (self.following_window - self.standstill_tolerance) * share
 
 
 @make_key_table
@@ -67,7 +67,7 @@ class SpindleModel:
     decel: float = declare_key(
         KeyRange(10.0, 50000.0, FileUnit.RPM_PER_SECOND),
         name="decel_rpm_s",
-        derived=True,
+        is_derived=True,
         meaning="Deceleration of the spindle. Default: `accel_rpm_s`.",
     )
     at_speed: float = declare_key(
@@ -303,19 +303,19 @@ class LimitsModel:
 
     max_feed: float = declare_key(
         KeyRange(0.1, 1000.0, FileUnit.FEED),
-        derived=True,
+        is_derived=True,
         meaning="Highest feed that F may command, along the path. Default: `vmax` of the slowest linear "
         "axis.",
     )
     manual_rapid: float = declare_key(
         KeyRange(0.1, 500.0, FileUnit.FEED),
-        derived=True,
+        is_derived=True,
         meaning="Rapid speed of a jog. Default: 100 in/min, or `vmax` of the slowest linear axis if that "
         "is lower.",
     )
     resolution: float = declare_key(
         KeyRange(1e-5, 0.02, FileUnit.LENGTH),
-        derived=True,
+        is_derived=True,
         meaning="Smallest programmable distance (X: on the radius). Default: the largest `count` of the "
         "linear axes.",
     )
@@ -348,7 +348,7 @@ class ColletModel:
     close_time: float = declare_key(
         KeyRange(0.01, 10.0, FileUnit.SECONDS),
         name="close_s",
-        derived=True,
+        is_derived=True,
         meaning="Time that the collet takes to close, used like `open_s`. Default: 0.5 s if the input "
         "`collet_closed` is wired; otherwise the key is required.",
     )
@@ -364,8 +364,8 @@ class Machine:
     name: str
     backend: str
     axes: tuple[Axis, ...]
-    c_enabled: bool
-    c_feedback: bool
+    is_c_enabled: bool
+    has_c_feedback: bool
     spindle: SpindleModel
     timing: Timing
     interlocks: Interlocks
@@ -385,9 +385,9 @@ class Machine:
     tooling_kind: str = "single"  # "gang": all tools are on one plate; "single": one tool at a time
     silenced_checks: tuple[str, ...] = ()  # checks of the part whose findings are only notes on this machine
     kind: str = "lathe"  # or "mill"
-    language: str = "omniturn"  # language of MDI: omniturn, sinumerik or klartext
-    control: str = "840d"  # SINUMERIK control for which the programs were written
-    third_axis: str = "C"  # name of C in SINUMERIK programs, on the position display and on keys
+    mdi_language: str = "omniturn"  # language of MDI: omniturn, sinumerik or klartext
+    control_model: str = "840d"  # SINUMERIK control for which the programs were written
+    third_axis_name: str = "C"  # name of C in SINUMERIK programs, on the position display and on keys
     is_c_modulo: bool = True  # C counts from 0 to below 360 degrees; otherwise its travel is -360 to +360
     has_c_own_drive: bool = False  # C has its own drive and is not the spindle
     is_third_axis_linear: bool = False  # the third axis is linear, in mm instead of degrees
@@ -401,16 +401,16 @@ class Machine:
         return min((name for name in self.outputs if name.startswith("live")), default="")
 
     @property
-    def spindle_is_c(self) -> bool:
+    def is_spindle_c_axis(self) -> bool:
         """Return whether the spindle is also the C axis, so that C cannot move while the spindle turns."""
         return self.kind == "lathe" and not self.has_c_own_drive
 
-    def displayed_axis_name(self, name: str) -> str:
+    def get_displayed_axis_name(self, name: str) -> str:
         """Return the name of an axis as displayed to the operator.
 
         The C axis of a lathe may have another name.
         """
-        return self.third_axis if self.kind == "lathe" and name == "C" else name
+        return self.third_axis_name if self.kind == "lathe" and name == "C" else name
 
     @property
     def has_rotary_table(self) -> bool:

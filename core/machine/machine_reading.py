@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from core.key_declaration import KeySchema
 from core.machine import axis_tables, machine_tables
-from core.machine.driver_tables import driver_subtables
+from core.machine.driver_tables import list_driver_subtables
 from core.machine.machine_model import InputModel, OutputModel
 from core.message import Message
 from core.table_schema import (
@@ -50,12 +50,12 @@ class MachineReading:
         self.missing_outputs: list[str] = []  # outputs that the machine does not have
         self.inputs: list[str] = []
         self.m_codes: list[str] = []
-        self.findings = _unknown_tables(data, machine_tables.top_level_tables(drivers))
+        self.findings = _unknown_tables(data, machine_tables.list_top_level_tables(drivers))
         self._read()
 
     def _read(self) -> None:
-        self._table("machine", machine_tables.machine_table_fields(self._drivers))
-        for path, keys in machine_tables.tables_without_subtables(self._drivers):
+        self._table("machine", machine_tables.get_machine_table_keys(self._drivers))
+        for path, keys in machine_tables.list_tables_without_subtables(self._drivers):
             if path in machine_tables.LATHE_TABLES and self.kind != "lathe":
                 self._of_a_lathe(path)
             else:
@@ -83,7 +83,7 @@ class MachineReading:
 
     def _table(self, path: str, keys: KeySchema) -> None:
         table = self.data.get(path, {} if path in machine_tables.OPTIONAL_TABLES else None)
-        self._keys(table, path, keys, driver_subtables(self._drivers, path))
+        self._keys(table, path, keys, list_driver_subtables(self._drivers, path))
 
     def _keys(self, table: object, path: str, keys: KeySchema, children: tuple[str, ...] = ()) -> None:
         if table is None:
@@ -184,7 +184,7 @@ def _unknown_tables(data: Mapping[str, object], top: Sequence[str]) -> list[File
             "this version of TurnDesk supports the tables {name}",
             name=", ".join(f"[{name}]" for name in top),
         )
-        guess = found.expected.removeprefix("unknown key; ")
+        guess = found.expected_value.removeprefix("unknown key; ")
         near = Message("{guess} ", guess=guess) if guess.startswith("did") else ""
         findings.append(
             FileFinding(

@@ -12,7 +12,7 @@ from core.message import Message
 from core.table_schema import FileFinding, FileValues
 
 
-class Rule(NamedTuple):
+class ValueRule(NamedTuple):
     """A rule for the value at ``key_path``.
 
     The rule is checked if all ``required_keys`` are present. ``find_error`` then returns the error, or an
@@ -31,7 +31,7 @@ def check_rules(values: FileValues) -> Iterator[FileFinding]:
             yield FileFinding(rule.key_path, "", expected, "broken-rule")
 
 
-def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> Rule:
+def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> ValueRule:
     """Return the rule that the value at ``path`` must not exceed the value at ``limit``."""
 
     def wrong(values: FileValues) -> str:
@@ -47,20 +47,20 @@ def _maximum_rule(path: str, limit: str, reason: str, unit: FileUnit) -> Rule:
             why=reason,
         )
 
-    return Rule(path, (limit,), wrong)
+    return ValueRule(path, (limit,), wrong)
 
 
-def _home_inside(axis: str) -> Rule:
+def _home_inside(axis: str) -> ValueRule:
     path = f"axis.{axis}.travel"
 
     def wrong(values: FileValues) -> str:
         low, high = values.read_pair(path)
         return "" if low <= 0.0 <= high else ("travel is measured from home, so 0 must be within the travel")
 
-    return Rule(path, (), wrong)
+    return ValueRule(path, (), wrong)
 
 
-def _fixed_points(axis: str) -> Rule:
+def _fixed_points(axis: str) -> ValueRule:
     path = f"axis.{axis}.fixed_points"
 
     def wrong(values: FileValues) -> str:
@@ -85,10 +85,10 @@ def _fixed_points(axis: str) -> Rule:
             ends=" to ".join(ends),
         )
 
-    return Rule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
+    return ValueRule(path, (f"axis.{axis}.travel", "machine.kind"), wrong)
 
 
-def _jog_overrun_rule(axis: str) -> Rule:
+def _jog_overrun_rule(axis: str) -> ValueRule:
     """Return the rule for the distance that an axis travels after the jog connection is lost.
 
     The distance is lease · vmax + vmax² / 2a.
@@ -111,10 +111,10 @@ def _jog_overrun_rule(axis: str) -> Rule:
             nearest=near,
         )
 
-    return Rule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
+    return ValueRule("machine.lease_ms", (vmax, amax, "limits.clearance"), wrong)
 
 
-def _corner_tolerance_rule(axis: str) -> Rule:
+def _corner_tolerance_rule(axis: str) -> ValueRule:
     """Return the rule that the tolerance must be at least one count, by which joints always move."""
     path, count = "limits.corner_tolerance", f"axis.{axis}.count"
 
@@ -131,14 +131,14 @@ def _corner_tolerance_rule(axis: str) -> Rule:
             least_shown=least_shown,
         )
 
-    return Rule(path, (count,), wrong)
+    return ValueRule(path, (count,), wrong)
 
 
-def _homing(axis: str) -> Rule:
+def _homing(axis: str) -> ValueRule:
     path = f"axis.{axis}.absolute"
 
     def wrong(values: FileValues) -> str:
-        known = values.read_flag(path) or values.is_stated(f"axis.{axis}.home.order")
+        known = values.read_flag(path) or values.is_specified(f"axis.{axis}.home.order")
         known = known or (axis == "C" and values.text("machine.kind") == "lathe")  # M19 finds it
         return (
             ""
@@ -148,13 +148,13 @@ def _homing(axis: str) -> Rule:
             )
         )
 
-    return Rule(path, ("machine.kind",), wrong)
+    return ValueRule(path, ("machine.kind",), wrong)
 
 
-def _home_order_rules() -> tuple[Rule, ...]:
+def _home_order_rules() -> tuple[ValueRule, ...]:
     """Return the rules that two axes must not home at the same time."""
 
-    def rule(one: str, other: str) -> Rule:
+    def rule(one: str, other: str) -> ValueRule:
         def wrong(values: FileValues) -> str:
             same = values.read_number(f"axis.{one}.home.order") == values.read_number(
                 f"axis.{other}.home.order"
@@ -169,7 +169,7 @@ def _home_order_rules() -> tuple[Rule, ...]:
                 else ""
             )
 
-        return Rule(f"axis.{other}.home.order", (f"axis.{one}.home.order",), wrong)
+        return ValueRule(f"axis.{other}.home.order", (f"axis.{one}.home.order",), wrong)
 
     return tuple(rule(one, other) for one, other in combinations("XYZABC", 2))
 
@@ -204,7 +204,7 @@ def _feedback(values: FileValues) -> str:
     return "C-axis feedback requires axis.C.enabled = true" if wanted else ""
 
 
-def _slide(axis: str) -> tuple[Rule, ...]:
+def _slide(axis: str) -> tuple[ValueRule, ...]:
     path = f"axis.{axis}"
     return (
         _home_inside(axis),
@@ -231,7 +231,7 @@ def _slide(axis: str) -> tuple[Rule, ...]:
     )
 
 
-def _window_rules(axis: str, unit: FileUnit) -> tuple[Rule, ...]:
+def _window_rules(axis: str, unit: FileUnit) -> tuple[ValueRule, ...]:
     """Return the rules for the order of the tolerances of an axis.
 
     The count, in-position, standstill and following error windows must increase in this order.
@@ -262,7 +262,7 @@ def _window_rules(axis: str, unit: FileUnit) -> tuple[Rule, ...]:
     )
 
 
-def _rotary(axis: str) -> tuple[Rule, ...]:
+def _rotary(axis: str) -> tuple[ValueRule, ...]:
     return _home_inside(axis), _homing(axis), *_window_rules(axis, FileUnit.DEGREES)
 
 
@@ -306,8 +306,8 @@ VALUE_RULES = (
         "the jog watchdog would expire before the control renews it",
         FileUnit.MILLISECONDS,
     ),
-    Rule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),
-    Rule("spindle.stop_below", ("spindle.rpm",), _stop_below),
-    Rule("tooling.kind", (), _find_turret_error),
-    Rule("c_axis.feedback", ("axis.C.enabled",), _feedback),
+    ValueRule("spindle.timeout_s", ("spindle.rpm", "spindle.accel_rpm_s", "spindle.at_speed_s"), _timeout),
+    ValueRule("spindle.stop_below", ("spindle.rpm",), _stop_below),
+    ValueRule("tooling.kind", (), _find_turret_error),
+    ValueRule("c_axis.feedback", ("axis.C.enabled",), _feedback),
 )

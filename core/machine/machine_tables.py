@@ -17,7 +17,7 @@ from core.key_declaration import (
     declare_key,
     get_declared_keys,
 )
-from core.machine.driver_tables import all_driver_tables
+from core.machine.driver_tables import list_driver_tables
 from core.machine.machine_model import (
     ClampingModel,
     ColletModel,
@@ -153,13 +153,13 @@ def _add_driver_choices(keys: tuple[KeyField, ...], key: str, words: Iterable[st
     return tuple(replace(each, choices=choices) if each.key == key else each for each in keys)
 
 
-def machine_table_fields(drivers: Sequence[DriverDeclaration]) -> tuple[KeyField, ...]:
+def get_machine_table_keys(drivers: Sequence[DriverDeclaration]) -> tuple[KeyField, ...]:
     """Return the keys of [machine], including the backends of the drivers."""
     keys = (*get_declared_keys(GeneralKeys), *get_declared_keys(Timing))
-    return _add_driver_choices(keys, "backend", (driver.backend for driver in drivers))
+    return _add_driver_choices(keys, "backend", (driver.backend_name for driver in drivers))
 
 
-def tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tuple[str, KeySchema], ...]:
+def list_tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tuple[str, KeySchema], ...]:
     """Return the paths and keys of the tables that do not contain other tables.
 
     The tables axis, io and m_codes contain other tables, some of which have names chosen in the file. The
@@ -178,9 +178,9 @@ def tables_without_subtables(drivers: Sequence[DriverDeclaration]) -> tuple[tupl
     )
 
 
-def top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
+def list_top_level_tables(drivers: Sequence[DriverDeclaration]) -> tuple[str, ...]:
     """Return the names of all tables that a file may contain, in the order of the documentation."""
-    own = [table for table in all_driver_tables(drivers) if "." not in table.path]
+    own = [table for table in list_driver_tables(drivers) if "." not in table.path]
     return (
         *(
             "machine",

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from core.key_declaration import FileUnit, KeyRange, Triple, declare_key, make_key_table
+from core.key_declaration import FileUnit, KeyRange, NumberTriple, declare_key, make_key_table
 from core.message import Message
 from core.table_schema import FileFinding, FileValues, format_toml_value, read_table
 
 KINEMATICS_TABLE = "kinematics"
-MAX_ROTARY_AXES = 2
-_DIRECTIONS: dict[str, Triple] = {
+MAX_ROTARY_AXIS_COUNT = 2
+_DIRECTIONS: dict[str, NumberTriple] = {
     "X": (1.0, 0.0, 0.0),
     "Y": (0.0, 1.0, 0.0),
     "Z": (0.0, 0.0, 1.0),
@@ -40,7 +40,7 @@ class RotaryModel:
     direction: str = declare_key(
         choices=tuple(_DIRECTIONS), meaning="Direction of the axis of rotation with all rotary axes at 0."
     )
-    point: Triple = declare_key(
+    point: NumberTriple = declare_key(
         KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
         meaning="Any point on the axis of rotation: in machine positions for a table, measured from the "
         "spindle nose for a head.",
@@ -56,7 +56,7 @@ class RotaryModel:
         return self.side == "table"
 
     @property
-    def unit_vector(self) -> Triple:
+    def unit_vector(self) -> NumberTriple:
         """Return the direction of the axis of rotation as a unit vector."""
         return _DIRECTIONS[self.direction]
 
@@ -68,7 +68,7 @@ class KinematicsModel:
     ``chain`` contains the axes in their order from the workpiece to the tool.
     """
 
-    origin: Triple = declare_key(
+    origin: NumberTriple = declare_key(
         KeyRange(-5000.0, 5000.0, FileUnit.LENGTH),
         meaning="Machine position of the workpiece zero with all rotary axes at 0.",
     )
@@ -80,7 +80,7 @@ class KinematicsModel:
     chain: tuple[RotaryModel, ...] = ()
 
 
-class KinematicsReading:
+class KinematicsTableReader:
     """Parser of the optional table [kinematics]; ``findings`` contains the errors in the table."""
 
     def __init__(
@@ -144,11 +144,13 @@ class KinematicsReading:
         The rules are checked only if these values are valid.
         """
         values = self._values
-        if len(self._names) > MAX_ROTARY_AXES:
+        if len(self._names) > MAX_ROTARY_AXIS_COUNT:
             yield FileFinding(
                 Message("[{table}]", table=KINEMATICS_TABLE),
                 "",
-                Message("at most {most_rotaries} rotary axes are supported", most_rotaries=MAX_ROTARY_AXES),
+                Message(
+                    "at most {most_rotaries} rotary axes are supported", most_rotaries=MAX_ROTARY_AXIS_COUNT
+                ),
                 "broken-rule",
             )
         orders: dict[float, str] = {}

@@ -56,10 +56,10 @@ class SetterModel:
         meaning="Distance by which the tool retracts between the two touches.",
     )
 
-    def touch_position(self, axis: str, sign: int) -> float:
+    def compute_touch_position(self, axis: str, direction_sign: int) -> float:
         """Return the position at which the tip touches the stylus in this direction, in mm from part zero."""
         middle = self.x if axis == "X" else self.z
-        return middle - sign * self.width / 2.0
+        return middle - direction_sign * self.width / 2.0
 
 
 def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
@@ -89,7 +89,7 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
     if values.has_values(*keys):
         speed, over = values.read_number("setter.speed"), values.read_number("setter.overtravel")
         accel = min(values.read_number("axis.X.amax"), values.read_number("axis.Z.amax"))
-        needed = stopping_distance(speed, accel, values.read_number("machine.commit_ms"))
+        needed = compute_stopping_distance(speed, accel, values.read_number("machine.commit_ms"))
         if needed > over * (1 + 1e-9):
             far = format_value(needed, FileUnit.LENGTH, inch)
             why = Message(
@@ -100,13 +100,13 @@ def _rules(file: MachineFileReading) -> Iterator[FileFinding]:
             yield FileFinding("setter.speed", "", why, "broken-rule")
 
 
-def stopping_distance(speed: float, accel: float, commit: float) -> float:
+def compute_stopping_distance(speed: float, acceleration: float, commit_time_s: float) -> float:
     """Return the maximum distance from the touch to standstill, in mm.
 
     The distance consists of the travel during the detection delay and the commit time, and the braking
     distance.
     """
-    return speed * (MAX_TOUCH_DELAY_S + commit) + speed * speed / (2.0 * accel)
+    return speed * (MAX_TOUCH_DELAY_S + commit_time_s) + speed * speed / (2.0 * acceleration)
 
 
 SETTER_DRIVER = DriverDeclaration(

@@ -39,7 +39,7 @@ def check_signals(reading: MachineReading) -> Iterator[FileFinding]:
     yield from _check_lamps(reading)
 
 
-def terminals_by_signal(reading: MachineReading) -> dict[str, str]:
+def map_terminals_by_signal(reading: MachineReading) -> dict[str, str]:
     """Return the terminal of each signal, by the key path of the signal."""
     paths = [f"io.out.{name}" for name in reading.outputs] + [f"io.in.{name}" for name in reading.inputs]
     values = reading.values
@@ -110,7 +110,7 @@ def _mdi_language(reading: MachineReading) -> str:
     return said if said in FIXED_M_CODES else LANGUAGES[reading.kind][0]
 
 
-def ignored_m_codes(reading: MachineReading) -> Iterator[int]:
+def list_ignored_m_codes(reading: MachineReading) -> Iterator[int]:
     """Yield the M codes that have no effect on this machine."""
     for code in reading.m_codes:
         keys = f"m_codes.{code}.ignored", f"m_codes.{code}.enabled"
@@ -118,7 +118,7 @@ def ignored_m_codes(reading: MachineReading) -> Iterator[int]:
             yield int(code)
 
 
-def enabled_m_codes(reading: MachineReading) -> Iterator[tuple[int, str, bool]]:
+def list_enabled_m_codes(reading: MachineReading) -> Iterator[tuple[int, str, bool]]:
     """Yield the number, output and output state of every complete and enabled M code."""
     values = reading.values
     for code in reading.m_codes:
@@ -128,7 +128,7 @@ def enabled_m_codes(reading: MachineReading) -> Iterator[tuple[int, str, bool]]:
             yield int(code), values.text(f"{path}.output"), values.read_flag(f"{path}.on")
 
 
-def disabled_m_codes(reading: MachineReading) -> Iterator[int]:
+def list_disabled_m_codes(reading: MachineReading) -> Iterator[int]:
     """Yield the M codes that are defined but not enabled."""
     values = reading.values
     for code in reading.m_codes:
@@ -144,7 +144,7 @@ def _check_outputs_turn_off(reading: MachineReading) -> Iterator[FileFinding]:
     """
     if any(path.startswith("m_codes.") for path in reading.values.invalid_paths):
         return  # the invalid entry may be the missing code
-    codes = list(enabled_m_codes(reading))
+    codes = list(list_enabled_m_codes(reading))
     off = {output for _, output, on in codes if not on} | set(REQUIRED_OUTPUTS)
     for code, output, on in codes:
         if on and output not in off:
@@ -213,7 +213,9 @@ def check_shared_terminals(
             yield FileFinding(place, format_toml_value(terminal), expected, "broken-rule")
 
 
-def check_pots(file: MachineFileReading, drivers: Sequence[DriverDeclaration]) -> Iterator[FileFinding]:
+def check_potentiometers(
+    file: MachineFileReading, drivers: Sequence[DriverDeclaration]
+) -> Iterator[FileFinding]:
     """Yield a finding for every potentiometer with an invalid range or switch."""
     values = file.values
     there = (*file.terminals, *(path.removesuffix(".at") for path in values.invalid_paths))
@@ -246,7 +248,7 @@ def check_missing_devices(file: MachineFileReading) -> Iterator[FileFinding]:
     """
     analog = {f"io.analog.{name}": f"io.analog.{name}.at" for name in file.list_table_keys("io.analog")}
     pots = {path: file.values.text(at) for path, at in analog.items() if file.values.has_values(at)}
-    reserved = tuple(each for each in DEVICE_PREFIXES if each not in file.prefixes)
+    reserved = tuple(each for each in DEVICE_PREFIXES if each not in file.address_prefixes)
     for path, terminal in {**file.terminals, **pots}.items():
         if terminal.startswith(reserved):
             why = "this TurnDesk is installed without support for this device; write another address"
@@ -255,7 +257,12 @@ def check_missing_devices(file: MachineFileReading) -> Iterator[FileFinding]:
 
 def _backend(values: FileValues, drivers: Sequence[DriverDeclaration]) -> DriverDeclaration | None:
     return next(
-        (each for each in drivers if each.backend and values.has_text("machine.backend", each.backend)), None
+        (
+            each
+            for each in drivers
+            if each.backend_name and values.has_text("machine.backend", each.backend_name)
+        ),
+        None,
     )
 
 

@@ -8,26 +8,26 @@ from collections.abc import Iterator
 from core.message import Message
 from core.table_schema import FileFinding, MachineFileReading, format_toml_value
 
-HANDWHEEL = "handwheel"
+HANDWHEEL_INPUT = "handwheel"
 HANDWHEEL_ENABLE_INPUT = "wheel_enable"  # pressed while the handwheel may move an axis
 STEP_FACTORS = {"wheel_x1": 1, "wheel_x10": 10, "wheel_x100": 100}  # times the smallest step
 AXIS_BUTTON, STEP_BUTTON = "wheel_axis", "wheel_step"  # each press selects the next axis, the next step
 JOG_RAPID_INPUT = "jog_rapid"  # pressed together with a jog button
 
 
-def axis_selector_input(axis_name: str) -> str:
+def get_axis_selector_input(axis_name: str) -> str:
     """Return the name of the input that is on while the axis selector switch selects this axis."""
     return f"wheel_{axis_name.lower()}"
 
 
-def jog_button_input(axis: str, sign: int) -> str:
+def get_jog_button_input(axis: str, sign: int) -> str:
     """Return the name of the input of the jog button for this axis and direction."""
     return f"jog_{axis.lower()}_{'plus' if sign > 0 else 'minus'}"
 
 
 def check_jog_buttons(file: MachineFileReading) -> Iterator[FileFinding]:
     """Yield a finding for every jog button whose axis does not exist."""
-    known = [JOG_RAPID_INPUT, *(jog_button_input(axis, sign) for axis in file.axes for sign in (1, -1))]
+    known = [JOG_RAPID_INPUT, *(get_jog_button_input(axis, sign) for axis in file.axes for sign in (1, -1))]
     for name in file.list_table_keys("io.in"):
         if name.startswith("jog_") and name not in known:
             yield FileFinding(
@@ -43,7 +43,7 @@ def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
     values, analog = file.values, file.list_table_keys("io.analog")
     for name in analog:
         path = f"io.analog.{name}.counts_per_click"
-        if values.has_values(path) and name == HANDWHEEL and values.read_number(path) == 0:
+        if values.has_values(path) and name == HANDWHEEL_INPUT and values.read_number(path) == 0:
             yield FileFinding(
                 path,
                 "0",
@@ -51,14 +51,14 @@ def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
                 "opposite direction",
                 "broken-rule",
             )
-        if values.has_values(path) and name != HANDWHEEL and values.read_number(path) != 1:
+        if values.has_values(path) and name != HANDWHEEL_INPUT and values.read_number(path) != 1:
             yield FileFinding(
                 path,
                 f"{values.read_number(path):g}",
                 "an override potentiometer has no detents; remove this key",
                 "broken-rule",
             )
-    selectors = [axis_selector_input(axis) for axis in file.axes]
+    selectors = [get_axis_selector_input(axis) for axis in file.axes]
     known = [HANDWHEEL_ENABLE_INPUT, *STEP_FACTORS, *selectors, AXIS_BUTTON, STEP_BUTTON]
     there = file.list_table_keys("io.in")
     for button, switches in ((AXIS_BUTTON, selectors), (STEP_BUTTON, list(STEP_FACTORS))):
@@ -76,7 +76,7 @@ def check_handwheel(file: MachineFileReading) -> Iterator[FileFinding]:
                 Message("this input is not a handwheel switch; use one of {known}", known=", ".join(known)),
                 "broken-rule",
             )
-        elif name.startswith("wheel_") and HANDWHEEL not in analog:
+        elif name.startswith("wheel_") and HANDWHEEL_INPUT not in analog:
             at = (
                 format_toml_value(values.text(f"io.in.{name}.at"))
                 if values.has_values(f"io.in.{name}.at")

@@ -32,17 +32,17 @@ class AxisLike(Protocol):
     """The properties of an axis in the machine file that the motion planner uses."""
 
     @property
-    def vmax(self) -> float:
+    def max_speed(self) -> float:
         """Return the maximum speed of the axis in mm/s, or degrees/s for a rotary axis."""
         ...
 
     @property
-    def amax(self) -> float:
+    def max_acceleration(self) -> float:
         """Return the maximum acceleration of the axis in mm/s², or degrees/s² for a rotary axis."""
         ...
 
     @property
-    def count(self) -> float:
+    def count_size(self) -> float:
         """Return the encoder and command step of the axis in mm, or degrees for a rotary axis."""
         ...
 
@@ -87,10 +87,10 @@ class MotionLimits:
         together. Each axis may always move the joint by one encoder count.
         """
         return cls(
-            vmax=tuple(axis.vmax for axis in axes),
-            amax=tuple(axis.amax for axis in axes),
+            vmax=tuple(axis.max_speed for axis in axes),
+            amax=tuple(axis.max_acceleration for axis in axes),
             interval=interval,
-            grain=max(*(axis.count for axis in axes[:2]), corner_tolerance / math.sqrt(2.0)),
+            grain=max(*(axis.count_size for axis in axes[:2]), corner_tolerance / math.sqrt(2.0)),
         )
 
     @property
@@ -99,12 +99,12 @@ class MotionLimits:
         return np.array(self.vmax)
 
     @property
-    def acceleration_array(self) -> FloatArray:
+    def max_acceleration_array(self) -> FloatArray:
         """Return ``amax`` as an array of shape (axes,)."""
         return np.array(self.amax)
 
     @property
-    def plane_speed(self) -> float:
+    def max_plane_speed(self) -> float:
         """Return the speed in mm/s that a lathe can use in every direction of the XZ plane.
 
         This is the smaller ``vmax`` of X and Z.
@@ -112,7 +112,7 @@ class MotionLimits:
         return min(self.vmax[:2])
 
     @property
-    def plane_acceleration(self) -> float:
+    def max_plane_acceleration(self) -> float:
         """Return the acceleration in mm/s² that a lathe can use in every direction of the XZ plane.
 
         This is the smaller ``amax`` of X and Z.

@@ -15,8 +15,10 @@ import numpy.typing as npt
 
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray
 
-AROUND = 6  # joints on either side for a mean, four times to smooth and twice to correct excess moves
-SUPPORT = 8 * AROUND + 2  # joints on either side that affect a joint
+MAX_NEIGHBOR_COUNT = (
+    6  # joints on either side for a mean, four times to smooth and twice to correct excess moves
+)
+SUPPORT_PIECE_COUNT = 8 * MAX_NEIGHBOR_COUNT + 2  # joints on either side that affect a joint
 _CORRECTIONS = 2
 Points = npt.NDArray[np.complex128]
 
@@ -33,7 +35,7 @@ class _Window(NamedTuple):
     size: FloatArray
 
     @classmethod
-    def of(cls, around: IntArray) -> _Window:
+    def create(cls, around: IntArray) -> _Window:
         """Return the windows with ``around`` (m,) joints on either side of each joint."""
         at = np.arange(len(around))
         return cls(at - around, at + around + 1, _twice((2 * around + 1).astype(np.float64)))
@@ -46,13 +48,13 @@ class _Window(NamedTuple):
         np.cumsum(sums, out=sums)
         mean = sums.take(self.behind)
         mean -= sums.take(self.first)
-        flat = axes(mean)
+        flat = view_coordinates(mean)
         flat /= self.size
         mean += base
         return mean
 
 
-def axes(points: Points) -> FloatArray:
+def view_coordinates(points: Points) -> FloatArray:
     """Return a view (2m,) of the coordinates of the points, alternating X and Z."""
     return points.view(np.float64)
 
@@ -62,17 +64,17 @@ def _twice(values: npt.NDArray[np.generic]) -> FloatArray:
     return np.repeat(values, 2).astype(np.float64, copy=False)
 
 
-def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -> Points:
+def ease_joints(joints: Points, distances: FloatArray, is_free: BoolArray, max_shifts: FloatArray) -> Points:
     """Return the joints (m,) moved toward the mean of their neighbors.
 
-    ``s`` contains the distances of the joints along the path. Each joint moves by at most ``allowed`` along
-    each axis. Every run of joints where ``free`` (m,) is True is smoothed separately, so that smoothing
-    never crosses a corner.
+    ``distances`` contains the distances of the joints along the path. Each joint moves by at most
+    ``allowed`` along each axis. Every run of joints where ``free`` (m,) is True is smoothed separately, so
+    that smoothing never crosses a corner.
     """
-    window = _Window.of(np.minimum(_clear(free), AROUND))
+    window = _Window.create(np.minimum(_clear(is_free), MAX_NEIGHBOR_COUNT))
     last = window.behind - 1
-    span = _twice(np.maximum(s[last] - s[window.first], 1e-12))
-    off = _twice(s - window.mean(s.astype(np.complex128)).real)
+    span = _twice(np.maximum(distances[last] - distances[window.first], 1e-12))
+    off = _twice(distances - window.mean(distances.astype(np.complex128)).real)
 
     def mean(of: Points) -> Points:
         """Return the mean of the neighbors, corrected along their line to the distance of the joint.
@@ -82,7 +84,7 @@ def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -
         rise = of.take(last)
         rise -= of.take(window.first)
         carried = window.mean(of)
-        slope = axes(rise)
+        slope = view_coordinates(rise)
         slope /= span
         slope *= off
         carried += rise
@@ -90,9 +92,9 @@ def eased(joints: Points, s: FloatArray, free: BoolArray, allowed: FloatArray) -
 
     once = mean(mean(joints))
     # A mean flattens the curve by some height, and the mean of the mean flattens it by as much again.
-    smooth = 2.0 * axes(once)
-    smooth -= axes(mean(mean(once)))
-    return _within(smooth, axes(joints), window, free, _twice(allowed)).view(np.complex128)
+    smooth = 2.0 * view_coordinates(once)
+    smooth -= view_coordinates(mean(mean(once)))
+    return _within(smooth, view_coordinates(joints), window, is_free, _twice(max_shifts)).view(np.complex128)
 
 
 def _within(
@@ -103,7 +105,7 @@ def _within(
     The part of a move that exceeds its limit is first spread over the neighboring joints.
     """
     low, high = joints - allowed, joints + allowed
-    near, movable = _Near.of(free), _twice(free)
+    near, movable = _Near.find_neighbors(free), _twice(free)
     for _ in range(_CORRECTIONS):
         over = np.clip(smooth, low, high)
         over -= smooth
@@ -112,7 +114,7 @@ def _within(
         for correct, excess in ((np.add, over), (np.subtract, -over)):
             most = near.largest(np.maximum(excess, 0.0, out=excess))
             most *= movable
-            correct(smooth, axes(window.mean(most.view(np.complex128))), out=smooth)
+            correct(smooth, view_coordinates(window.mean(most.view(np.complex128))), out=smooth)
     return np.clip(smooth, low, high, out=smooth)
 
 
@@ -136,7 +138,7 @@ class _Near(NamedTuple):
     steps: tuple[tuple[int, FloatArray | None], ...]
 
     @classmethod
-    def of(cls, free: BoolArray) -> _Near:
+    def find_neighbors(cls, free: BoolArray) -> _Near:
         """Return the neighbors within the runs of ``free`` joints.
 
         A joint that is not free ends a run.
@@ -164,7 +166,7 @@ class _Near(NamedTuple):
 def _doublings() -> Iterator[int]:
     """Yield the shifts by which windows of one joint grow to windows of AROUND + 1 joints."""
     reach = 1
-    while reach <= AROUND:
-        step = min(reach, AROUND + 1 - reach)
+    while reach <= MAX_NEIGHBOR_COUNT:
+        step = min(reach, MAX_NEIGHBOR_COUNT + 1 - reach)
         yield step
         reach += step

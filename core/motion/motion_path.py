@@ -26,7 +26,7 @@ from core.motion.axis_limits import (
     MotionLimits,
 )
 from core.motion.block_table import BlockGroup, BlockTable, MotionBlock, build_table
-from core.motion.joint_easing import SUPPORT
+from core.motion.joint_easing import SUPPORT_PIECE_COUNT
 from core.motion.path_pieces import (
     SAME_POINT_TOLERANCE,
     PathPieces,
@@ -83,7 +83,7 @@ def divide_piece(pieces: PathPieces, table: BlockTable, limits: MotionLimits, in
     share = (
         np.array([0.0, 1.0]) if move.is_straight else divide_into_chords(move, float(piece.rate[0]), limits)
     )
-    points = move.machine_positions(share)
+    points = move.compute_machine_positions(share)
     points += table.start[index] - points[0]
     points[-1] = table.end[index]
     return _make_straight_pieces(piece, points, np.diff(share) * move.length)
@@ -96,11 +96,11 @@ def divide_into_chords(move: CurvedMove, feed_mm_s: float, limits: MotionLimits)
     differ so little in direction that the joint between them permits the feed ``feed_mm_s``, unless the
     move itself has a corner at that joint.
     """
-    share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.critical_fraction()
+    share, nearest = np.linspace(0.0, 1.0, _FIRST_CHORDS + 1), move.get_critical_fraction()
     if np.abs(share - nearest).min() > _ROUNDING:
         share = np.sort(np.append(share, nearest))
     for _ in range(_MAX_HALVINGS):
-        ends = move.machine_positions(share)
+        ends = move.compute_machine_positions(share)
         wide = _deviates(move, share, ends) | _exceeds_velocity_step(
             move, share, ends, OVERRIDE_MAX * feed_mm_s, limits
         )
@@ -117,9 +117,9 @@ def _deviates(move: CurvedMove, fractions: FloatArray, ends: FloatArray) -> Bool
     The chords are between the positions ``ends`` at ``fractions`` of the move.
     """
     span, change = np.diff(fractions), np.diff(ends, axis=0)
-    true = move.machine_positions((fractions[:-1] + _CHECK_FRACTIONS[:, None] * span).ravel())
+    true = move.compute_machine_positions((fractions[:-1] + _CHECK_FRACTIONS[:, None] * span).ravel())
     chord = (ends[:-1] + _CHECK_FRACTIONS[:, None, None] * change).reshape(true.shape)
-    seen = move.workpiece_points(np.concatenate([chord, true]))
+    seen = move.compute_workpiece_points(np.concatenate([chord, true]))
     off = seen[: len(true)] - seen[len(true) :]
     worst: FloatArray = (off**2).sum(axis=1).reshape(len(_CHECK_FRACTIONS), len(span)).max(axis=0)
     return worst > MAX_CHORD_ERROR_MM**2
@@ -134,11 +134,11 @@ def _exceeds_velocity_step(
     turn = np.abs(np.diff(direction, axis=0))
     mean = 0.5 * (length[:-1] + length[1:])
     fastest = np.minimum(speed, find_min_ratio(limits.speeds, np.abs(direction)))
-    bend = find_min_ratio(limits.acceleration_array * CENTRIPETAL_SHARE, turn / mean[:, None])
+    bend = find_min_ratio(limits.max_acceleration_array * CENTRIPETAL_SHARE, turn / mean[:, None])
     v = np.minimum(np.minimum(fastest[:-1], fastest[1:]), np.sqrt(bend))
-    sharp = (v[:, None] * turn > VELOCITY_STEP_FRACTION * limits.acceleration_array * limits.interval).any(
-        axis=1
-    )
+    sharp = (
+        v[:, None] * turn > VELOCITY_STEP_FRACTION * limits.max_acceleration_array * limits.interval
+    ).any(axis=1)
     long = mean > v * limits.interval  # shorter chords belong to a corner of the move itself
     wide = np.zeros(len(length), dtype=bool)
     wide[:-1] |= sharp & long
@@ -242,7 +242,7 @@ class MotionPath:
         """
         return float(self.limits.interval * self.speed_caps.max(initial=0.0))
 
-    def block_span(self, number: int) -> tuple[float, float]:
+    def find_block_span(self, number: int) -> tuple[float, float]:
         """Return the distances at which block ``number`` starts and ends.
 
         Raises MotionError if the block is not on this path.
@@ -341,17 +341,22 @@ class PathBuilder:
         """
         known = concatenate_pieces([*self._parts, pieces[:0]])
         if self._written is None or not len(known):  # blocks without length leave nothing to continue
-            self._parts, self._written = [smooth_joints(pieces, self._limits)], pieces[-2 * SUPPORT :]
+            self._parts, self._written = (
+                [smooth_joints(pieces, self._limits)],
+                pieces[-2 * SUPPORT_PIECE_COUNT :],
+            )
             return
         end = self._s0 + float(known.length.sum())
-        redo = min(SUPPORT, len(known), len(self._written))
+        redo = min(SUPPORT_PIECE_COUNT, len(known), len(self._written))
         if reached > end - float(known.length[len(known) - redo :].sum()):
             redo = 0
         self._parts = [
             known[: len(known) - redo],
             extend_smoothed_pieces(known, self._written, pieces, redo, self._limits),
         ]
-        self._written = concatenate_pieces([self._written, pieces[-2 * SUPPORT :]])[-2 * SUPPORT :]
+        self._written = concatenate_pieces([self._written, pieces[-2 * SUPPORT_PIECE_COUNT :]])[
+            -2 * SUPPORT_PIECE_COUNT :
+        ]
 
     def build_path(self) -> MotionPath:
         """Return the path of all blocks that were added and have not been dropped.
@@ -408,7 +413,9 @@ class PathBuilder:
             first_pieces=np.concatenate([[0], np.cumsum(np.concatenate(self._counts))]),
             start_position=self._start,
             limits=self._limits,
-            loose_joint_count=SUPPORT if not self._closed and ends_with_chord(pieces, self._limits) else 0,
+            loose_joint_count=SUPPORT_PIECE_COUNT
+            if not self._closed and ends_with_chord(pieces, self._limits)
+            else 0,
         )
 
 

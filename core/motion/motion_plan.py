@@ -132,12 +132,12 @@ def build_profile(
         end_distance=min(float(s[-1] + length[-1]), float(path.joint_distances[first_piece + len(length)])),
         duration_s=float(t[-1]),
         phases=Phases(
-            t=t[:-1],
-            dt=dt,
-            s=_in_turn(s, s + up, s + up + cruise).take(kept),
-            v=_in_turn(v0, vp, vp).take(kept),
-            a=_in_turn(vp - v0, vp - vp, v1 - vp).take(kept) / dt,
-            piece=np.repeat(np.arange(first_piece, first_piece + len(length)), 3).take(kept),
+            start_times_s=t[:-1],
+            durations_s=dt,
+            start_distances=_in_turn(s, s + up, s + up + cruise).take(kept),
+            start_speeds=_in_turn(v0, vp, vp).take(kept),
+            accelerations=_in_turn(vp - v0, vp - vp, v1 - vp).take(kept) / dt,
+            piece_indices=np.repeat(np.arange(first_piece, first_piece + len(length)), 3).take(kept),
         ),
     )
 
@@ -181,29 +181,29 @@ def plan_motion(
     start_speed: float = 0.0,
     feed_scale: float = 1.0,
     rapid_scale: float = 1.0,
-    stop: bool = False,
+    stop_early: bool = False,
 ) -> MotionProfile:
     """Return the fastest motion from ``start_distance`` to rest.
 
     The motion starts at ``start_speed``; the default distance is the start of the path. It ends at the end
-    of the path or, if ``stop`` is True, as soon as braking permits. A scale of 0 stops the motion before
-    the first feed (or rapid) piece, or immediately if the motion can no longer stop before that piece. A
-    speed above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and corners always
-    apply. Raises MotionError if a value is not valid, or if the speed is too high for the next corner or
-    for a stop on this path. Such a state does not come from a plan on this path.
+    of the path or, if ``stop_early`` is True, as soon as braking permits. A scale of 0 stops the motion
+    before the first feed (or rapid) piece, or immediately if the motion can no longer stop before that
+    piece. A speed above a new, lower feed is reduced with full acceleration. Limits of axes, arcs and
+    corners always apply. Raises MotionError if a value is not valid, or if the speed is too high for the
+    next corner or for a stop on this path. Such a state does not come from a plan on this path.
     """
     _demand_sane(start_speed, feed_scale, rapid_scale)
     at = _start(path, start_distance)
     first = int(path.piece_at(np.array([at]))[0])
     if path.joint_distances[-1] - at <= ROUNDING_TOLERANCE or not len(path):
         return _rest(path, start_speed)
-    if stop:
+    if stop_early:
         return _braking_profile(path, at, start_speed, first)
     scale = np.where(path.pieces.rapid[first:], rapid_scale, feed_scale)
     soft = np.minimum(path.speed_caps[first:], scale * path.pieces.rate[first:])
     blocked = np.flatnonzero(soft == 0.0)
     last = int(blocked[0]) if len(blocked) else len(soft)
-    run = _PieceRun.of(path, at, first, first + last)
+    run = _PieceRun.from_path(path, at, first, first + last)
     if len(blocked) and (last == 0 or not run.can_rest(start_speed)):
         return _braking_profile(path, at, start_speed, first)
     speeds = _squared_speeds(run, soft[:last] ** 2, start_speed)
@@ -240,7 +240,7 @@ def find_last_settled_joint(path: MotionPath, start_distance: float | None = Non
 
 def _find_settled_joint(path: MotionPath, first: int, known: int) -> int:
     """Return the last settled joint from ``first`` on and before ``known``, or -1."""
-    run = _PieceRun.of(path, float(path.joint_distances[first]), first, known)
+    run = _PieceRun.from_path(path, float(path.joint_distances[first]), first, known)
     limit = run.hard[:-1].copy()
     soft = np.minimum(path.speed_caps[first:known], path.pieces.rate[first:known]) ** 2
     np.minimum(limit, soft, out=limit)
@@ -262,7 +262,7 @@ class _PieceRun:
     hard: FloatArray  # (n+1,) squared speed limits that always apply, 0 at the end
 
     @classmethod
-    def of(cls, path: MotionPath, at: float, first: int, last: int) -> _PieceRun:
+    def from_path(cls, path: MotionPath, at: float, first: int, last: int) -> _PieceRun:
         length, cap = path.pieces.length[first:last].copy(), path.speed_caps[first:last] ** 2
         hard = np.zeros(len(length) + 1)
         if len(length):
@@ -340,7 +340,7 @@ def _braking_profile(path: MotionPath, at: float, v: float, first: int) -> Motio
     last = first
     while True:
         last = min(len(path), last + max(64, last - first))
-        run = _PieceRun.of(path, at, first, last)
+        run = _PieceRun.from_path(path, at, first, last)
         if run.can_rest(v) or last == len(path):
             break
     if not run.can_rest(v):

@@ -21,28 +21,28 @@ MAX_ARC_ERROR_MM = 2.5e-4  # mm by which a part may deviate from the arc between
 SHORT_PART_S = (
     1e-6  # s; shorter parts use the tangent, because their position differences would be rounding errors
 )
-MAX_PART_ANGLE = 0.25  # rad, longest part of an arc
+MAX_PART_ANGLE_RAD = 0.25  # rad, longest part of an arc
 
 
 class Phases(NamedTuple):
     """Arrays (k,) of k phases of constant acceleration along a path, each within one piece."""
 
-    t: FloatArray  # start, s
-    dt: FloatArray  # length, s
-    s: FloatArray  # distance along the path at the start, mm
-    v: FloatArray  # speed at the start, mm/s
-    a: FloatArray  # mm/s²
-    piece: IntArray
+    start_times_s: FloatArray  # start, s
+    durations_s: FloatArray  # length, s
+    start_distances: FloatArray  # distance along the path at the start, mm
+    start_speeds: FloatArray  # speed at the start, mm/s
+    accelerations: FloatArray  # mm/s²
+    piece_indices: IntArray
 
     def select(self, selection: IntArray | BoolArray | slice) -> Phases:
         """Return only the phases that ``selection`` selects."""
         return Phases(
-            t=self.t[selection],
-            dt=self.dt[selection],
-            s=self.s[selection],
-            v=self.v[selection],
-            a=self.a[selection],
-            piece=self.piece[selection],
+            start_times_s=self.start_times_s[selection],
+            durations_s=self.durations_s[selection],
+            start_distances=self.start_distances[selection],
+            start_speeds=self.start_speeds[selection],
+            accelerations=self.accelerations[selection],
+            piece_indices=self.piece_indices[selection],
         )
 
 
@@ -59,12 +59,12 @@ def make_axis_segments(path: MotionPath, phases: Phases, time_origin_s: float) -
     parts = _part_counts(path, phases)
     owner = np.repeat(np.arange(len(parts)), parts)
     nth = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
-    h = (phases.dt / np.maximum(parts, 1))[owner]
+    h = (phases.durations_s / np.maximum(parts, 1))[owner]
     p, v, a = _phase_states(path, phases.select(owner), nth * h)
-    arc = np.flatnonzero(path.pieces.curvatures[phases.piece[owner]] != 0.0) if len(path) else owner
+    arc = np.flatnonzero(path.pieces.curvatures[phases.piece_indices[owner]] != 0.0) if len(path) else owner
     if len(arc):
         v[arc], a[arc] = _join_on_arc(path, phases.select(owner[arc]), nth[arc], h[arc], (p[arc], v[arc]))
-    return time_origin_s + phases.t[owner] + nth * h, h, p, v, a
+    return time_origin_s + phases.start_times_s[owner] + nth * h, h, p, v, a
 
 
 def _join_on_arc(
@@ -73,7 +73,7 @@ def _join_on_arc(
     """Return the velocity and acceleration that move each part from its start to its end on the arc."""
     end = (nth + 1) * h
     p1, _, _ = _phase_states(path, phases, end)
-    resting = (phases.v + phases.a * end <= 1e-9 * phases.v)[:, None]
+    resting = (phases.start_speeds + phases.accelerations * end <= 1e-9 * phases.start_speeds)[:, None]
     p0, v0 = begin
     short = (h < SHORT_PART_S)[:, None]
     chord, span = p1 - p0, np.maximum(h, SHORT_PART_S)[:, None]
@@ -87,9 +87,11 @@ def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatA
 
     ``v`` (k, 3) is the velocity at this point.
     """
-    pieces = path.pieces[phases.piece]
-    tangent = pieces.tangent(np.clip(phases.s - path.joint_distances[phases.piece], 0.0, pieces.length))
-    curved: FloatArray = tangent * phases.a[:, None]
+    pieces = path.pieces[phases.piece_indices]
+    tangent = pieces.tangent(
+        np.clip(phases.start_distances - path.joint_distances[phases.piece_indices], 0.0, pieces.length)
+    )
+    curved: FloatArray = tangent * phases.accelerations[:, None]
     turning = pieces.curvatures * np.hypot(v[:, 0], v[:, 1])
     curved[:, 0] += turning * v[:, 1]
     curved[:, 1] -= turning * v[:, 0]
@@ -97,15 +99,15 @@ def _arc_acceleration(path: MotionPath, phases: Phases, v: FloatArray) -> FloatA
 
 
 def _part_counts(path: MotionPath, phases: Phases) -> IntArray:
-    counts = np.ones(len(phases.t), dtype=np.int64)
+    counts = np.ones(len(phases.start_times_s), dtype=np.int64)
     if not len(path):
         return counts
-    bend = np.abs(path.pieces.curvatures[phases.piece])
+    bend = np.abs(path.pieces.curvatures[phases.piece_indices])
     arc = np.flatnonzero(bend)
     bend, (_, dt, _, v, a, _) = bend[arc], phases.select(arc)
     fastest = np.maximum(v, v + a * dt)
     jerk = fastest * bend * np.hypot(fastest**2 * bend, 3.0 * a)
-    longest = np.minimum(MAX_PART_S, MAX_PART_ANGLE / (fastest * bend))
+    longest = np.minimum(MAX_PART_S, MAX_PART_ANGLE_RAD / (fastest * bend))
     longest = np.minimum(longest, np.cbrt(MAX_ARC_ERROR_MM * 40.5 / jerk))
     counts[arc] = np.maximum(np.ceil(dt / longest * (1.0 - 1e-12)), 1.0).astype(np.int64)
     return counts
@@ -118,12 +120,16 @@ def _phase_states(
 
     ``tau`` (k,) is the time in seconds since the start of the phase.
     """
-    pieces = path.pieces[phases.piece]
-    speed = np.maximum(phases.v + phases.a * tau, 0.0)
-    local = phases.s - path.joint_distances[phases.piece] + (phases.v + 0.5 * phases.a * tau) * tau
+    pieces = path.pieces[phases.piece_indices]
+    speed = np.maximum(phases.start_speeds + phases.accelerations * tau, 0.0)
+    local = (
+        phases.start_distances
+        - path.joint_distances[phases.piece_indices]
+        + (phases.start_speeds + 0.5 * phases.accelerations * tau) * tau
+    )
     local = np.clip(local, 0.0, pieces.length)
     tangent = pieces.tangent(local)
-    return pieces.point(local), tangent * speed[:, None], tangent * phases.a[:, None]
+    return pieces.point(local), tangent * speed[:, None], tangent * phases.accelerations[:, None]
 
 
 ROUNDING_TOLERANCE_MM = 1e-9  # mm that are a rounding error
@@ -145,7 +151,7 @@ class MotionProfile:
     phases: Phases
 
     def __len__(self) -> int:
-        return len(self.phases.t)
+        return len(self.phases.start_times_s)
 
     def distance_and_speed_at(self, times_s: FloatArray | float) -> tuple[FloatArray, FloatArray]:
         """Return the distances and speeds at the times ``times_s`` (m,).
@@ -157,8 +163,8 @@ class MotionProfile:
             return np.full(times.shape, self.end_distance), np.zeros(times.shape)
         k = self._phase(times)
         _, dt, s0, v0, a, _ = self.phases.select(k)
-        tau = np.clip(times - self.phases.t[k], 0.0, dt)
-        ends = np.append(self.phases.s[1:], self.end_distance)[k]
+        tau = np.clip(times - self.phases.start_times_s[k], 0.0, dt)
+        ends = np.append(self.phases.start_distances[1:], self.end_distance)[k]
         s = np.clip(s0 + (v0 + 0.5 * a * tau) * tau, s0, ends)
         done = times >= self.duration_s
         return np.where(done, self.end_distance, s), np.where(done, 0.0, np.maximum(v0 + a * tau, 0.0))
@@ -172,7 +178,7 @@ class MotionProfile:
         if not len(self):
             return 0.0
         last = self.phases.select(slice(-1, None))
-        return max(float(last.v[0] + last.a[0] * last.dt[0]), 0.0)
+        return max(float(last.start_speeds[0] + last.accelerations[0] * last.durations_s[0]), 0.0)
 
     def positions_at(self, times_s: FloatArray | float) -> FloatArray:
         """Return the machine positions (m, axes) at the times ``times_s`` (m,).
@@ -183,7 +189,7 @@ class MotionProfile:
         s, _ = self.distance_and_speed_at(times)
         if not len(self):
             return self.path.positions_at(s)
-        return self.path.positions_at(s, self.phases.piece[self._phase(times)])
+        return self.path.positions_at(s, self.phases.piece_indices[self._phase(times)])
 
     def block_numbers_at(self, times_s: FloatArray | float) -> IntArray:
         """Return the numbers of the blocks that are executed at the times ``times_s`` (m,).
@@ -193,7 +199,7 @@ class MotionProfile:
         times = np.atleast_1d(np.asarray(times_s, dtype=np.float64))
         if not len(self):
             return np.zeros(times.shape, dtype=np.int64)
-        owner: IntArray = self.path.pieces.block[self.phases.piece[self._phase(times)]]
+        owner: IntArray = self.path.pieces.block[self.phases.piece_indices[self._phase(times)]]
         return owner
 
     def block_number_at(self, time_s: float) -> int:
@@ -203,8 +209,8 @@ class MotionProfile:
         """
         if not len(self):
             return 0
-        found = int(self.phases.t.searchsorted(time_s, side="right")) - 1
-        piece = self.phases.piece[min(max(found, 0), len(self) - 1)]
+        found = int(self.phases.start_times_s.searchsorted(time_s, side="right")) - 1
+        piece = self.phases.piece_indices[min(max(found, 0), len(self) - 1)]
         return int(self.path.pieces.block[piece])
 
     def find_block_times(self) -> tuple[IntArray, FloatArray, FloatArray]:
@@ -224,7 +230,9 @@ class MotionProfile:
         beyond = distances > self.end_distance + ROUNDING_TOLERANCE_MM
         if not len(self):
             return np.where(beyond, np.inf, 0.0)
-        k = np.clip(np.searchsorted(self.phases.s, distances, side="right") - 1, 0, len(self) - 1)
+        k = np.clip(
+            np.searchsorted(self.phases.start_distances, distances, side="right") - 1, 0, len(self) - 1
+        )
         t0, dt, s0, v0, a, _ = self.phases.select(k)
         ahead = np.maximum(distances - s0, 0.0)
         total = v0 + np.sqrt(np.maximum(v0**2 + 2.0 * a * ahead, 0.0))
@@ -237,9 +245,9 @@ class MotionProfile:
     ) -> SegmentArrays:
         """Return the setpoint arrays (t, dt, p, v, a) of a time window.
 
-        The arrays are the fields of ``core.ports.Segments``. A phase on a line gives one piece of constant
-        acceleration. Arcs give parts of at most 2 ms, as described in ``make_axis_segments``. The times t
-        are times of the profile plus ``time_origin_s``. The arrays end in motion if ``end_time_s`` is
+        The arrays are the fields of ``core.ports.MotionSegments``. A phase on a line gives one piece of
+        constant acceleration. Arcs give parts of at most 2 ms, as described in ``make_axis_segments``. The
+        times t are times of the profile plus ``time_origin_s``. The arrays end in motion if ``end_time_s`` is
         before the end of the profile, and at rest otherwise.
         """
         return make_axis_segments(self.path, self._window(start_time_s, end_time_s), time_origin_s)
@@ -249,9 +257,9 @@ class MotionProfile:
 
         The part may end in motion.
         """
-        count = int(np.searchsorted(self.phases.s, distance, side="left"))
+        count = int(np.searchsorted(self.phases.start_distances, distance, side="left"))
         phases = self.phases.select(slice(0, count))
-        duration = float(phases.t[-1] + phases.dt[-1]) if count else 0.0
+        duration = float(phases.start_times_s[-1] + phases.durations_s[-1]) if count else 0.0
         return MotionProfile(
             path=self.path,
             start_distance=self.start_distance,
@@ -266,24 +274,26 @@ class MotionProfile:
         Near a stop, exact times cannot be calculated from distances.
         """
         joints = np.arange(len(self.path) + 1)
-        times = np.append(self.phases.t, self.duration_s)[np.searchsorted(self.phases.piece, joints)]
+        times = np.append(self.phases.start_times_s, self.duration_s)[
+            np.searchsorted(self.phases.piece_indices, joints)
+        ]
         return np.where(self.path.joint_distances > self.end_distance + ROUNDING_TOLERANCE_MM, np.inf, times)
 
     def _window(self, t_from: float, t_to: float) -> Phases:
         lo, hi = max(t_from, 0.0), min(t_to, self.duration_s)
         if not len(self) or hi <= lo:
             return self.phases.select(slice(0, 0))
-        i = int(np.searchsorted(self.phases.t, lo, side="right")) - 1
-        j = int(np.searchsorted(self.phases.t, hi, side="left"))
+        i = int(np.searchsorted(self.phases.start_times_s, lo, side="right")) - 1
+        j = int(np.searchsorted(self.phases.start_times_s, hi, side="left"))
         part = self.phases.select(np.arange(i, j))  # an index array makes a copy, a slice would not
-        part.dt[-1] = min(part.dt[-1], hi - part.t[-1])
-        skip = lo - part.t[0]
-        part.s[0] += (part.v[0] + 0.5 * part.a[0] * skip) * skip
-        part.v[0] += part.a[0] * skip
-        part.t[0] += skip
-        part.dt[0] -= skip
-        return part.select(part.dt > ROUNDING_TOLERANCE_S)
+        part.durations_s[-1] = min(part.durations_s[-1], hi - part.start_times_s[-1])
+        skip = lo - part.start_times_s[0]
+        part.start_distances[0] += (part.start_speeds[0] + 0.5 * part.accelerations[0] * skip) * skip
+        part.start_speeds[0] += part.accelerations[0] * skip
+        part.start_times_s[0] += skip
+        part.durations_s[0] -= skip
+        return part.select(part.durations_s > ROUNDING_TOLERANCE_S)
 
     def _phase(self, times: FloatArray) -> IntArray:
-        found: IntArray = np.searchsorted(self.phases.t, times, side="right") - 1
+        found: IntArray = np.searchsorted(self.phases.start_times_s, times, side="right") - 1
         return np.clip(found, 0, len(self) - 1)

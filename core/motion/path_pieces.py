@@ -17,7 +17,7 @@ import numpy as np
 from core.message import Message
 from core.motion.axis_limits import BoolArray, FloatArray, IntArray, MotionError, MotionLimits
 from core.motion.block_table import BlockTable
-from core.motion.joint_easing import eased
+from core.motion.joint_easing import ease_joints
 
 SAME_POINT_TOLERANCE = 1e-7  # mm or degrees; closer points count as one point
 _MAX_DEG_PER_MM = 1e5  # degrees of C per mm; distances have an accuracy of 1e-9 mm, so C has 1e-4 degrees
@@ -197,7 +197,7 @@ def smooth_joints(pieces: PathPieces, limits: MotionLimits) -> PathPieces:
     joints = _joint_positions(pieces)
     points = np.empty(len(joints), dtype=np.complex128)
     points.real, points.imag = joints[:, 0], joints[:, 1]
-    points = eased(points, s, free, allowed)
+    points = ease_joints(points, s, free, allowed)
     joints[:, 0], joints[:, 1] = points.real, points.imag
     return move_joints(pieces, joints, free)
 
@@ -226,23 +226,23 @@ def move_joints(pieces: PathPieces, joints: FloatArray, is_free: BoolArray) -> P
 
 
 def extend_smoothed_pieces(
-    smoothed: PathPieces,
-    programmed: PathPieces,
+    smoothed_pieces: PathPieces,
+    programmed_pieces: PathPieces,
     new_pieces: PathPieces,
     redo_count: int,
     limits: MotionLimits,
 ) -> PathPieces:
-    """Return the last ``redo_count`` pieces of ``smoothed`` and all ``new_pieces``, smoothed together.
+    """Return the last ``redo_count`` pieces of ``smoothed_pieces`` and all ``new_pieces``, smoothed together.
 
-    ``programmed`` contains the last pieces of ``smoothed`` as programmed, at least SUPPORT more than
-    ``redo_count`` if so many exist.
+    ``programmed_pieces`` contains the last pieces of ``smoothed_pieces`` as programmed, at least SUPPORT
+    more than ``redo_count`` if so many exist.
     """
-    both = concatenate_pieces([programmed, new_pieces])
-    smooth = smooth_joints(both, limits)[len(programmed) - redo_count :]
+    both = concatenate_pieces([programmed_pieces, new_pieces])
+    smooth = smooth_joints(both, limits)[len(programmed_pieces) - redo_count :]
     begin = (
-        smoothed[-1:].point(smoothed.length[-1:])[0]
+        smoothed_pieces[-1:].point(smoothed_pieces.length[-1:])[0]
         if redo_count == 0
-        else smoothed.start[len(smoothed) - redo_count]
+        else smoothed_pieces.start[len(smoothed_pieces) - redo_count]
     )
     # Only chords have moved ends. A rotation of C must not change its length because of noise in X and Z.
     if not len(smooth) or not _is_short_chord(smooth[:1], limits)[0] or (smooth.start[0] == begin).all():
@@ -260,7 +260,9 @@ def ends_with_chord(pieces: PathPieces, limits: MotionLimits) -> bool:
 def _is_short_chord(pieces: PathPieces, limits: MotionLimits) -> BoolArray:
     """Return a mask (n,) of the lines of linear axes that are short enough to be affected by rounding."""
     # Rounding turns longer lines so little that no speed is too high for the joint.
-    longest = _TURNS * limits.grain * limits.plane_speed / (limits.plane_acceleration * limits.interval)
+    longest = (
+        _TURNS * limits.grain * limits.max_plane_speed / (limits.max_plane_acceleration * limits.interval)
+    )
     alone = (pieces.curvatures == 0.0) & ~pieces.direction[:, 2:].any(axis=1)
     chords: BoolArray = alone & (pieces.length < longest) & pieces.direction[:, :2].any(axis=1)
     return chords

@@ -54,14 +54,14 @@ class JointLimits(NamedTuple):
 def find_joint_limits(
     pieces: PathPieces,
     single_limits: JointLimits,
-    fastest: FloatArray,
+    max_speeds: FloatArray,
     limits: MotionLimits,
     *,
     has_more_pieces: bool,
 ) -> JointLimits:
     """Return the limits of the joints of ``single_limits``, considering the path around each joint.
 
-    The joints are passed at ``fastest`` (k,) mm/s or slower. ``single_limits`` contains the limit of each
+    The joints are passed at ``max_speeds`` (k,) mm/s or slower. ``single_limits`` contains the limit of each
     joint considered separately; the returned limits are never lower. Joint i is between the pieces i and
     i+1. The path is assumed to continue straight at both ends. If ``has_more_pieces`` is True, joints
     within one interval of the end are considered separately and reserve the full acceleration, so that
@@ -69,11 +69,11 @@ def find_joint_limits(
     """
     if not len(single_limits.joint_numbers):
         return single_limits
-    share = CENTRIPETAL_SHARE * limits.acceleration_array
+    share = CENTRIPETAL_SHARE * limits.max_acceleration_array
     s = np.concatenate([[0.0], np.cumsum(pieces.length)])
     at = s[single_limits.joint_numbers + 1]
     mean = 0.5 * (pieces.length[single_limits.joint_numbers] + pieces.length[single_limits.joint_numbers + 1])
-    speeds = fastest / 2.0 ** np.arange(_HALVINGS)[:, None]
+    speeds = max_speeds / 2.0 ** np.arange(_HALVINGS)[:, None]
     asked = np.zeros((_HALVINGS, len(at), len(share)))
     for i, speed in enumerate(speeds):
         asked[i] = _second_difference(pieces, s, at, speed * limits.interval) / limits.interval**2
@@ -82,10 +82,10 @@ def find_joint_limits(
     over = ratio > 1.0
     squared = np.where(over, (speeds / np.where(over, ratio, 1.0)) ** 2, np.inf).min(axis=0)
     if has_more_pieces:
-        squared[at + fastest * limits.interval > s[-1]] = 0.0
+        squared[at + max_speeds * limits.interval > s[-1]] = 0.0
     better = np.maximum(squared, single_limits.squared_speeds)
     taken = np.where((speeds**2 <= better)[:, :, None], asked, 0.0).max(axis=0, initial=0.0)
-    taken[squared < fastest**2] = share
+    taken[squared < max_speeds**2] = share
     kept = (squared <= single_limits.squared_speeds) & (squared > 0.0)
     taken[kept] = single_limits.required_acceleration[kept]
     return JointLimits(single_limits.joint_numbers, better, taken)
@@ -135,8 +135,8 @@ def find_speed_caps(pieces: PathPieces, limits: MotionLimits) -> FloatArray:
     """
     caps = find_min_ratio(limits.speeds, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
-    centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.plane_acceleration * pieces.radius[arc])
-    caps[arc] = np.minimum(caps[arc], np.minimum(limits.plane_speed, centripetal))
+    centripetal = np.sqrt(CENTRIPETAL_SHARE * limits.max_plane_acceleration * pieces.radius[arc])
+    caps[arc] = np.minimum(caps[arc], np.minimum(limits.max_plane_speed, centripetal))
     return caps
 
 
@@ -154,21 +154,21 @@ def find_accelerations(pieces: PathPieces, speeds: FloatArray, limits: MotionLim
     On arcs, this is the tangential part that remains when ``speeds`` require the centripetal part of the
     vector sum.
     """
-    along = find_min_ratio(limits.acceleration_array, np.abs(pieces.direction))
+    along = find_min_ratio(limits.max_acceleration_array, np.abs(pieces.direction))
     arc = pieces.curvatures != 0.0
     centripetal = speeds[arc] ** 2 * np.abs(pieces.curvatures[arc])
-    along[arc] = np.minimum(along[arc], np.sqrt(limits.plane_acceleration**2 - centripetal**2))
+    along[arc] = np.minimum(along[arc], np.sqrt(limits.max_plane_acceleration**2 - centripetal**2))
     return along
 
 
-def find_min_ratio(limit: FloatArray, demand: FloatArray) -> FloatArray:
-    """Return the smallest ratio of ``limit`` to ``demand`` over the axes (n,).
+def find_min_ratio(limits: FloatArray, demands: FloatArray) -> FloatArray:
+    """Return the smallest ratio of ``limits`` to ``demands`` over the axes (n,).
 
-    ``limit``, (axes,) or (n, axes), is greater than 0. The ratio of an axis is inf if its ``demand`` (n,
+    ``limits``, (axes,) or (n, axes), is greater than 0. The ratio of an axis is inf if its ``demands`` (n,
     axes) is 0.
     """
     with np.errstate(divide="ignore"):
-        ratios = limit / demand
+        ratios = limits / demands
     return reduce(np.minimum, ratios.T)  # three long columns are compared faster than a million short rows
 
 
@@ -185,17 +185,17 @@ def find_direction_changes(pieces: PathPieces) -> FloatArray:
 
 
 def limit_velocity_steps(
-    direction_changes: FloatArray, lengths: FloatArray, limits: MotionLimits
+    direction_changes: FloatArray, accelerations: FloatArray, limits: MotionLimits
 ) -> FloatArray:
     """Return the squared speeds (n-1,) in mm²/s² at which no velocity step exceeds the interval limit.
 
     A corner changes the velocity by v·|Δu|. The motion may brake before the corner and accelerate after it
-    with ``lengths`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
+    with ``accelerations`` (n-1,) mm/s². The condition is therefore (v + a·interval/2)·|Δu| ≤ amax·interval. A
     full reversal requires a stop. Setpoints that are half an interval before or after the corner exceed the
     limit by at most an eighth. The result is infinite without a change of direction.
     """
-    sharp = find_min_ratio(limits.acceleration_array * limits.interval, direction_changes)
-    caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * lengths, 0.0) ** 2
+    sharp = find_min_ratio(limits.max_acceleration_array * limits.interval, direction_changes)
+    caps: FloatArray = np.maximum(sharp - 0.5 * limits.interval * accelerations, 0.0) ** 2
     return caps
 
 
@@ -210,7 +210,7 @@ def limit_curve_speeds(pieces: PathPieces, direction_changes: FloatArray, limits
     """
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     shorter = np.minimum(pieces.length[:-1], pieces.length[1:])
-    share = limits.acceleration_array * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
+    share = limits.max_acceleration_array * np.minimum(CENTRIPETAL_SHARE * mean, shorter)[:, None]
     return find_min_ratio(share, direction_changes)
 
 
@@ -227,7 +227,7 @@ def _chord_demand(
     fastest = np.minimum(speeds[:-1], speeds[1:])
     mean = 0.5 * (pieces.length[:-1] + pieces.length[1:])
     alone = turns * (np.minimum(fastest**2, single) / mean)[:, None]
-    much = (alone > _MIN_DEMAND_FRACTION * limits.acceleration_array).any(axis=1) | (single < fastest**2)
+    much = (alone > _MIN_DEMAND_FRACTION * limits.max_acceleration_array).any(axis=1) | (single < fastest**2)
     joints = np.flatnonzero(much & (mean < fastest * limits.interval))
     given = JointLimits(joints, single[joints], alone[joints])
     return find_joint_limits(pieces, given, fastest[joints], limits, has_more_pieces=more)
@@ -251,7 +251,7 @@ def find_spare_acceleration(
     exactly this fifth, so that a later corner cannot reduce it. The result is infinite for longer lines and
     for arcs.
     """
-    amax = limits.acceleration_array
+    amax = limits.max_acceleration_array
     spare = np.full(len(pieces), np.inf)
     short = (pieces.length < speeds * limits.interval) & (pieces.curvatures == 0.0)
     if not short.any():

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.part.swept_edge import AxisFacingEdge, FloatArray, Point, axis_facing_edge, sweep_edge
+from core.part.swept_edge import AxisFacingEdge, FloatArray, Point, find_axis_facing_edge, sweep_edge
 from core.part.tool_outline import make_outline as outline_of
 from core.part.tool_shape import ToolShape
 from core.part.turned_part import NO_CUT, Cut, TurnedPart
@@ -58,7 +58,7 @@ class _OutlineSet(NamedTuple):
     front: float
 
     @classmethod
-    def of(cls, outlines: Iterable[FloatArray]) -> _OutlineSet:
+    def from_outlines(cls, outlines: Iterable[FloatArray]) -> _OutlineSet:
         sides = [_sides(outline) for outline in outlines]
         z = min((float(each.near.z[0]) for each in sides), default=math.inf)
         r = min((float(each.near.r.min()) for each in sides), default=math.inf)
@@ -86,8 +86,8 @@ class Cutter:
         self.x_sign = -1.0 if is_rear else 1.0  # sign of X on the working side
         turned = np.array([1.0, self.x_sign])
         outlines = tuple(cutting_outlines)
-        self._cutting = _OutlineSet.of(outline * turned for outline in outlines)
-        self._body = _OutlineSet.of(outline * turned for outline in body_outlines)
+        self._cutting = _OutlineSet.from_outlines(outline * turned for outline in outlines)
+        self._body = _OutlineSet.from_outlines(outline * turned for outline in body_outlines)
         self.edge_height_mm = max((float(np.ptp(outline[:, 1])) for outline in outlines), default=0.0)
         self._clears: dict[int, float] = {}
 
@@ -96,7 +96,7 @@ class Cutter:
         """Return whether the holder of the tool is known."""
         return bool(self._body.sides)
 
-    def trailing_edge_angle(self, cutting_direction: int) -> float:
+    def find_trailing_edge_angle(self, cutting_direction: int) -> float:
         """Return the angle in degrees from Z at which the trailing edge rises from the tip.
 
         ``cutting_direction`` is the sign of the Z motion while cutting. The result is 90 if no trailing
@@ -159,15 +159,17 @@ class Cutter:
             met if met.depth_mm > _OVERLAP_TOLERANCE_MM and met.width_mm > _OVERLAP_TOLERANCE_MM else NO_CUT
         )
 
-    def cut_thread(self, part: TurnedPart, start: Point, end: Point, lead: float, revolutions: float) -> Cut:
+    def cut_thread(
+        self, part: TurnedPart, start: Point, end: Point, lead_mm: float, revolutions: float
+    ) -> Cut:
         """Cut a thread in the section plane, where the edge passes once per revolution.
 
         ``revolutions`` is the number of revolutions since the pass started in step with the spindle. If the
         lead is finer than a column, the thread is cut like a cylinder, because the columns cannot show it.
         """
-        if lead <= part.columns.step_mm:
+        if lead_mm <= part.columns.step_mm:
             return self.cut_material(part, start, end)
-        count = abs(end[0] - start[0]) / lead
+        count = abs(end[0] - start[0]) / lead_mm
         met, at = NO_CUT, np.ceil(revolutions - _PHASE) - revolutions
         while at <= count + _PHASE:
             share = min(at / count, 1.0) if count else 0.0
@@ -179,7 +181,7 @@ class Cutter:
     def _is_clear(self, part: TurnedPart, outlines: _OutlineSet, start: Point, end: Point) -> bool:
         """Return whether the outlines remain in front of the part or outside its diameter."""
         columns, low = part.columns, outlines.low
-        if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.number:
+        if min(start[0], end[0]) + low[0] > columns.first_z_mm + columns.step_mm * columns.column_count:
             return True
         return self.side is CutSide.OUTSIDE and min(start[1], end[1]) + low[1] > part.max_stock_radius_mm
 
@@ -188,7 +190,7 @@ class Cutter:
         if self.side is not CutSide.OUTSIDE or not outlines.sides:
             return False
         z = min(start[0], end[0]) + outlines.low[0], max(start[0], end[0]) + outlines.front
-        return min(start[1], end[1]) + outlines.low[1] > part.max_radius_between(*z)
+        return min(start[1], end[1]) + outlines.low[1] > part.find_max_radius(*z)
 
     def _front(self, place: Point) -> Point:
         return place[0], place[1] * self.x_sign
@@ -231,7 +233,9 @@ def _find_opposite_wall(part: TurnedPart, outline: _OutlineSides, start: Point, 
 
 
 def _sides(outline: FloatArray) -> _OutlineSides:
-    return _OutlineSides(axis_facing_edge(outline), axis_facing_edge(outline * np.array([1.0, -1.0])))
+    return _OutlineSides(
+        find_axis_facing_edge(outline), find_axis_facing_edge(outline * np.array([1.0, -1.0]))
+    )
 
 
 def _mirrored(point: Point) -> Point:
@@ -257,7 +261,10 @@ class SolidTool(NamedTuple):
         low = self.lower_corner + np.minimum(start, end)
         high = self.upper_corner + np.maximum(start, end)
         columns, radius = part.columns, part.max_stock_radius_mm
-        if low[0] > columns.first_z_mm + columns.step_mm * columns.number or high[0] < columns.first_z_mm:
+        if (
+            low[0] > columns.first_z_mm + columns.step_mm * columns.column_count
+            or high[0] < columns.first_z_mm
+        ):
             return NO_CUT
         if low[1] > radius or high[1] < -radius:
             return NO_CUT

@@ -153,12 +153,16 @@ class Insert:
 # --- ANSI B212.4: inscribed circle in 1/8 in, thickness in 1/16 in, corner in 1/64 in ----------------------
 
 
-def edge_length(corner: float, next_corner: float, circle_diameter: float) -> float:
+def calculate_edge_length(corner_deg: float, next_corner_deg: float, circle_diameter: float) -> float:
     """Return the length of the edge between two corners of a polygon around an inscribed circle.
 
     The corners are interior angles in degrees.
     """
-    return circle_diameter / 2.0 * (1.0 / tan(radians(corner / 2.0)) + 1.0 / tan(radians(next_corner / 2.0)))
+    return (
+        circle_diameter
+        / 2.0
+        * (1.0 / tan(radians(corner_deg / 2.0)) + 1.0 / tan(radians(next_corner_deg / 2.0)))
+    )
 
 
 def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Insert:
@@ -168,13 +172,13 @@ def make_insert(shape: str, circle_diameter: float, nose_radius: float) -> Inser
         edges: tuple[float, ...] = (circle_diameter / sin(radians(corners[0])), _K_EDGE) * 2
     else:
         edges = tuple(
-            edge_length(corner, after, circle_diameter)
+            calculate_edge_length(corner, after, circle_diameter)
             for corner, after in pairwise((*corners, *corners[:1]))
         )
     return Insert(shape, corners, edges, circle_diameter, nose_radius if corners else circle_diameter / 2.0)
 
 
-def metric_circle_sizes(shape: str) -> dict[str, float]:
+def list_metric_circle_sizes(shape: str) -> dict[str, float]:
     """Return the inscribed circles in mm by the two digits of ISO 1832.
 
     The digits are the edge length in whole mm, rounded down.
@@ -186,7 +190,7 @@ def metric_circle_sizes(shape: str) -> dict[str, float]:
     for inch in (*(_SMALL if shape in "CDSTVW" else ()), *_SERIES):
         circle = round(inch * MM_PER_INCH, 6)
         # A triangle for 1/4 in has an edge of 10.9985 mm, which the standard rounds to 11.
-        sizes[f"{int(edge_length(corners[0], corners[1], circle) + 0.005):02d}"] = circle
+        sizes[f"{int(calculate_edge_length(corners[0], corners[1], circle) + 0.005):02d}"] = circle
     return {**sizes, **_UNUSUAL.get(shape, {})}
 
 
@@ -250,7 +254,7 @@ class _CodeDigits:
     left: str
     place: int  # position of the last character read, without blanks and dashes
 
-    def take(self, found: str, what: str, known: Mapping[str, float]) -> float:
+    def remove_digits(self, found: str, what: str, known: Mapping[str, float]) -> float:
         """Remove the next characters of the code and return their value."""
         if not found or len(found) < len(min(known, key=len)):
             place, known_codes = self.place + len(found) + 1, " ".join(sorted(known))
@@ -295,16 +299,18 @@ def _meaningless(code: str, place: int, found: str, what: str, known: Iterable[s
 def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     """Return the inscribed circle, the thickness and the nose radius in mm that a metric code specifies."""
     edge = size.left[:2]
-    circle = size.take(
-        edge, Message("size for insert shape {shape}", shape=size.shape), metric_circle_sizes(size.shape)
+    circle = size.remove_digits(
+        edge, Message("size for insert shape {shape}", shape=size.shape), list_metric_circle_sizes(size.shape)
     )
     if size.shape == "C":
         circle = _THIN.get((edge, size.left[:2]), circle)
-    thickness = size.take(size.left[:2], "thickness", _THICKNESS)
+    thickness = size.remove_digits(size.left[:2], "thickness", _THICKNESS)
     if size.shape != "R":
-        return circle, thickness, size.take(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
+        return circle, thickness, size.remove_digits(size.left[:2], "corner radius (tenths of a mm)", _CORNER)
     if (
-        size.take(size.left[:2], "round-insert code (in place of the corner radius)", {"00": 0.0, "M0": 1.0})
+        size.remove_digits(
+            size.left[:2], "round-insert code (in place of the corner radius)", {"00": 0.0, "M0": 1.0}
+        )
         and edge == "12"
     ):
         circle = _METRIC_ROUND
@@ -313,14 +319,14 @@ def _read_metric_sizes(size: _CodeDigits) -> tuple[float, float, float]:
 
 def _read_inch_sizes(size: _CodeDigits) -> tuple[float, float, float]:
     """Return the inscribed circle, the thickness and the nose radius in mm that an inch code specifies."""
-    circle = size.take(_next_number(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
-    thickness = size.take(
+    circle = size.remove_digits(_next_number(size, _FRACTION), "insert size (eighths of an inch)", _EIGHTHS)
+    thickness = size.remove_digits(
         _next_number(size, _FRACTION), "insert thickness (sixteenths of an inch)", _SIXTEENTHS
     )
     corner = _next_number(size, _CORNER_FRACTION)
     if size.shape == "R" and corner in {"", "0"}:  # a round insert needs no corner
         return circle * MM_PER_INCH, thickness * MM_PER_INCH, circle * MM_PER_INCH / 2.0
-    nose = size.take(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
+    nose = size.remove_digits(corner, "corner radius (1/64 in)", _SIXTY_FOURTHS)
     if size.left[:1].isdigit():
         raise InsertCodeError(
             Message(
@@ -365,7 +371,7 @@ def parse_holder(text: str) -> ToolHolder | None:
     return _parse_shank_size(words.lower()) or _coded(words.upper())
 
 
-def standard_shank(width: float) -> ToolHolder:
+def make_standard_shank(width: float) -> ToolHolder:
     """Return a standard shank of the given width in mm."""
     return ToolHolder(shank_width_mm=width, reach_mm=_reach(width))
 
@@ -398,7 +404,7 @@ def _parse_shank_size(words: str) -> ToolHolder | None:
         return None
     above, _, under = figure.partition("/")
     wide = float(above) / float(under or 1.0) * (MM_PER_INCH if inches else 1.0)
-    return standard_shank(wide) if 0.0 < wide <= 100.0 else None
+    return make_standard_shank(wide) if 0.0 < wide <= 100.0 else None
 
 
 def _reach(width: float) -> float:

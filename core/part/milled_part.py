@@ -18,10 +18,10 @@ import numpy as np
 from core.part.polar_field import NO_MATERIAL, IntArray, PolarField, RemovedMaterial
 from core.part.ray_cuts import (
     FloatArray,
-    capsule_intervals,
     clip_interval,
-    nearest_angle,
-    radial_mill_intervals,
+    find_capsule_intervals,
+    find_nearest_angles,
+    find_radial_mill_intervals,
     unite_intervals,
 )
 from core.part.tool_polygons import PartError
@@ -65,7 +65,9 @@ class MilledPart:
 
     # --- turning
 
-    def remove_turned(self, first_column: int, start: FloatArray, end: FloatArray) -> RemovedMaterial:
+    def remove_turned_material(
+        self, first_column: int, start: FloatArray, end: FloatArray
+    ) -> RemovedMaterial:
         """Remove the material between two radii (m,), from column ``first_column`` on.
 
         ``start`` and ``end`` are the radii of each column.
@@ -76,7 +78,7 @@ class MilledPart:
     # --- a mill parallel to the axis
 
     def mill_axial(
-        self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
+        self, path: FloatArray, radius: float, cutting_length: float = math.inf, cone_height: float = 0.0
     ) -> RemovedMaterial:
         """Mill along ``path`` (m, 3) with the tool parallel to Z.
 
@@ -86,14 +88,16 @@ class MilledPart:
         """
         path = _path_lines(path)
         met = NO_MATERIAL
-        for rise, r in _iter_cone_steps(radius, point):
+        for rise, r in _iter_cone_steps(radius, cone_height):
             lifted = path + np.array([0.0, 0.0, rise])
-            if not point:
-                self.field.divide_columns(_floor_levels(lifted, length))
-            met = self._take(self._axial_cuts(lifted, r, length - rise, self.field.column_centers), met)
+            if not cone_height:
+                self.field.divide_columns(_floor_levels(lifted, cutting_length))
+            met = self._take(
+                self._axial_cuts(lifted, r, cutting_length - rise, self.field.column_centers), met
+            )
         return met
 
-    def hits_axial(
+    def has_axial_collision(
         self, path: FloatArray, radius: float, length: float = math.inf, point: float = 0.0
     ) -> bool:
         """Return whether the mill would hit material on its path, without removing the material.
@@ -141,9 +145,9 @@ class MilledPart:
         self,
         path: FloatArray,
         radius: float,
-        length: float = math.inf,
-        height: float = 0.0,
-        point: float = 0.0,
+        cutting_length: float = math.inf,
+        axis_offset: float = 0.0,
+        cone_height: float = 0.0,
     ) -> RemovedMaterial:
         """Mill along ``path`` (m, 3) with the tool on a radius of the part.
 
@@ -153,16 +157,18 @@ class MilledPart:
         axis, only in the angle are exact. Other moves are divided into steps that leave 0.001 mm.
         """
         met = NO_MATERIAL
-        runs = list(self._group_strokes(path, radius, height))
+        runs = list(self._group_strokes(path, radius, axis_offset))
         if not runs:
             return met
         self._divide_at_ends(runs, radius)
-        for rise, r in _iter_cone_steps(radius, point):
+        for rise, r in _iter_cone_steps(radius, cone_height):
             for run in runs:
-                met = self._take(self._radial_cuts(_lifted(run, rise), r, length - rise, height), met)
+                met = self._take(
+                    self._radial_cuts(_lifted(run, rise), r, cutting_length - rise, axis_offset), met
+                )
         return met
 
-    def hits_radial(
+    def has_radial_collision(
         self,
         path: FloatArray,
         radius: float,
@@ -204,10 +210,10 @@ class MilledPart:
         If ``covers_whole_columns`` is True, the cut covers every column that it touches.
         """
         field = self.field
-        columns = field.columns_between(
+        columns = field.find_columns_between(
             min(s.back_z_mm for s in run) - radius, max(s.front_z_mm for s in run) + radius
         )
-        turned = [nearest_angle(field.ray_angles - s.angle_rad, s.rotation_rad) for s in run]
+        turned = [find_nearest_angles(field.ray_angles - s.angle_rad, s.rotation_rad) for s in run]
         widest = _half_angle(min(s.end_radius_mm for s in run), radius + abs(height))
         rays = np.flatnonzero(np.min(np.abs(turned), axis=0) <= widest)
         if columns.stop <= columns.start or not len(rays):
@@ -219,7 +225,7 @@ class MilledPart:
         for stroke, angles in zip(run, turned, strict=True):
             off = np.maximum(np.maximum(stroke.back_z_mm - front, back - stroke.front_z_mm), 0.0)
             half = np.sqrt(np.maximum(radius * radius - off * off, 0.0))
-            near, far = radial_mill_intervals(angles[rays], half, stroke.end_radius_mm, length, height)
+            near, far = find_radial_mill_intervals(angles[rays], half, stroke.end_radius_mm, length, height)
             # Strokes of a run overlap, so they cover one interval of each ray.
             np.minimum(low, near, out=low)
             np.maximum(high, far, out=high)
@@ -308,7 +314,9 @@ class _DiscSweep:
             return np.zeros((1, len(self._angles))), np.zeros((1, len(self._angles)))
         start, delta_mm = self._start[lines], self._way[lines]
         return unite_intervals(
-            *capsule_intervals(start + begin * delta_mm, start + stop * delta_mm, self._radius, self._angles)
+            *find_capsule_intervals(
+                start + begin * delta_mm, start + stop * delta_mm, self._radius, self._angles
+            )
         )
 
 

@@ -128,7 +128,7 @@ class PolarField:
             np.where(self.outer_radii > self.inner_radii, self.outer_radii, 0.0).max(axis=(0, 2))
         )
 
-    def columns_between(self, back_z_mm: float, front_z_mm: float) -> slice:
+    def find_columns_between(self, back_z_mm: float, front_z_mm: float) -> slice:
         """Return a slice of the columns that overlap a range of Z."""
         first = int(np.searchsorted(self.column_edges, back_z_mm, side="right")) - 1
         last = int(np.searchsorted(self.column_edges, front_z_mm, side="left"))
@@ -275,12 +275,12 @@ def _deeper(layers: FloatArray, more: int) -> FloatArray:
     return np.concatenate((layers, np.zeros((more, *layers.shape[1:]))))
 
 
-def field_from_section(
+def make_field_from_section(
     column_edges: FloatArray,
     inner_radii: FloatArray,
     outer_radii: FloatArray,
-    columns: int = DEFAULT_COLUMNS,
-    rays: int = DEFAULT_RAYS,
+    max_columns: int = DEFAULT_COLUMNS,
+    ray_count: int = DEFAULT_RAYS,
 ) -> PolarField:
     """Return the polar field of a half section with fine columns.
 
@@ -298,14 +298,14 @@ def field_from_section(
         outer_radii[:, there],
         column_edges[there.start : there.stop + 1],
     )
-    starts = _column_starts(inner_radii, outer_radii, columns)
+    starts = _column_starts(inner_radii, outer_radii, max_columns)
     count = np.diff(np.append(starts, inner_radii.shape[1]))
     # The mean of squares preserves the volume, because fine columns have equal widths.
     inner_radii, outer_radii = (
         np.sqrt(np.add.reduceat(r * r, starts, axis=1) / count) for r in (inner_radii, outer_radii)
     )
-    full = [np.repeat(r[:, :, None], rays, axis=2) for r in (inner_radii, outer_radii)]
-    return PolarField(np.append(column_edges[starts], column_edges[-1]), full[0], full[1], 2 * columns)
+    full = [np.repeat(r[:, :, None], ray_count, axis=2) for r in (inner_radii, outer_radii)]
+    return PolarField(np.append(column_edges[starts], column_edges[-1]), full[0], full[1], 2 * max_columns)
 
 
 def _column_starts(low: FloatArray, high: FloatArray, columns: int) -> IntArray:
@@ -336,12 +336,12 @@ class FieldCopy(NamedTuple):
 
     columns: Mapping[ColumnEnds, FloatArray]
     column_edges: FloatArray
-    layers: int
-    rays: int
+    layer_count: int
+    ray_count: int
     max_columns: int
 
 
-def compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCopy:
+def make_compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCopy:
     """Return a compact copy of a field.
 
     Columns that are unchanged since ``previous`` share the memory of that copy.
@@ -358,7 +358,7 @@ def compact_copy(field: PolarField, previous: FieldCopy | None) -> FieldCopy:
 
 def restore_field(copy: FieldCopy) -> PolarField:
     """Return an independent field that is restored from a copy."""
-    shape = copy.layers, len(copy.columns), copy.rays
+    shape = copy.layer_count, len(copy.columns), copy.ray_count
     low, high = np.zeros(shape), np.zeros(shape)
     for at, column in enumerate(copy.columns.values()):
         low[: column.shape[1], at], high[: column.shape[1], at] = column

@@ -25,7 +25,7 @@ MAX_CHORD_ERROR_MM = 0.002
 _AXIS_TOLERANCE_MM = 1e-6  # mm
 
 
-def capsule_intervals(
+def find_capsule_intervals(
     start: FloatArray, end: FloatArray, radius: float, angles: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return the intervals of r in which discs that move from ``start`` to ``end`` (m, 2) cover rays.
@@ -113,33 +113,35 @@ def unite_intervals(starts: FloatArray, ends: FloatArray) -> tuple[FloatArray, F
     return first, last
 
 
-def radial_mill_intervals(
-    turned: FloatArray, half: FloatArray, end: float, length: float, height: float
+def find_radial_mill_intervals(
+    ray_angles_rad: FloatArray, half_widths: FloatArray, end_radius: float, length: float, axis_offset: float
 ) -> tuple[FloatArray, FloatArray]:
     """Return the intervals of r (columns, rays) that a mill on a radius of the part covers.
 
-    ``turned`` (rays,) is the angle from the tool's axis to each ray in radians. ``half`` (columns,) is half
-    the width of the mill at each column, or 0. The mill extends from ``end`` outward by ``length``.
-    ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
+    ``ray_angles_rad`` (rays,) is the angle from the tool's axis to each ray in radians. ``half_widths``
+    (columns,) is half the width of the mill at each column, or 0. The mill extends from ``end`` outward by
+    ``length``. ``height`` is the offset of its axis from the part's axis. Lengths are in mm.
     """
-    low, high = clip_interval(np.cos(turned), end, end + length)
-    if height:
-        low1, high1 = clip_interval(np.sin(turned), height - half[:, None], height + half[:, None])
+    low, high = clip_interval(np.cos(ray_angles_rad), end_radius, end_radius + length)
+    if axis_offset:
+        low1, high1 = clip_interval(
+            np.sin(ray_angles_rad), axis_offset - half_widths[:, None], axis_offset + half_widths[:, None]
+        )
         low, high = np.maximum(low, low1), np.minimum(high, high1)
     else:
-        low = np.broadcast_to(low, (len(half), len(turned)))
-        high = np.minimum(high, half[:, None] / np.maximum(np.abs(np.sin(turned)), _TINY))
-    return _cleaned(low, high, half[:, None] > 0.0)
+        low = np.broadcast_to(low, (len(half_widths), len(ray_angles_rad)))
+        high = np.minimum(high, half_widths[:, None] / np.maximum(np.abs(np.sin(ray_angles_rad)), _TINY))
+    return _cleaned(low, high, half_widths[:, None] > 0.0)
 
 
-def nearest_angle(turned: FloatArray, rotation: float) -> FloatArray:
+def find_nearest_angles(ray_angles_rad: FloatArray, rotation_rad: float) -> FloatArray:
     """Return the smallest signed angle between each ray and a rotating tool axis, in radians.
 
-    The tool axis rotates by ``rotation`` radians. ``turned`` (rays,) is the angle from the start position
-    of the tool axis to each ray.
+    The tool axis rotates by ``rotation_rad`` radians. ``ray_angles_rad`` (rays,) is the angle from the start
+    position of the tool axis to each ray.
     """
-    middle = np.remainder(turned - 0.5 * rotation + np.pi, 2.0 * np.pi) - np.pi
-    left = np.maximum(np.abs(middle) - 0.5 * abs(rotation), 0.0)
+    middle = np.remainder(ray_angles_rad - 0.5 * rotation_rad + np.pi, 2.0 * np.pi) - np.pi
+    left = np.maximum(np.abs(middle) - 0.5 * abs(rotation_rad), 0.0)
     return np.asarray(np.copysign(left, middle), dtype=np.float64)
 
 
@@ -154,9 +156,10 @@ def make_plane_path(
     shares = np.linspace(0.0, 1.0, _count_chords(move, max_chord_error) + 1)
     if isinstance(move.frame, SidePlane):
         return make_radial_path(
-            move.machine_positions(shares) + np.array([0.0, z_offset, 0.0]), far_side=move.frame.is_far_side
+            move.compute_machine_positions(shares) + np.array([0.0, z_offset, 0.0]),
+            is_far_side=move.frame.is_far_side,
         )
-    points = move.workpiece_points(move.machine_positions(shares))
+    points = move.compute_workpiece_points(move.compute_machine_positions(shares))
     turn = math.radians(move.frame.heading_deg)
     return _turned(points, np.full(len(points), turn), z_offset)
 
@@ -171,14 +174,14 @@ def make_axial_path(positions: FloatArray, height: float = 0.0, z_offset: float 
     return _turned(spot, -np.radians(positions[:, 2]), z_offset)
 
 
-def make_radial_path(positions: FloatArray, *, far_side: bool = False) -> FloatArray:
+def make_radial_path(positions: FloatArray, *, is_far_side: bool = False) -> FloatArray:
     """Return the path of a tool on a radius: r, z and the polar angle in degrees (n, 3).
 
     ``positions`` (n, 3) are X (radius), Z and C of the lathe. The tool is on the negative X side of the
-    lathe, or on the positive side if ``far_side`` is True.
+    lathe, or on the positive side if ``is_far_side`` is True.
     """
     x, z, c = positions.T
-    return np.column_stack([x, z, 180.0 - c]) if far_side else np.column_stack([-x, z, -c])
+    return np.column_stack([x, z, 180.0 - c]) if is_far_side else np.column_stack([-x, z, -c])
 
 
 def make_locked_path(
@@ -207,7 +210,7 @@ def _is_too_close_to_axis(move: PlaneMove) -> bool:
     """Return whether a face mill passes closer to the axis than its height permits."""
     return (
         not isinstance(move.frame, SidePlane)
-        and move.distance_from_axis(move.critical_fraction())
+        and move.compute_distance_from_axis(move.get_critical_fraction())
         < abs(move.frame.tool_height_mm) - _AXIS_TOLERANCE_MM
     )
 

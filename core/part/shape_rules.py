@@ -8,7 +8,7 @@ from typing import NamedTuple
 from core.message import Message
 from core.part.insert_codes import InsertCodeError, decode_insert_code, parse_holder
 from core.part.tool_outline import BORING_ENTERING_ANGLES, ENTERING_ANGLES
-from core.part.tool_polygons import PartError, convex_pieces
+from core.part.tool_polygons import PartError, split_into_convex_pieces
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 
@@ -155,7 +155,7 @@ def _outlines(shape: ToolShape) -> Iterator[ShapeMistake]:
         if not points:
             continue
         try:
-            pieces = convex_pieces(points) if len(points) > 2 else ()
+            pieces = split_into_convex_pieces(points) if len(points) > 2 else ()
         except PartError as error:
             yield ShapeMistake(field, str(error), error.code)
             continue

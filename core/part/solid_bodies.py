@@ -103,7 +103,7 @@ def make_chuck_solid(clamping: Clamping, stock: Stock) -> Solid:
     edges: list[float] = []
     columns: list[tuple[float, float]] = []  # inner and outer radius
     if clamping.diameter:
-        inside = clamping.chuck_around(stock).bore_profile[0][1]
+        inside = clamping.make_chuck_around(stock).bore_profile[0][1]
         body = -clamping.stick_out - clamping.jaw_length
         radius, jaws = clamping.diameter / 2.0, (clamping.jaw_diameter or clamping.diameter) / 2.0
         edges += [body - _CHUCK_FRONT_MM, body - _STEP, body]
@@ -128,13 +128,13 @@ def make_tool_layers(
     width: int,
     height: int,
     colors: tuple[int, int],
-    deep: float,
+    depth_steps_per_pixel: float,
     far_depth: float,
 ) -> Iterator[ImageLayer]:
     """Yield the image layers of the body and the edges of a tool.
 
-    ``deep`` is the number of depth steps per pixel. The depth is counted from a plane ``far_depth`` pixels
-    beyond the axis.
+    ``depth_steps_per_pixel`` is the number of depth steps per pixel. The depth is counted from a plane
+    ``far_depth`` pixels beyond the axis.
     """
     eye = _make_viewer(view, width, height)
     for polygons, lift, thick, colour, ghost in (
@@ -145,9 +145,9 @@ def make_tool_layers(
             face for polygon in polygons for face in _faces(polygon, (lift, thick), tool.round_axis, eye)
         ]
         if faces:
-            yield _make_layer(faces, view, (width, height), colour, (deep, far_depth))._replace(
-                opacity=_GHOST if ghost else 1.0
-            )
+            yield _make_layer(
+                faces, view, (width, height), colour, (depth_steps_per_pixel, far_depth)
+            )._replace(opacity=_GHOST if ghost else 1.0)
 
 
 def _make_viewer(view: SolidView, width: int, height: int) -> _Viewer:

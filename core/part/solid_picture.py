@@ -83,7 +83,7 @@ class SolidPicture:
         height: int,
         *,
         version: int = 0,
-        hits: ZSpans = (),
+        hit_z_spans: ZSpans = (),
         is_preview: bool = False,
         scene: PartScene = PartScene(),  # noqa: B008 - it is a tuple
     ) -> ImageArray:
@@ -98,11 +98,11 @@ class SolidPicture:
                 replace(view, pixels_per_mm=0.5 * view.pixels_per_mm),
                 (-(-width // 2), -(-height // 2)),
             )
-            image = self.draw(solid, half, *small, version=version, hits=hits, scene=scene)
+            image = self.draw(solid, half, *small, version=version, hit_z_spans=hit_z_spans, scene=scene)
             return image.repeat(2, axis=0).repeat(2, axis=1)[:height, :width]
         surface = self._kept(solid, view, width, version)
         image, depth = _PictureDrawing(surface, view, width, height).image(
-            self._table, self.colors.ground, hits
+            self._table, self.colors.background, hit_z_spans
         )
         if scene.chuck is not None:
             self._draw_chuck(scene.chuck, view, width, height).draw_over(image, depth)
@@ -143,10 +143,10 @@ class _PictureDrawing:
     def __init__(self, surface: SolidSurface, view: SolidView, width: int, height: int) -> None:
         self.surface, self.view, self.width, self.height = surface, view, width, height
         self.cos, self.sin = (np.float32(part) for part in view.azimuth_cos_sin)
-        self.phi = view.viewer_angles(surface.ray_angles)
+        self.phi = view.to_viewer_angles(surface.ray_angles)
         self.shown = ~view.is_cut_open(self.phi)
         # Patches also need the angles halfway between rays.
-        phi = view.viewer_angles(np.arange(2 * surface.ray_count) * (math.pi / surface.ray_count))
+        phi = view.to_viewer_angles(np.arange(2 * surface.ray_count) * (math.pi / surface.ray_count))
         self.near, self.up = np.cos(phi).astype(np.float32), np.sin(phi).astype(np.float32)
         self.halves_shown = None if view.open_range_deg is None else ~view.is_cut_open(phi)
         self.nearest = np.zeros((height + 2) * (width + 2), np.int64)

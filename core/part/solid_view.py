@@ -39,7 +39,7 @@ class SolidView:
         """Return the cosine and the sine of the azimuth."""
         return math.cos(math.radians(self.azimuth_deg)), math.sin(math.radians(self.azimuth_deg))
 
-    def viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
+    def to_viewer_angles(self, angles: npt.NDArray[np.floating]) -> FloatArray:
         """Return phi from -pi to pi for polar angles of the part; all angles are in radians.
 
         The operator is at X+ of the lathe, which is the polar angle 180° with C at 0.
@@ -60,7 +60,7 @@ class SolidView:
         ``points`` (n, 3) are r, z and the polar angle in degrees.
         """
         r, z, angle = points.T
-        phi = self.viewer_angles(np.radians(angle))
+        phi = self.to_viewer_angles(np.radians(angle))
         cos, sin = self.azimuth_cos_sin
         right = (z - self.center_z_mm) * cos - r * np.cos(phi) * sin
         return np.column_stack(
@@ -69,13 +69,13 @@ class SolidView:
 
 
 def fit_view(
-    back_z_mm: float, front_z_mm: float, radius: float, width: int, height: int, azimuth: float
+    back_z_mm: float, front_z_mm: float, radius: float, width: int, height: int, azimuth_deg: float
 ) -> tuple[float, float]:
     """Return the scale and the center Z at which a part fills the picture at any roll.
 
     The part extends from Z ``back_z_mm`` to ``front_z_mm``.
     """
-    cos, sin = abs(math.cos(math.radians(azimuth))), abs(math.sin(math.radians(azimuth)))
+    cos, sin = abs(math.cos(math.radians(azimuth_deg))), abs(math.sin(math.radians(azimuth_deg)))
     wide, high = (front_z_mm - back_z_mm) * cos + 2.0 * radius * sin, 2.0 * radius
     scale = 0.94 * min(width / max(wide, 1e-6), height / max(high, 1e-6))
     return scale, 0.5 * (back_z_mm + front_z_mm)

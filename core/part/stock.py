@@ -77,7 +77,7 @@ def make_tube(
     )
 
 
-def critical_rpm(stock: Stock, stick_out: float) -> float:
+def calculate_critical_rpm(stock: Stock, stick_out: float) -> float:
     """Return the first critical speed in rpm of a bar that extends ``stick_out`` mm from its chuck to Z0.
 
     The result is 0 if the bar does not extend from the chuck. The formula is that of a beam clamped at one
@@ -118,7 +118,7 @@ class Clamping:
         front = ((body, self.jaw_diameter / 2), (face, self.jaw_diameter / 2)) if self.jaw_length else ()
         return ((body - _BODY_LENGTH_MM, self.diameter / 2), (body, self.diameter / 2), *front)
 
-    def chuck_around(self, stock: Stock) -> Stock:
+    def make_chuck_around(self, stock: Stock) -> Stock:
         """Return the material of the chuck or collet around the clamped stock."""
         inside = min(stock.max_radius_mm, self.diameter / 2, (self.jaw_diameter or self.diameter) / 2)
         back, front = self.outline[0][0], self.outline[-1][0]

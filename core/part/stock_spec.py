@@ -45,14 +45,14 @@ class StockSpec:
     after: str = ""
     points: str = ""  # text of the profile file, in the unit of the program
 
-    def stock(self, back_z_mm: float, unit: float) -> Stock:
+    def stock(self, back_z_mm: float, unit_mm: float) -> Stock:
         """Return the bar, tube or profile that is specified.
 
-        ``back_z_mm`` is the least Z that is cut, in mm. ``unit`` is the length unit of the program, in mm.
+        ``back_z_mm`` is the least Z that is cut, in mm. ``unit_mm`` is the length unit of the program, in mm.
         Raises StockError if the specification is invalid.
         """
         if self.points:
-            return parse_profile(self.given, self.points, unit, self.allowance)
+            return parse_profile(self.given, self.points, unit_mm, self.allowance)
         front = self.allowance
         ends = front - self.length if self.length else min(back_z_mm, front) - _EXTRA_LENGTH_MM, front
         hole = tuple((z, self.bore / 2) for z in ends) if self.bore else ()
@@ -152,10 +152,10 @@ def _parse_length(text: str, whole: str) -> float:
     return float(found[1]) * (1.0 if (found[2] or "").lower() == "mm" else _INCH)
 
 
-def parse_profile(specification: str, text: str, scale: float, allowance: float) -> Stock:
+def parse_profile(specification: str, text: str, unit_mm: float, allowance: float) -> Stock:
     """Return the stock that is specified by CSV points.
 
-    The columns are Z, r and optionally the radius of the bore, in units of ``scale`` mm. Raises StockError
+    The columns are Z, r and optionally the radius of the bore, in units of ``unit_mm`` mm. Raises StockError
     if the text is not valid.
     """
     rows = _parse_rows(text)
@@ -174,9 +174,9 @@ def parse_profile(specification: str, text: str, scale: float, allowance: float)
             "profile radii cannot be negative, and the bore radius cannot be larger than the outside radius",
             "radius",
         )
-    outside: tuple[Point, ...] = tuple((row[0] * scale + allowance, row[1] * scale) for row in rows)
+    outside: tuple[Point, ...] = tuple((row[0] * unit_mm + allowance, row[1] * unit_mm) for row in rows)
     bore: tuple[Point, ...] = tuple(
-        (row[0] * scale + allowance, row[2] * scale) for row in rows if len(row) > 2
+        (row[0] * unit_mm + allowance, row[2] * unit_mm) for row in rows if len(row) > 2
     )
     return Stock(specification, outside, bore)
 

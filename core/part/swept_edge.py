@@ -23,18 +23,18 @@ _UPRIGHT = 1e-9  # mm; a narrower side does not bound a column
 class Columns(NamedTuple):
     """Equally spaced columns along Z, in mm.
 
-    ``number`` is the number of columns, ``step_mm`` is their spacing, and ``first_z_mm`` is the middle of
-    the first column.
+    ``column_count`` is the number of columns, ``step_mm`` is their spacing, and ``first_z_mm`` is the middle
+    of the first column.
     """
 
     first_z_mm: float
     step_mm: float
-    number: int
+    column_count: int
 
     @property
     def column_centers(self) -> FloatArray:
         """Return the Z of the middle of each column (number,)."""
-        middles: FloatArray = self.first_z_mm + self.step_mm * np.arange(self.number, dtype=np.float64)
+        middles: FloatArray = self.first_z_mm + self.step_mm * np.arange(self.column_count, dtype=np.float64)
         return middles
 
     def find_column(self, z: float) -> int:
@@ -42,7 +42,7 @@ class Columns(NamedTuple):
 
         The index is limited to the range of the columns.
         """
-        return min(max(math.ceil((z - self.first_z_mm) / self.step_mm), 0), self.number)
+        return min(max(math.ceil((z - self.first_z_mm) / self.step_mm), 0), self.column_count)
 
 
 class AxisFacingEdge(NamedTuple):
@@ -56,7 +56,7 @@ class AxisFacingEdge(NamedTuple):
     slope: FloatArray
 
 
-def axis_facing_edge(outline: FloatArray) -> AxisFacingEdge:
+def find_axis_facing_edge(outline: FloatArray) -> AxisFacingEdge:
     """Return the side of a convex outline (k, 2) that faces the axis.
 
     This is the lower convex chain of the outline in Z and r.
@@ -78,7 +78,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 def sweep_edge(
-    edge: AxisFacingEdge, start: Point, end: Point, columns: Columns, below: float = math.inf
+    edge: AxisFacingEdge, start: Point, end: Point, columns: Columns, max_radius_mm: float = math.inf
 ) -> tuple[int, FloatArray]:
     """Return the first column that the edge reaches, and the least r (m,) in each column on the move.
 
@@ -93,7 +93,7 @@ def sweep_edge(
         at = int(edge.slope.searchsorted((r0 - r1) / z_travel_mm))  # the edge is tangent to the move
         z = np.concatenate((edge.z[: at + 1] + z1, edge.z[at:] + z0))
         r = np.concatenate((edge.r[: at + 1] + r1, edge.r[at:] + r0))
-    low, high = _ends_below(z, r, below)
+    low, high = _ends_below(z, r, max_radius_mm)
     first, last = columns.find_column(low), columns.find_column(high)
     there = columns.first_z_mm + columns.step_mm * np.arange(first, max(first, last))
     return first, np.interp(there, z, r)

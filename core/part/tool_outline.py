@@ -20,23 +20,23 @@ from core.part.insert_codes import (
     ToolHolder,
     decode_insert_code,
     make_insert,
+    make_standard_shank,
     parse_holder,
-    standard_shank,
 )
 from core.part.tool_polygons import (
     MAX_BODY_CHORD_ERROR_MM,
     MAX_NOSE_CHORD_ERROR_MM,
     FloatArray,
-    convex_hull,
-    convex_pieces,
+    find_convex_hull,
+    find_max_corner_radius,
+    find_nose_center,
     make_circle,
     make_polygon,
+    make_polygon_from_edges,
     make_rectangle,
-    max_corner_radius,
-    nose_center,
     orient_counterclockwise,
-    polygon_from_edges,
     round_corners,
+    split_into_convex_pieces,
 )
 from core.part.tool_shape import Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
@@ -107,7 +107,7 @@ class _OutlineDrawing:
         if holder.shank_width_mm:
             return holder
         self.assumed.append("holder")
-        return standard_shank(usual)
+        return make_standard_shank(usual)
 
     @property
     def sided(self) -> bool:
@@ -141,7 +141,7 @@ def make_outline(shape: ToolShape) -> ToolOutline:
         tuple(placed(each, shape.direction) for each in drawing.cutting),
         (
             *(placed(each, shape.direction) for each in drawing.body),
-            *(convex_pieces(pieces) if pieces else ()),
+            *(split_into_convex_pieces(pieces) if pieces else ()),
         ),
         shape.is_rotating and shape.direction[1] == 0,
         tuple(dict.fromkeys(drawing.assumed)),
@@ -217,11 +217,11 @@ def _seat_insert(
     if not insert.corner_angles:
         nose = make_circle(radius)
         return nose - drawing.tip * radius, nose * seat - drawing.tip * radius
-    sharp = polygon_from_edges(
+    sharp = make_polygon_from_edges(
         insert.corner_angles, insert.edge_lengths, _edge_heading(drawing, insert, usual)
     )
-    radius = min(radius, 0.99 * max_corner_radius(sharp))
-    shift = -radius * drawing.tip - (nose_center(sharp, radius) if radius else sharp[0])
+    radius = min(radius, 0.99 * find_max_corner_radius(sharp))
+    shift = -radius * drawing.tip - (find_nose_center(sharp, radius) if radius else sharp[0])
     chords = [MAX_NOSE_CHORD_ERROR_MM] + [MAX_BODY_CHORD_ERROR_MM] * (len(sharp) - 1)
     middle = sharp.mean(axis=0)
     nosed = round_corners(sharp, [radius] * len(sharp), chords)
@@ -247,7 +247,7 @@ _SHANKS = ((18.0, 32.0), (15.0, 25.0), (12.0, 20.0), (9.0, 16.0), (0.0, 12.0))  
 
 def _add_shank(drawing: _OutlineDrawing, seat: FloatArray, side: tuple[float, float], head: float) -> None:
     """Add a head from the seat to the shank, and add the shank up to its stick-out."""
-    drawing.body.append(convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
+    drawing.body.append(find_convex_hull(np.concatenate([seat, [(side[0], head), (side[1], head)]])))
     end = drawing.shape.stick_out or head + 3.0 * (side[1] - side[0])
     if end > head:
         drawing.body.append(make_rectangle(side, (head, end)))
@@ -280,7 +280,7 @@ def _add_bar(drawing: _OutlineDrawing, seat: FloatArray, bar: float, axis: float
     low, high = axis - bar / 2.0, axis + bar / 2.0
     start = min(head, float((seat * away)[:, 0].max()))
     end = drawing.size("stick_out", 4.0 * bar)
-    drawing.body.append(convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
+    drawing.body.append(find_convex_hull(np.concatenate([seat * away, [(start, low), (start, high)]])) * away)
     if end > start:
         drawing.body.append(make_rectangle((start, end), (low, high)) * away)
     if drawing.shape.stick_out:
@@ -344,8 +344,8 @@ def _draw_threading(drawing: _OutlineDrawing) -> None:
         drawing.cutting.append(make_polygon(points) - np.array([drawing.tip[0] * flat / 2.0, 0.0]))
     else:
         sharp = make_polygon([(0.0, 0.0), (half, high), (-half, high)])
-        nose = min(shape.nose_radius, 0.5 * max_corner_radius(sharp))
-        shift = -nose * drawing.tip - (nose_center(sharp, nose) if nose else sharp[0])
+        nose = min(shape.nose_radius, 0.5 * find_max_corner_radius(sharp))
+        shift = -nose * drawing.tip - (find_nose_center(sharp, nose) if nose else sharp[0])
         drawing.cutting.append(round_corners(sharp, [nose, 0.0, 0.0], [MAX_NOSE_CHORD_ERROR_MM] * 3) + shift)
     top = drawing.cutting[0][:, 1].max()
     left = float(drawing.cutting[0][:, 0].min())
@@ -361,7 +361,7 @@ def _cylinder(start: float, end: float, radius: float) -> FloatArray:
 
 def _mirror_half(upper: list[tuple[float, float]]) -> FloatArray:
     """Return a convex polygon that is mirrored from its half at r ≥ 0, ordered along z."""
-    return convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
+    return find_convex_hull(np.array([*upper, *((z, -r) for z, r in upper)], dtype=np.float64))
 
 
 def _add_round_shank(drawing: _OutlineDrawing, length: float, diameter: float) -> None:
@@ -435,7 +435,7 @@ def _end_mill(drawing: _OutlineDrawing) -> None:
 def _form(drawing: _OutlineDrawing) -> None:
     shape = drawing.shape
     if shape.profile:
-        drawing.cutting.extend(convex_pieces(shape.profile))
+        drawing.cutting.extend(split_into_convex_pieces(shape.profile))
     else:
         drawing.assumed.append("profile")
         drawing.cutting.extend(make_nose_circle(shape.nose_radius, shape.tip).cutting_outlines)

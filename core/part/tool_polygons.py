@@ -35,7 +35,7 @@ def make_rectangle(z: tuple[float, float], r: tuple[float, float]) -> FloatArray
     return make_polygon([(left, low), (right, low), (right, high), (left, high)])
 
 
-def signed_area(points: FloatArray) -> float:
+def calculate_signed_area(points: FloatArray) -> float:
     """Return the area of a polygon by the shoelace formula.
 
     The area of a clockwise polygon is negative.
@@ -46,26 +46,28 @@ def signed_area(points: FloatArray) -> float:
 
 def orient_counterclockwise(points: FloatArray) -> FloatArray:
     """Return the polygon in counterclockwise order."""
-    return points if signed_area(points) >= 0.0 else points[::-1].copy()
+    return points if calculate_signed_area(points) >= 0.0 else points[::-1].copy()
 
 
 def make_arc_points(
-    start: float, sweep: float, radius: float, max_chord_error: float = MAX_NOSE_CHORD_ERROR_MM
+    start_rad: float, sweep_rad: float, radius: float, max_chord_error: float = MAX_NOSE_CHORD_ERROR_MM
 ) -> FloatArray:
     """Return points (k, 2) on an arc about the origin, including its extremes in z and r.
 
-    ``start`` and ``sweep`` are in radians. A chord with the half angle t deviates by radius·(1 - cos t). A
-    diameter that is turned with the extreme of a quadrant is exact.
+    ``start_rad`` and ``sweep_rad`` are in radians. A chord with the half angle t deviates by radius·(1 - cos
+    t). A diameter that is turned with the extreme of a quadrant is exact.
     """
     most = (
         2.0 * math.acos(max(0.0, 1.0 - max_chord_error / radius))
         if radius > max_chord_error
         else _RIGHT_ANGLE
     )
-    first = math.floor(start / _RIGHT_ANGLE + 1e-9) + 1
-    quarters = [k * _RIGHT_ANGLE for k in range(first, first + 5) if k * _RIGHT_ANGLE < start + sweep - 1e-9]
-    angles = [start]
-    for left, right in pairwise([start, *quarters, start + sweep]):
+    first = math.floor(start_rad / _RIGHT_ANGLE + 1e-9) + 1
+    quarters = [
+        k * _RIGHT_ANGLE for k in range(first, first + 5) if k * _RIGHT_ANGLE < start_rad + sweep_rad - 1e-9
+    ]
+    angles = [start_rad]
+    for left, right in pairwise([start_rad, *quarters, start_rad + sweep_rad]):
         count = max(1, math.ceil((right - left) / most))
         angles += [left + (right - left) * step / count for step in range(1, count + 1)]
     return radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -76,7 +78,7 @@ def make_circle(radius: float) -> FloatArray:
     return make_arc_points(0.0, 2.0 * math.pi, radius)[:-1]
 
 
-def polygon_from_edges(
+def make_polygon_from_edges(
     corner_angles: Sequence[float], edge_lengths: Sequence[float], heading_deg: float
 ) -> FloatArray:
     """Return the polygon with these interior angles and edge lengths, with its first corner at the origin.
@@ -92,7 +94,7 @@ def polygon_from_edges(
     return np.array(points)
 
 
-def nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> FloatArray:
+def find_nose_center(points: FloatArray, radius: float, corner_index: int = 0) -> FloatArray:
     """Return the center of the circle with the given radius that touches both edges of a corner."""
     before, corner, after = (
         points[corner_index - 1],
@@ -119,11 +121,11 @@ def round_corners(
         into, out = points[at] - points[at - 1], points[(at + 1) % len(points)] - points[at]
         start = math.atan2(into[1], into[0]) - _RIGHT_ANGLE
         turn = math.atan2(into[0] * out[1] - into[1] * out[0], float(np.dot(into, out)))
-        parts.append(nose_center(points, radius, at) + make_arc_points(start, turn, radius, chord))
+        parts.append(find_nose_center(points, radius, at) + make_arc_points(start, turn, radius, chord))
     return np.concatenate(parts)
 
 
-def max_corner_radius(points: FloatArray) -> float:
+def find_max_corner_radius(points: FloatArray) -> float:
     """Return the largest radius to which all corners can be rounded at the same time."""
     fits = []
     for at in range(len(points)):
@@ -133,7 +135,7 @@ def max_corner_radius(points: FloatArray) -> float:
     return min(fits)
 
 
-def convex_hull(points: FloatArray) -> FloatArray:
+def find_convex_hull(points: FloatArray) -> FloatArray:
     """Return the convex hull of the points in counterclockwise order (Andrew's monotone chain)."""
     ordered = [tuple(point) for point in points[np.lexsort((points[:, 1], points[:, 0]))]]
     return np.array(_chain(ordered)[:-1] + _chain(ordered[::-1])[:-1], dtype=np.float64)
@@ -148,7 +150,7 @@ def _chain(ordered: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
     return chain
 
 
-def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
+def split_into_convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ...]:
     """Return a simple polygon as convex pieces.
 
     The pieces are the polygon itself if it is convex, or triangles by ear clipping. Raises PartError if the
@@ -158,7 +160,7 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
     if _has_crossing_edges(left):
         raise PartError("the outline crosses itself", "crosses-itself")
     if _convex(left):
-        return (np.array(left),) if signed_area(np.array(left)) > 0.0 else ()
+        return (np.array(left),) if calculate_signed_area(np.array(left)) > 0.0 else ()
     pieces = []
     while len(left) > 3:
         ear = next((at for at in range(len(left)) if _is_ear(left, at)), None)
@@ -166,7 +168,7 @@ def convex_pieces(points: Sequence[tuple[float, float]]) -> tuple[FloatArray, ..
             raise PartError("the outline touches itself", "touches-itself")
         pieces.append(np.array([left[ear - 1], left[ear], left[(ear + 1) % len(left)]]))
         del left[ear]
-    return tuple(piece for piece in (*pieces, np.array(left)) if signed_area(piece) > 0.0)
+    return tuple(piece for piece in (*pieces, np.array(left)) if calculate_signed_area(piece) > 0.0)
 
 
 def _convex(points: list[tuple[float, float]]) -> bool:

@@ -74,7 +74,7 @@ class Cut(NamedTuple):
     width_mm: float = 0.0
     back_z_mm: float = 0.0
     front_z_mm: float = 0.0
-    parts_off: bool = False  # a column has lost all its material
+    is_parted_off: bool = False  # a column has lost all its material
 
     def __bool__(self) -> bool:
         return self.area > 0.0
@@ -90,7 +90,7 @@ class Cut(NamedTuple):
             max(self.width_mm, other.width_mm),
             min(self.back_z_mm, other.back_z_mm),
             max(self.front_z_mm, other.front_z_mm),
-            self.parts_off or other.parts_off,
+            self.is_parted_off or other.is_parted_off,
         )
 
     def combine_sequence(self, other: Cut) -> Cut:
@@ -167,7 +167,7 @@ class TurnedPart:
         inner = np.min(np.where(there, self.inner_radii, np.inf), axis=0)
         return np.where(np.isfinite(inner), inner, 0.0)
 
-    def max_radius_between(self, back_z_mm: float, front_z_mm: float) -> float:
+    def find_max_radius(self, back_z_mm: float, front_z_mm: float) -> float:
         """Return the greatest radius of the columns from Z ``back_z_mm`` to ``front_z_mm``.
 
         The result is 0 if there are no columns in this range.
@@ -179,18 +179,18 @@ class TurnedPart:
         low, high = self.inner_radii[:, there], self.outer_radii[:, there]
         return math.pi * self.columns.step_mm * float(np.sum(high * high - low * low))
 
-    def enters_material(self, points: Sequence[Point], depth: float) -> bool:
+    def enters_material(self, points: Sequence[Point], min_depth: float) -> bool:
         """Return whether any point of a path is more than ``depth`` inside the material.
 
         The path consists of Z and r in mm.
         """
-        return any(self._crossed(start, end, depth) for start, end in pairwise(points))
+        return any(self._crossed(start, end, min_depth) for start, end in pairwise(points))
 
     def _crossed(self, start: Point, end: Point, depth: float) -> bool:
         (z0, r0), (z1, r1) = (start, end) if start[0] <= end[0] else (end, start)
         first, last = self.columns.find_column(z0), self.columns.find_column(z1)
         if first == last:  # perpendicular to the axis, within one column
-            if not 0 < first < self.columns.number:
+            if not 0 < first < self.columns.column_count:
                 return False
             nearest, farthest = _radius_range(r0, r1)
             low, high = self.inner_radii[:, first], self.outer_radii[:, first]
@@ -274,7 +274,7 @@ class TurnedPart:
                 self.inner_radii[layer, there] = np.where(wanted, low, self.inner_radii[layer, there])
                 self.outer_radii[layer, there] = np.where(wanted, high, self.outer_radii[layer, there])
                 return
-        empty = np.zeros((1, self.columns.number))
+        empty = np.zeros((1, self.columns.column_count))
         self.inner_radii, self.outer_radii = (
             np.vstack((self.inner_radii, empty)),
             np.vstack((self.outer_radii, empty)),
@@ -298,13 +298,13 @@ class TurnedPart:
             width_mm=step * len(touched),
             back_z_mm=begin + step * int(touched[0]),
             front_z_mm=begin + step * (int(touched[-1]) + 1),
-            parts_off=bool(whole.any()),
+            is_parted_off=bool(whole.any()),
         )
 
     def _taken(self, met: Cut, *, cut: bool) -> Cut:
         if cut and met:
             self.removed_volume_mm3 += met.volume_mm3
-            self._parted = self._parted or met.parts_off
+            self._parted = self._parted or met.is_parted_off
             if not self.holds_parted_pieces:
                 self.drop_parted_pieces()
         return met
@@ -340,7 +340,7 @@ class TurnedPart:
             self.parted_pieces.append(self._piece(there, volume))
         self.inner_radii[:, there] = self.outer_radii[:, there] = 0.0
 
-    def remaining_piece(self) -> PartedPiece:
+    def make_remaining_piece(self) -> PartedPiece:
         """Return the remaining material in the chuck as a piece."""
         return self._piece(slice(None), self.volume_mm3)
 

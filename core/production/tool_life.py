@@ -64,7 +64,7 @@ class ToolLife:
         return ToolLifeState.WARNING if self.share >= self.warn - 1e-9 else ToolLifeState.OK
 
     @property
-    def parts_left(self) -> int | None:
+    def remaining_part_count(self) -> int | None:
         """Return the number of complete parts until the end of the tool life, or None if it is unknown.
 
         The number is calculated from the use per part.

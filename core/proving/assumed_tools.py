@@ -172,7 +172,7 @@ class AssumedTool:
             self, tool_shape=replace(shape, diameter=diameter), explanation=words, is_diameter_assumed=True
         )
 
-    def add_width(self, tool_use: ToolUse, threads: Sequence[TipMove]) -> AssumedTool:
+    def add_width(self, tool_use: ToolUse, thread_moves: Sequence[TipMove]) -> AssumedTool:
         """Return the tool with an assumed width if it is a grooving or parting tool without a width.
 
         See ``find_groove_width``.
@@ -180,14 +180,14 @@ class AssumedTool:
         shape = self.tool_shape
         if shape is None or shape.kind not in GROOVING_TOOLS or shape.width:
             return self
-        width = find_groove_width(shape, tool_use.moves, threads)
+        width = find_groove_width(shape, tool_use.moves, thread_moves)
         words = Message(
             "{words}, assumed width {width}", words=self.explanation, width=_format_length(width, tool_use)
         )
         return replace(self, tool_shape=replace(shape, width=width), explanation=words)
 
 
-def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Iterable[TipMove]) -> float:
+def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], thread_moves: Iterable[TipMove]) -> float:
     """Return the assumed width in mm of a cutting edge without a specified width.
 
     The width is 2 mm, or the width that a thread needs to start in the groove. Only threads that lead out
@@ -198,7 +198,7 @@ def find_groove_width(shape: ToolShape, moves: Iterable[TipMove], threads: Itera
     plunged = {m.points[-1][0] for m in moves if not m.is_fast and _square(m)}
     needed = [0.0]
     for z0, lead in {
-        (m.points[0][0], m.feed_per_rev_mm) for m in threads if m.points[-1][0] > m.points[0][0]
+        (m.points[0][0], m.feed_per_rev_mm) for m in thread_moves if m.points[-1][0] > m.points[0][0]
     }:
         reaches = [(z - z0) * forward if forward else abs(z0 - z) for z in plunged]
         needed += [each + lead / 2.0 for each in reaches if 0.0 <= each <= _MAX_GROOVE_WIDTH_MM]
@@ -365,7 +365,7 @@ def parse_tap_size(comment: str) -> tuple[float, float]:
     return 0.0, 0.0
 
 
-def names_releasing_holder(tool_use: ToolUse) -> bool:
+def has_releasing_tap_holder(tool_use: ToolUse) -> bool:
     """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
     return re.search(_RELEASES, " ".join(tool_use.comments).upper()) is not None
 

@@ -40,10 +40,10 @@ def make_finished_part(steps: ProgramSteps, report_progress: ReportProgress) -> 
     def at(block: int) -> PartInstant:
         return history.at(block, 0.0, lambda: report_progress(block))
 
-    pieces = at(history.block_count).parted_piece_count
-    ends = [history.block_count, *_find_block_before_opening(history)]
+    pieces = at(history.last_block_number).parted_piece_count
+    ends = [history.last_block_number, *_find_block_before_opening(history)]
     if pieces:
-        ends = [_find_block_before_last_piece(at, history.block_count, pieces)]
+        ends = [_find_block_before_last_piece(at, history.last_block_number, pieces)]
     held = [(volume, end) for end in ends if (volume := _section_volume(at(end).x_plus_half)) > 0.0]
     stock = history.stock
     if not held or stock is None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from core.interpreter.shared.elementary_blocks import Block
 from core.part.milled_part import MilledPart
-from core.part.polar_field import PolarField, RemovedMaterial, field_from_section, sort_intervals
+from core.part.polar_field import PolarField, RemovedMaterial, make_field_from_section, sort_intervals
 from core.part.ray_cuts import (
     FloatArray,
     make_axial_path,
@@ -58,10 +58,10 @@ def make_mill_move(block: Block, part_zero: MachineXZ, shape: ToolShape) -> Mill
     if axial:
         return MillMove(block.n, block.line, make_axial_path(make_locked_path(ends[0], ends[1])), True, quick)
     far_side = float(ends[:, 0].mean()) > 0.0
-    return MillMove(block.n, block.line, make_radial_path(ends, far_side=far_side), False, quick)
+    return MillMove(block.n, block.line, make_radial_path(ends, is_far_side=far_side), False, quick)
 
 
-def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
+def cut_path_at_fractions(path: FloatArray, start_fraction: float, end_fraction: float) -> FloatArray:
     """Return the part of a path between two fractions of the path, from 0 to 1."""
     at = np.linspace(0.0, 1.0, len(path))
     shares = np.concatenate(
@@ -70,7 +70,7 @@ def path_between(path: FloatArray, start_fraction: float, end_fraction: float) -
     return np.column_stack([np.interp(shares, at, coordinates) for coordinates in path.T])
 
 
-def point_height_mm(shape: ToolShape) -> float:
+def calculate_point_height_mm(shape: ToolShape) -> float:
     """Return the height in mm of the point of a live drill, or 0 for a mill."""
     if shape.kind not in _CONES or not shape.point:
         return 0.0
@@ -87,9 +87,9 @@ class MillingState:
         self._turned = part
         columns = part.columns
         edges: FloatArray = columns.first_z_mm + columns.step_mm * (
-            np.arange(columns.number + 1, dtype=np.float64) - 0.5
+            np.arange(columns.column_count + 1, dtype=np.float64) - 0.5
         )
-        self._part = MilledPart(field_from_section(edges, part.inner_radii, part.outer_radii))
+        self._part = MilledPart(make_field_from_section(edges, part.inner_radii, part.outer_radii))
         self._volume = part.volume_mm3  # volume of the turned part at the last update of the field
 
     @classmethod
@@ -129,15 +129,15 @@ class MillingState:
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
             return part.mill_axial(move.path, radius, length, point)
-        return part.mill_radial(move.path, radius, length, point=point)
+        return part.mill_radial(move.path, radius, length, cone_height=point)
 
     def follows_face(self, move: MillMove, shape: ToolShape) -> bool:
         """Return whether a live tool moves along a face, so that it would hit material .001 in deeper."""
         self._update_field()
         part, (radius, length, point) = self._part, _mill_sizes(shape)
         if move.is_axial:
-            return part.hits_axial(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
-        return part.hits_radial(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
+            return part.has_axial_collision(move.path - [0.0, 0.0, _DEEPER], radius, length, point)
+        return part.has_radial_collision(move.path - [_DEEPER, 0.0, 0.0], radius, length, point=point)
 
     def subtract_milled_volume(self, piece: PartedPiece) -> PartedPiece:
         """Return a piece that was just parted off, without the volume that live tools have removed."""
@@ -148,7 +148,7 @@ class MillingState:
         there = (field.column_centers < front) & (field.column_centers > back)
         return piece._replace(volume_mm3=min(float(field.column_volumes[there].sum()), piece.volume_mm3))
 
-    def section_halves(self) -> tuple[PartedPiece, PartedPiece]:
+    def make_section_halves(self) -> tuple[PartedPiece, PartedPiece]:
         """Return both halves of the section with C at 0: first X+, then X-."""
         field = self.updated_field
         rays = field.inner_radii.shape[2]  # =
@@ -170,7 +170,7 @@ class MillingState:
                 np.intp
             ),
             0,
-            turned.columns.number - 1,
+            turned.columns.column_count - 1,
         )
         everywhere = slice(0, len(field.column_centers))
         for start, end in _iter_gaps(*sort_intervals(turned.inner_radii[:, at], turned.outer_radii[:, at])):
@@ -192,7 +192,7 @@ def _section_profiles(edges: FloatArray, low: FloatArray, high: FloatArray) -> P
 
 def _mill_sizes(shape: ToolShape) -> tuple[float, float, float]:
     """Return the radius, the cutting length and the height of the point of a mill."""
-    return shape.diameter / 2.0, shape.length or math.inf, point_height_mm(shape)
+    return shape.diameter / 2.0, shape.length or math.inf, calculate_point_height_mm(shape)
 
 
 def _iter_gaps(low: FloatArray, high: FloatArray) -> Iterator[tuple[FloatArray, FloatArray]]:

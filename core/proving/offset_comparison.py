@@ -45,19 +45,19 @@ class FeatureKind(StrEnum):
 
 
 class PartFeature(NamedTuple):
-    """A feature with its diameter or Z (``at``) and its extent in Z or r (``extent``), in mm."""
+    """A feature with its diameter or Z (``at``) and its extent in Z or r (``extent_mm``), in mm."""
 
     kind: FeatureKind
     at: float
-    extent: tuple[float, float]
+    extent_mm: tuple[float, float]
 
-    def distance_to(self, other: PartFeature) -> float:
+    def calculate_distance_to(self, other: PartFeature) -> float:
         """Return the distance to another feature in mm.
 
         A difference of radii counts like a difference of lengths.
         """
         half = 0.5 if self.kind in {FeatureKind.DIAMETER, FeatureKind.BORE} else 1.0
-        return abs(self.at - other.at) * half + math.dist(self.extent, other.extent)
+        return abs(self.at - other.at) * half + math.dist(self.extent_mm, other.extent_mm)
 
 
 class Pair(NamedTuple):
@@ -67,7 +67,7 @@ class Pair(NamedTuple):
     other_feature: PartFeature | None
 
     @property
-    def difference(self) -> float | None:
+    def difference_mm(self) -> float | None:
         """Return the dimension of the other part minus the dimension of this part, in mm.
 
         The result is None if the feature has no counterpart.
@@ -107,16 +107,17 @@ def _sharp_end(profile: ProfilePoints, k: int) -> tuple[float, float]:
     return profile[k] if before >= next_length else profile[k + 1]
 
 
-def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) -> list[Pair]:
+def match_features(own_features: Sequence[PartFeature], other_features: Sequence[PartFeature]) -> list[Pair]:
     """Return pairs of the closest features of the same kind.
 
-    The pairs are in the order of ``these``, followed by the features of ``others`` without a counterpart.
+    The pairs are in the order of ``own_features``, followed by the features of ``other_features`` without a
+    counterpart.
     """
     near = sorted(
-        (a.distance_to(b), i, j)
-        for i, a in enumerate(these)
-        for j, b in enumerate(others)
-        if a.kind is b.kind and a.distance_to(b) <= _FAR
+        (a.calculate_distance_to(b), i, j)
+        for i, a in enumerate(own_features)
+        for j, b in enumerate(other_features)
+        if a.kind is b.kind and a.calculate_distance_to(b) <= _FAR
     )
     partner: dict[int, int] = {}
     taken: set[int] = set()
@@ -124,8 +125,10 @@ def match_features(these: Sequence[PartFeature], others: Sequence[PartFeature]) 
         if i not in partner and j not in taken:
             partner[i] = j
             taken.add(j)
-    pairs = [Pair(a, others[partner[i]] if i in partner else None) for i, a in enumerate(these)]
-    return pairs + [Pair(None, b) for j, b in enumerate(others) if j not in taken]
+    pairs = [
+        Pair(a, other_features[partner[i]] if i in partner else None) for i, a in enumerate(own_features)
+    ]
+    return pairs + [Pair(None, b) for j, b in enumerate(other_features) if j not in taken]
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +149,7 @@ class ComparedPart:
     def differing_feature_count(self) -> int:
         """Return the number of features that differ or have no counterpart."""
         return sum(
-            pair.difference is None or abs(pair.difference) > FEATURE_TOLERANCE_MM
+            pair.difference_mm is None or abs(pair.difference_mm) > FEATURE_TOLERANCE_MM
             for pair in self.feature_pairs
         )
 
@@ -163,7 +166,7 @@ class ProvedPart:
 
 def prove_other_offsets(
     program: ProgramSource | SharedProgram, proved_part: ProvedPart, other_setup: Setup, machine: Machine,
-    report_progress: ReportProgress | None = None, *, ideal: bool = False,
+    report_progress: ReportProgress | None = None, *, is_ideal: bool = False,
 ) -> ComparedPart:  # fmt: skip
     """Prove the same program, stock and tools with the offsets of ``other_setup``.
 
@@ -173,7 +176,13 @@ def prove_other_offsets(
     if proved_part.part is not None:
         setting = replace(setting, stock=proved_part.part.stock, tips=_tip_positions(proved_part.setup))
     report, part = prove_with_part(
-        program, other_setup, machine, setting, report_progress, ideal=ideal, check_canceled=report_progress
+        program,
+        other_setup,
+        machine,
+        setting,
+        report_progress,
+        is_ideal=is_ideal,
+        check_canceled=report_progress,
     )
     pairs: list[Pair] = []
     if proved_part.part is not None and part is not None:

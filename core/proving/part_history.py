@@ -40,7 +40,7 @@ from core.proving.tip_moves import (
     TipMove,
     axis_position_at,
     find_part_zero,
-    step_end_points,
+    find_step_end_points,
 )
 
 _CHECK_INTERVAL = 20  # blocks between two calls of ``watch``
@@ -53,7 +53,7 @@ ReportProgress = Callable[[float], None]
 class ProgramSteps:
     """All blocks of a program in their order, with the settings of the stock and the tools."""
 
-    parts: tuple[BlockGroup, ...]
+    block_groups: tuple[BlockGroup, ...]
     part_settings: PartSettings
 
 
@@ -91,7 +91,7 @@ class StepCollector:
             details=hint,
         )
 
-    def collected_steps(self) -> ProgramSteps | None:
+    def make_program_steps(self) -> ProgramSteps | None:
         """Return the collected blocks, or None if there are no blocks or too many."""
         return ProgramSteps(tuple(self._parts), self.part_settings) if self._parts else None
 
@@ -105,7 +105,7 @@ class PartHistory:
     def __init__(self, program_steps: ProgramSteps) -> None:
         reading = StepConverter()
         self.steps: list[ProgramStep] = [
-            step for part in program_steps.parts for step in reading.convert_blocks(part)
+            step for part in program_steps.block_groups for step in reading.convert_blocks(part)
         ]
         self._numbers = np.array([_number(step) for step in self.steps], dtype=np.int64)
         self._tools = ProgramTools(self.steps, program_steps.part_settings)
@@ -146,14 +146,14 @@ class PartHistory:
         self._last = self._instant(block, fraction, under_way)
         return self._last
 
-    def simulation_at(
+    def make_simulation_at(
         self, block: int, tip: Point | None = None, check_canceled: CheckCanceled | None = None
     ) -> PartSimulation:
         """Return a copy of the part before a block, or with the block executed up to ``tip`` (Z, r in mm)."""
         share = 0.0
         step = self._step(block)
         if tip is not None and isinstance(step, TipMove):
-            share = polyline_fraction(step.points, tip)
+            share = find_polyline_fraction(step.points, tip)
         self.at(block - 1, share, check_canceled)
         return self._seen.copy()
 
@@ -182,26 +182,28 @@ class PartHistory:
                 return step.points[-1][1] + step.part_zero[0], step.points[-1][0] + step.part_zero[1]
         return None
 
-    def executed_fraction(self, block: int, offset_from_end: Point) -> float:
+    def find_executed_fraction(self, block: int, offset_from_end: Point) -> float:
         """Return the fraction of a block that has been executed.
 
         ``offset_from_end`` (Z, r) is the position of the tool relative to the end of the block.
         """
         step = self._step(block)
         if isinstance(step, LiveToolStep):
-            ends = step_end_points(step)
-            return polyline_fraction(ends, (ends[1][0] + offset_from_end[0], ends[1][1] + offset_from_end[1]))
+            ends = find_step_end_points(step)
+            return find_polyline_fraction(
+                ends, (ends[1][0] + offset_from_end[0], ends[1][1] + offset_from_end[1])
+            )
         if not isinstance(step, TipMove):
             return 0.0
         end = step.points[-1]
-        return polyline_fraction(step.points, (end[0] + offset_from_end[0], end[1] + offset_from_end[1]))
+        return find_polyline_fraction(step.points, (end[0] + offset_from_end[0], end[1] + offset_from_end[1]))
 
     @property
-    def block_count(self) -> int:
+    def last_block_number(self) -> int:
         """Return the number of the last block, or 0 without blocks."""
         return int(self._numbers[-1]) if len(self._numbers) else 0
 
-    def current_part(self) -> PartInstant:
+    def make_current_part(self) -> PartInstant:
         """Return the part as far as the work in progress has calculated it."""
         done = self._done
         return self._instant(int(self._numbers[done - 1]) if done else 0, 0.0, None)
@@ -222,7 +224,7 @@ class PartHistory:
             return make_milled_solid(milling.updated_field)
         return make_turned_solid(*instant.x_plus_half)
 
-    def scene_at(self, instant: PartInstant) -> PartScene:
+    def make_scene_at(self, instant: PartInstant) -> PartScene:
         """Return the objects around the part at an instant: the chuck or collet, and the tool."""
         tool = instant.tool
         if tool is None or not (tool.cutting_outlines or tool.body_outlines):
@@ -240,7 +242,7 @@ class PartHistory:
     def _go_to(self, done: int, watch: CheckCanceled | None) -> None:
         if self._ahead is not None and self._ahead[0] != done:
             self._ahead = None
-        kept = self._kept.last_copy_before(done)
+        kept = self._kept.find_last_copy(done)
         if not kept <= self._done <= done:
             self._making, self._done = self._kept.copy(kept), kept
         while self._done < done:
@@ -277,7 +279,7 @@ class PartHistory:
         return PartInstant(
             block_count=block,
             next_block_fraction=share,
-            line=_line(under_way or (self.steps[self._done - 1] if self._done else None)),
+            line_number=_line(under_way or (self.steps[self._done - 1] if self._done else None)),
             x_plus_half=near,
             x_minus_half=far,
             stock=self.stock,
@@ -337,7 +339,7 @@ class PartHistory:
             if isinstance(step, TipMove):
                 return step.points[-1]
             if isinstance(step, LiveToolStep):
-                return step_end_points(step)[1]
+                return find_step_end_points(step)[1]
         return None
 
     def _tool(self, number: int, place: Point | None) -> PlacedTool | None:
@@ -365,7 +367,7 @@ def _round(shape: ToolShape | None, axial: bool) -> RoundAxis:
     return RoundAxis.Z if axial else RoundAxis.X
 
 
-def polyline_fraction(points: Sequence[Point], position: Point) -> float:
+def find_polyline_fraction(points: Sequence[Point], position: Point) -> float:
     """Return the fraction of a polyline before its point that is nearest to ``position``."""
     gone = best = 0.0
     least = math.inf
@@ -409,7 +411,7 @@ def _c_at(step: LiveToolStep, fraction: float) -> float:
     """Return the C angle in degrees at a fraction of a live tool's block."""
     block = step.block
     if block.plane is not None:
-        return float(block.plane.machine_positions(np.array([fraction]))[0, 2])
+        return float(block.plane.compute_machine_positions(np.array([fraction]))[0, 2])
     return block.c0 + (block.c - block.c0) * fraction
 
 
@@ -430,7 +432,7 @@ def _halves(making: PartSimulation) -> tuple[SectionHalf | None, SectionHalf | N
         return sides[0], sides[1]
     columns = part.columns
     edges: FloatArray = columns.first_z_mm + columns.step_mm * (
-        np.arange(columns.number + 1, dtype=np.float64) - 0.5
+        np.arange(columns.column_count + 1, dtype=np.float64) - 0.5
     )
     half = SectionHalf(edges, part.inner_radii.copy(), part.outer_radii.copy())
     return half, half

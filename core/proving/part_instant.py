@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.language.diagnostics import Diagnostic
-from core.part.polar_field import FieldCopy, RemovedMaterial, compact_copy, restore_field
+from core.part.polar_field import FieldCopy, RemovedMaterial, make_compact_copy, restore_field
 from core.part.solid_bodies import RoundAxis
 from core.part.stock import Clamping, Stock
 from core.part.swept_edge import FloatArray, Point
@@ -85,7 +85,7 @@ class PartInstant(NamedTuple):
 
     block_count: int
     next_block_fraction: float
-    line: int
+    line_number: int
     x_plus_half: SectionHalf | None
     x_minus_half: SectionHalf | None
     stock: Stock | None
@@ -137,7 +137,7 @@ def _clamping_hit(
     """
     if cut is None or clamping is None or stock is None:
         return None
-    body = clamping.tailstock if finding.check_name == "into-tailstock" else clamping.chuck_around(stock)
+    body = clamping.tailstock if finding.check_name == "into-tailstock" else clamping.make_chuck_around(stock)
     if body is None:
         return None
     low, high = (
@@ -201,7 +201,7 @@ class PartCopies:
         self._copies: dict[int, tuple[PartSimulation, FieldCopy | None, float]] = {}
         self._every = _COPY_INTERVAL
 
-    def last_copy_before(self, step_count: int) -> int:
+    def find_last_copy(self, step_count: int) -> int:
         """Return the step count of the last copy at or before ``step_count`` steps."""
         return max(each for each in self._copies if each <= step_count)
 
@@ -224,7 +224,7 @@ class PartCopies:
         field, even_with = None, 0.0
         if milling is not None:
             near = self._copies.get(max((each for each in self._copies if each < step_count), default=-1))
-            field = compact_copy(milling.updated_field, near[1] if near is not None else None)
+            field = make_compact_copy(milling.updated_field, near[1] if near is not None else None)
             even_with = milling.synced_volume_mm3
         simulation.milling = None
         self._copies[step_count] = simulation.copy(), field, even_with

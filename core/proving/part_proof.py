@@ -34,7 +34,7 @@ _CHECK_INTERVAL = 200  # moves between two calls of ``check_canceled``
 
 def prove_with_part(
     program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, part_settings: PartSettings,
-    report_progress: ReportProgress | None = None, *, ideal: bool = False,
+    report_progress: ReportProgress | None = None, *, is_ideal: bool = False,
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
     check_canceled: Callable[[float], None] | None = None,
 ) -> tuple[ProofReport, PartReport | None]:  # fmt: skip
@@ -44,7 +44,7 @@ def prove_with_part(
     ``check_canceled`` may raise to cancel while the part is made.
     """
     if machine.kind != "lathe":
-        return prove(program, setup, machine, report_progress, ideal=ideal, on_span=on_span), None
+        return prove(program, setup, machine, report_progress, is_ideal=is_ideal, on_span=on_span), None
     gathered = PartProof(part_settings)
 
     def see(span: MotionSpan | RestSpan) -> None:
@@ -52,7 +52,7 @@ def prove_with_part(
         if on_span is not None:
             on_span(span)
 
-    report = prove(program, setup, machine, report_progress, ideal=ideal, on_span=see)
+    report = prove(program, setup, machine, report_progress, is_ideal=is_ideal, on_span=see)
     part = gathered.make_report(check_canceled)
     # findings of the reading, which does not know the stock
     known = {(each.line, each.code) for each in report.diagnostics}
@@ -149,7 +149,7 @@ class PartProof:
             making.apply_step(step)
         return making.make_report()
 
-    def material_before_blocks(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
+    def find_material_before_blocks(self, blocks: Collection[int]) -> dict[int, PartedPiece]:
         """Return the material before each of the given elementary blocks, by block number.
 
         Material that live tools remove is not subtracted.
@@ -158,7 +158,7 @@ class PartProof:
         held: dict[int, PartedPiece] = {}
         for step in steps:
             if isinstance(step, TipMove) and step.n in blocks and making.part is not None:
-                held.setdefault(step.n, making.part.remaining_piece())
+                held.setdefault(step.n, making.part.make_remaining_piece())
             making.apply_step(step)
         return held
 

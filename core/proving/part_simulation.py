@@ -24,8 +24,8 @@ from core.part.stock import Clamping, Point, Stock
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import PartedPiece, TurnedPart
 from core.proving.assumed_tools import ToolUse
-from core.proving.checks.machine_checks import LIVE_TOOL
-from core.proving.checks.part_checks import HOLES, KIND, STOCK, TOOL
+from core.proving.checks.machine_checks import LIVE_TOOL_PREFIX
+from core.proving.checks.part_checks import EARLIER_HOLES, STOCK, TOOL, TOOL_KIND
 from core.proving.checks.part_findings import RAPID_TOLERANCE_MM, PartFindings
 from core.proving.checks.thread_checks import ThreadChecks
 from core.proving.program_tools import PartSettings, ProgramTools
@@ -127,7 +127,7 @@ class PartSimulation:
             stock,
             part_settings.clamping,
             NeighborTools(part_settings.shapes, part_settings.gang) if part_settings.gang else None,
-            ThreadChecks(part_settings.drives, tools.releases_tap, self._stock_said),
+            ThreadChecks(part_settings.drives, tools.has_releasing_holder, self._stock_said),
             self._find_unspecified_data,
             part_settings.silenced,
             tools.part_off_z,
@@ -175,10 +175,10 @@ class PartSimulation:
         names = [STOCK] if STOCK in required_data and not self._stock_said else []
         assumed = self._tools.assumed_tools.get(self._tool)
         if assumed is not None and (
-            TOOL in required_data or (KIND in required_data and not assumed.is_kind_named)
+            TOOL in required_data or (TOOL_KIND in required_data and not assumed.is_kind_named)
         ):
             names.append(format_edge_name(self._tool))
-        if HOLES in required_data:
+        if EARLIER_HOLES in required_data:
             names += [format_edge_name(n) for n in self._tools.unsized_drills if n != self._tool]
         return tuple(names)
 
@@ -232,10 +232,10 @@ class PartSimulation:
         move, shape = self.make_mill_move(step), self._tools.find_shape(self._tool)
         if move is None or shape is None or self.part is None or self._is_open:
             return
-        from core.proving.milling import MillingState, path_between
+        from core.proving.milling import MillingState, cut_path_at_fractions
 
         if end_fraction - start_fraction < 1.0:
-            move = move._replace(path=path_between(move.path, start_fraction, end_fraction))
+            move = move._replace(path=cut_path_at_fractions(move.path, start_fraction, end_fraction))
         if self.milling is None:
             self.milling = MillingState(self.part)
         self._milled = True
@@ -307,7 +307,7 @@ class PartSimulation:
         Other tools may be broaches. On a machine without a code for the live tool, the live tool is
         switched manually.
         """
-        live = any(name.startswith(LIVE_TOOL) for name in modal.outputs)
+        live = any(name.startswith(LIVE_TOOL_PREFIX) for name in modal.outputs)
         return shape.kind in _TURN and self._live_codes and not live and not modal.spindle
 
     def _finish(self) -> None:
@@ -325,7 +325,7 @@ class PartSimulation:
             )
         self._pieces += pieces
         if part.removed_volume_mm3 or self.milling is not None or self._last is None:
-            self._last = pieces[-1] if pieces else part.remaining_piece()
+            self._last = pieces[-1] if pieces else part.make_remaining_piece()
         self.part = self.milling = None
 
     def make_report(self) -> PartReport:
@@ -334,7 +334,7 @@ class PartSimulation:
         if self.milling is not None:
             left = self.milling.remaining_volume_mm3
         sides = (
-            self.milling.section_halves()
+            self.milling.make_section_halves()
             if self.milling is not None and not self.parted_piece_count
             else None
         )

@@ -65,9 +65,9 @@ class ProgramBranch:
     is_proved: bool = False
     has_failed: bool = False
 
-    def time_after_blocks(self, blocks: int) -> float:
-        """Return the time in seconds at which the first ``blocks`` blocks have been executed."""
-        made = blocks - self.preceding_block_count
+    def time_after_blocks(self, block_count: int) -> float:
+        """Return the time in seconds at which the first ``block_count`` blocks have been executed."""
+        made = block_count - self.preceding_block_count
         if made <= 0 or not self.block_end_times:
             return self.start_time_s
         return self.block_end_times[min(made, len(self.block_end_times)) - 1]
@@ -77,7 +77,7 @@ _Node = tuple[ProgramBranch, int]
 """A way right before one of its forks; behind the last one, up to its end."""
 
 
-def cycle_time_range(first_branch: ProgramBranch) -> ValueRange:
+def find_cycle_time_range(first_branch: ProgramBranch) -> ValueRange:
     """Return the least and the greatest cycle time of all proved paths, in seconds."""
     known: dict[tuple[int, int], ValueRange] = {}
     todo: list[_Node] = [(first_branch, 0)]
@@ -126,7 +126,7 @@ def _next_nodes(node: _Node) -> list[tuple[_Node, float]]:
 
 def find_uncalled_subroutines(reading: SharedProgram) -> Iterator[Diagnostic]:
     """Yield a note for each subroutine that the main program never calls."""
-    program = reading.program
+    program = reading.omniturn_program
     if program is None or not program.structure.subroutines:
         return
     reached = _reached(program)
@@ -271,7 +271,7 @@ class BranchProof:
             return
         self._seen[statement.line, not on] += 1
         choice = InputChoice(statement.line, get_input_terminal(statement), not on)
-        other = branch.fork(statement, is_call_made)
+        other = branch.copy_for_other_branch(statement, is_call_made)
         branch_pass = _BranchPass(
             ProgramBranch(preceding_block_count=branch.block_count),
             other,
@@ -355,7 +355,7 @@ class BranchProof:
             missing_tools=tuple(sorted(self._missing.union(report.missing_tools))),
             required_functions=needs,
             branch_summary=BranchSummary(
-                self._proved, self._unproved + len(self._waiting), cycle_time_range(first)
+                self._proved, self._unproved + len(self._waiting), find_cycle_time_range(first)
             ),
         )
 

@@ -40,7 +40,7 @@ from core.proving.spindle_forecast import (
     SETTLING_TIME_S,
     THREAD_START_LEAD_S,
     SpindleForecast,
-    max_orientation_time_s,
+    calculate_max_orientation_time_s,
 )
 
 # --- blocks without times -------------------------------------------------------------------------------
@@ -212,13 +212,13 @@ class Timeline:
 
     @classmethod
     def from_program(
-        cls, program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, *, ideal: bool = False
+        cls, program: ProgramSource | SharedProgram, setup: Setup, machine: Machine, *, is_ideal: bool = False
     ) -> Timeline:
         """Return the timeline of a program, given as its source or in its parsed form."""
         reading = (
             program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
         )
-        return cls(reading.start_pass(setup), setup, machine, ideal=ideal)
+        return cls(reading.start_pass(setup), setup, machine, ideal=is_ideal)
 
     @property
     def rest_state(self) -> RestState:
@@ -301,7 +301,7 @@ class Timeline:
         turn = abs(self.spindle.speed_at(self.time_s)) / 60.0
         if not turn:
             return self._rest(0.0)
-        ramp = block.feed * turn / (2.0 * self._machine.axes[1].amax)
+        ramp = block.feed * turn / (2.0 * self._machine.axes[1].max_acceleration)
         ahead = abs(self.spindle.revolutions_at(self.time_s)) + turn * (ramp + THREAD_START_LEAD_S)
         return self._rest(THREAD_START_LEAD_S + (math.ceil(ahead - 1e-9) - ahead) / turn)
 
@@ -329,7 +329,9 @@ class Timeline:
         """Yield the wait for the spindle to reach its speed before a feed."""
         if self._speed_wanted:
             self._speed_wanted = False
-            yield self._rest(self._wait_seconds(max(0.0, self.spindle.at_speed_time_s() - self.time_s)))
+            yield self._rest(
+                self._wait_seconds(max(0.0, self.spindle.calculate_at_speed_time_s() - self.time_s))
+            )
 
     def _wait_seconds(self, seconds: float) -> float:
         """Return the wait in seconds for a real machine, or 0 for an ideal machine."""
@@ -364,13 +366,13 @@ class Timeline:
         if isinstance(action, SpindleLock) or (isinstance(action, SpindleStop) and action.stands):
             return self._until_still()
         if isinstance(action, SpindlePositioning):
-            return self._until_still() + max_orientation_time_s(self._machine.spindle, action.sense)
+            return self._until_still() + calculate_max_orientation_time_s(self._machine.spindle, action.sense)
         if isinstance(action, ColletSwitch):
             return collet.close_time if action.closed else collet.open_time
         return 0.0
 
     def _until_still(self) -> float:
-        return max(0.0, self.spindle.slow_time_s(self._machine.spindle.stop_below) - self.time_s)
+        return max(0.0, self.spindle.calculate_slow_time_s(self._machine.spindle.stop_below) - self.time_s)
 
     def _refuse(self, why: str) -> None:
         line = self._moving.first_block.line if self._moving.first_block else 0

@@ -29,7 +29,7 @@ from core.proving.assumed_tools import (
     AssumedTool,
     ToolUse,
     assume_tool,
-    names_releasing_holder,
+    has_releasing_tap_holder,
 )
 from core.proving.checks.thread_checks import UNKNOWN_LIMITS, DriveLimits
 from core.proving.tip_moves import FAST_FEED_MM_S, LiveToolStep, MachineXZ, ProgramStep, TipMove
@@ -164,9 +164,9 @@ class ProgramTools:
         """Return whether the shape of the tool is specified."""
         return number in self._setting.shapes
 
-    def releases_tap(self, number: int) -> bool:
+    def has_releasing_holder(self, number: int) -> bool:
         """Return whether a comment names a tap holder that reverses or releases the tap automatically."""
-        return names_releasing_holder(self.tool_uses[number]) if number in self.tool_uses else False
+        return has_releasing_tap_holder(self.tool_uses[number]) if number in self.tool_uses else False
 
     def make_cutter(self, number: int) -> Cutter | None:
         """Return a cutter for the tool, or None.

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.interpreter.shared.actions import Dwell, ProgramStop
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, FloatArray, StraightMoveSeries
 from core.interpreter.shared.machine_requirements import (
     MachineRequirement,
-    find_requirements,
+    list_requirements,
     remove_repeated_requirements,
 )
 from core.language.diagnostics import Diagnostic, Severity
@@ -60,7 +60,7 @@ class RangeTracker:
         return (self.minimum, self.maximum) if self.minimum <= self.maximum else (0.0, 0.0)
 
 
-def modulo_angle_range(minimum: float, maximum: float) -> ValueRange:
+def find_modulo_angle_range(minimum: float, maximum: float) -> ValueRange:
     """Return the range of a modulo axis in degrees.
 
     The range is 0 to 360 if the axis has passed through 0.
@@ -174,7 +174,9 @@ class ProgramTotals:
 
     def _arc(self, block: Block) -> float:
         self._reach(block)
-        _, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        _, sweep = compute_arc_sweep(
+            block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
+        )
         return abs(sweep) * math.hypot(block.x0 - block.cx, block.z0 - block.cz)
 
     def _plane(self, block: Block, plane_move: PlaneMove) -> float:
@@ -292,7 +294,7 @@ class ProofPass:
             # all blocks of a series need the same
             unlike = blocks[:1] if isinstance(blocks, StraightMoveSeries) else blocks
             self._needs = remove_repeated_requirements(
-                (*self._needs, *find_requirements(unlike, self._before))
+                (*self._needs, *list_requirements(unlike, self._before))
             )
             self._before = blocks[-1]
 
@@ -351,8 +353,10 @@ class ProofPass:
         The C range of a SINUMERIK program is given as its C axis counts the angle.
         """
         reach = self._tally.ranges
-        modulo = source.dialect is Dialect.SINUMERIK and self._machine.c_enabled and self._machine.is_c_modulo
-        return replace(reach, c_range=modulo_angle_range(*reach.c_range)) if modulo else reach
+        modulo = (
+            source.dialect is Dialect.SINUMERIK and self._machine.is_c_enabled and self._machine.is_c_modulo
+        )
+        return replace(reach, c_range=find_modulo_angle_range(*reach.c_range)) if modulo else reach
 
     def _mill(self) -> MillResults | None:
         if self._machine.kind != "mill":
@@ -360,8 +364,8 @@ class ProofPass:
         return MillResults(
             axis_names=tuple(axis.name for axis in self._machine.axes),
             axis_ranges=tuple(
-                modulo_angle_range(*span.min_and_max)
-                if axis.rotary and axis.travel is None
+                find_modulo_angle_range(*span.min_and_max)
+                if axis.is_rotary and axis.travel is None
                 else span.min_and_max
                 for axis, span in zip(self._machine.axes, self._tally.axis_ranges, strict=False)
             ),

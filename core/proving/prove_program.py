@@ -75,7 +75,7 @@ def prove(
     machine: Machine,
     report_progress: ReportProgress | None = None,
     *,
-    ideal: bool = False,
+    is_ideal: bool = False,
     on_span: Callable[[MotionSpan | RestSpan], None] | None = None,
 ) -> ProofReport:
     """Return the proof of a whole program: syntax, travel and times.
@@ -89,11 +89,11 @@ def prove(
     span of the timeline, so that a caller that draws the program needs no second pass.
     """
     reading = program if isinstance(program, SharedProgram) else SharedProgram(program, strict=setup.strict)
-    report = _prove_branches(reading, setup, machine, report_progress, on_span, ideal=ideal)
+    report = _prove_branches(reading, setup, machine, report_progress, on_span, ideal=is_ideal)
     if not uses_block_delete(reading.source) or (setup.begin is not None and setup.begin.is_mdi_line):
         return report
     flipped = replace(setup, block_delete=not setup.block_delete)
-    other = _prove_branches(reading, flipped, machine, report_progress, None, ideal=ideal)
+    other = _prove_branches(reading, flipped, machine, report_progress, None, ideal=is_ideal)
     return add_other_block_delete(report, other, is_delete_on=flipped.block_delete)
 
 

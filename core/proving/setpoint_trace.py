@@ -109,7 +109,7 @@ class _SpanSampler:
         for row, block in by_radius.items():
             before = float(speeds[row - 1]) if row else self._rpm
             wanted = self._by_radius(block, float(machine_x[row]))
-            speeds[row] = self._spindle.ramp_speed(before, wanted, self._dt)
+            speeds[row] = self._spindle.calculate_ramp_speed(before, wanted, self._dt)
         return speeds
 
     def _by_radius(self, block: Block, machine_x: float) -> float:

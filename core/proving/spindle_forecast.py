@@ -21,7 +21,7 @@ SETTLING_TIME_S = 0.035
 THREAD_START_LEAD_S = 0.01
 
 
-def max_orientation_time_s(spindle: SpindleModel, direction: int) -> float:
+def calculate_max_orientation_time_s(spindle: SpindleModel, direction: int) -> float:
     """Return the longest time in seconds to orient the spindle from standstill to an angle.
 
     The rotation is at most half a revolution, or a full revolution if the direction is specified.
@@ -58,7 +58,7 @@ class SpindleForecast:
         self._turns, self._counted = self.revolutions_at(time_s), time_s
         self._from, self._to, self._since = self.speed_at(time_s), rpm, time_s + DRIVE_LATENCY_S
 
-    def ramp_speed(self, present_rpm: float, rpm: float, interval_s: float) -> float:
+    def calculate_ramp_speed(self, present_rpm: float, rpm: float, interval_s: float) -> float:
         """Return the speed after ``interval_s`` seconds on the ramp from ``present_rpm`` toward ``rpm``."""
         rate = self._model.accel if abs(rpm) > abs(present_rpm) else self._model.decel
         return present_rpm + max(-rate * interval_s, min(rate * interval_s, rpm - present_rpm))
@@ -123,7 +123,7 @@ class SpindleForecast:
             return [(0.0, slow), (self._to, fast)]
         return [(self._to, fast if abs(self._to) > abs(self._from) else slow)]
 
-    def slow_time_s(self, threshold_rpm: float) -> float:
+    def calculate_slow_time_s(self, threshold_rpm: float) -> float:
         """Return the time at which a stopping spindle becomes slower than ``threshold_rpm``.
 
         The time is in the past if the spindle is already slower.
@@ -131,7 +131,7 @@ class SpindleForecast:
         over = abs(self._from) - threshold_rpm
         return self._since + over / self._model.decel if over > 0.0 else 0.0
 
-    def at_speed_time_s(self) -> float:
+    def calculate_at_speed_time_s(self) -> float:
         """Return the time in seconds at which the spindle counts as at speed.
 
         The spindle has then been within the at-speed band long enough.

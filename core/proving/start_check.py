@@ -67,8 +67,8 @@ class FirstMove:
     ``path`` is the move in machine X and Z in mm, with a flag for each rapid. ``part_zero`` is the machine
     X and Z at which the displayed tip is at part zero. It belongs to the tool that hits a body, or
     otherwise to the tool at the end of the move. ``hit_body`` is the body that ``tool`` hits at
-    ``hit_z_mm`` (part's frame). If ``starts_inside`` is True, the tool is inside the body before it moves.
-    ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or empty if no direction is
+    ``hit_z_mm`` (part's frame). If ``is_inside_at_start`` is True, the tool is inside the body before it
+    moves. ``safe_jog_direction`` is the direction of a safe jog, such as ``Z+``, or empty if no direction is
     certain to be safe.
     """
 
@@ -77,7 +77,7 @@ class FirstMove:
     hit_body: CollisionBody | None = None
     tool: int = 0
     hit_z_mm: float = 0.0
-    starts_inside: bool = False
+    is_inside_at_start: bool = False
     safe_jog_direction: str = ""
     is_assumed: bool = False  # the part or the tool is assumed
     is_part_known: bool = True  # the part is known
@@ -129,7 +129,7 @@ class StartCheck:
 
     part_history: PartHistory
     offsets: dict[int, ToolOffset]
-    stock_specified: bool
+    is_stock_specified: bool
     silenced_checks: frozenset[str] = frozenset()
     _solids: dict[int, SolidTool] = field(default_factory=dict)
 
@@ -156,7 +156,7 @@ class StartCheck:
                     hit_body=body,
                     tool=tool,
                     hit_z_mm=z,
-                    starts_inside=inside,
+                    is_inside_at_start=inside,
                     safe_jog_direction=self._find_safe_jog(making, start_state),
                     is_assumed=self._is_assumed(body, tool, start_state),
                 )
@@ -164,10 +164,10 @@ class StartCheck:
 
     def _making(self, now: StartState, watch: CheckCanceled | None) -> PartSimulation:
         if now.interrupted_block is None:
-            return self.part_history.simulation_at(1, check_canceled=watch)
+            return self.part_history.make_simulation_at(1, check_canceled=watch)
         block, where = now.interrupted_block
         zero = self._part_zero_for_tool(now.active_tool)
-        return self.part_history.simulation_at(
+        return self.part_history.make_simulation_at(
             block, _tip_position(where, zero) if zero is not None else None, watch
         )
 
@@ -179,7 +179,11 @@ class StartCheck:
         """
         if tool == 0:
             return True
-        if body is CollisionBody.PART and start_state.interrupted_block is None and not self.stock_specified:
+        if (
+            body is CollisionBody.PART
+            and start_state.interrupted_block is None
+            and not self.is_stock_specified
+        ):
             return True
         return start_state.interrupted_block is None and not self.part_history.tools.is_specified(tool)
 

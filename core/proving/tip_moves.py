@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.interpreter.shared.actions import Preset, ToolChange
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries
 from core.interpreter.shared.modal_state import ModalState
@@ -127,7 +127,7 @@ class StepConverter:
         modal = block.modal
         x, z = self._tips.get(modal.tool, (modal.tool_x, modal.tool_z))
         if modal.settable:
-            zero_x, zero_z = self._tips.get(modal.settable, (modal.settable_x, modal.settable_z))
+            zero_x, zero_z = self._tips.get(modal.settable, (modal.zero_offset_x, modal.zero_offset_z))
             x, z = x + zero_x, z + zero_z
         return block.offset_x - x - self._zero[0], block.offset_z - z - self._zero[1]
 
@@ -147,7 +147,7 @@ def find_part_zero(block: Block, part_shift: MachineXZ) -> MachineXZ:
     return block.offset_x - part_shift[0], block.offset_z - part_shift[1]
 
 
-def step_end_points(step: LiveToolStep) -> tuple[Point, Point]:
+def find_step_end_points(step: LiveToolStep) -> tuple[Point, Point]:
     """Return the start and the end of a live tool's block, as positions of the axes in the part's frame."""
     (dx, dz), block = step.part_zero, step.block
     return (block.z0 + dz, block.x0 + dx), (block.z + dz, block.x + dx)
@@ -157,9 +157,9 @@ def axis_position_at(step: LiveToolStep, fraction: float) -> Point:
     """Return the position of the axes after a fraction of a live tool's block."""
     plane = step.block.plane
     if plane is not None:
-        x, z, _ = plane.machine_positions(np.array([fraction]))[0].tolist()
+        x, z, _ = plane.compute_machine_positions(np.array([fraction]))[0].tolist()
         return z + step.part_zero[1] + step.block.modal.secondary_z, x
-    start, end = step_end_points(step)
+    start, end = find_step_end_points(step)
     return start[0] + (end[0] - start[0]) * fraction, start[1] + (end[1] - start[1]) * fraction
 
 
@@ -196,7 +196,9 @@ def _move(block: Block, n: int, line: int, points: tuple[Point, ...], place: Mac
 def _points(block: Block, dx: float, dz: float) -> Iterator[Point]:
     yield block.z0 + dz, block.x0 + dx
     if block.kind is BlockKind.ARC:
-        start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+        start, sweep = compute_arc_sweep(
+            block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise
+        )
         radius = math.hypot(block.x0 - block.cx, block.z0 - block.cz)
         step = 2.0 * math.acos(max(1.0 - _CHORD / radius, 0.0)) if radius > 0.0 else math.pi
         pieces = max(math.ceil(abs(sweep) / step), 1)

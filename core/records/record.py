@@ -27,7 +27,7 @@ _FULL = frozenset({errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.E
 MAX_RECORD_BYTES = 512 * BYTES_PER_MB
 """The most that a record may have, packed or unpacked; five minutes at 1 kHz have 50 MB."""
 
-VELOCITY_SPAN_S = 0.008  # s
+DEFAULT_VELOCITY_SPAN_S = 0.008  # s
 ACCELERATION_SPAN_S = 0.032  # s
 RIPPLE_SPAN_S = 0.5  # s, the span of the mean speed from which ripple is calculated
 
@@ -98,9 +98,11 @@ class ScopeRecord:
     sampling_rate_hz: float
     about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
-    def select_between(self, begin: float, end: float) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the monotonic clock."""
-        first, last = np.searchsorted(self.times_s, (begin, np.nextafter(end, np.inf)))
+    def select_between(self, start_time_s: float, end_time_s: float) -> ScopeRecord:
+        """Return the samples from ``start_time_s`` to ``end_time_s``, inclusive, in seconds of the monotonic
+        clock.
+        """
+        first, last = np.searchsorted(self.times_s, (start_time_s, np.nextafter(end_time_s, np.inf)))
         cut = slice(int(first), int(last))
         started = self.start_time_utc_s + (
             float(self.times_s[first]) - float(self.times_s[0]) if first < last else 0.0
@@ -191,7 +193,7 @@ def why(path: Path, error: OSError) -> RecordError:
 
 
 def calculate_velocity(
-    times: FloatArray, position: FloatArray, span_s: float = VELOCITY_SPAN_S
+    times: FloatArray, position: FloatArray, span_s: float = DEFAULT_VELOCITY_SPAN_S
 ) -> FloatArray:
     """Return the mean velocity over ``span_s`` seconds, in units per second.
 

@@ -134,53 +134,53 @@ class RowBuffer:
         )  # the last column is the row's number
 
     @property
-    def rows_started(self) -> int:
+    def started_row_count(self) -> int:
         """Return the number of rows whose writing has started."""
         return int(self._counts[0])
 
-    @rows_started.setter
-    def rows_started(self, count: int) -> None:
+    @started_row_count.setter
+    def started_row_count(self, count: int) -> None:
         self._counts[0] = count
 
     @property
-    def rows_completed(self) -> int:
+    def completed_row_count(self) -> int:
         """Return the number of rows that have been written completely."""
         return int(self._counts[1])
 
-    @rows_completed.setter
-    def rows_completed(self, count: int) -> None:
+    @completed_row_count.setter
+    def completed_row_count(self, count: int) -> None:
         self._counts[1] = count
 
-    def write(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
+    def append_rows(self, rows: FloatArray) -> list[tuple[int, FloatArray]]:
         """Append rows, and return the changed slots with their contents.
 
         The caller must write these slots to the file.
         """
         rows = rows[-self.capacity :]
-        first, end = self.rows_completed, self.rows_completed + len(rows)
+        first, end = self.completed_row_count, self.completed_row_count + len(rows)
         numbered = np.column_stack((rows, np.arange(first, end, dtype=np.float64)))
-        self.rows_started = end
+        self.started_row_count = end
         at = first % self.capacity
         parts = [(at, numbered[: self.capacity - at])]
         if len(numbered) > self.capacity - at:
             parts.append((0, numbered[self.capacity - at :]))
         for slot, part in parts:
             self.array[slot : slot + len(part)] = part
-        self.rows_completed = end
+        self.completed_row_count = end
         return parts
 
-    def copy_between(self, begin: float, end: float) -> FloatArray:
-        """Return a copy of the rows from ``begin`` to ``end``, inclusive.
+    def copy_rows_between(self, start_time_s: float, end_time_s: float) -> FloatArray:
+        """Return a copy of the rows from ``start_time_s`` to ``end_time_s``, inclusive.
 
         Rows that are being written are omitted.
         """
-        whole = self.rows_completed
-        low = max(0, self.rows_started - self.capacity)
-        first = self._search(low, whole, lambda t: t >= begin)
-        last = self._search(first, whole, lambda t: t > end)
+        whole = self.completed_row_count
+        low = max(0, self.started_row_count - self.capacity)
+        first = self._search(low, whole, lambda t: t >= start_time_s)
+        last = self._search(first, whole, lambda t: t > end_time_s)
         at, count = first % self.capacity, last - first
         rows = np.concatenate((self.array[at : at + count], self.array[: max(0, at + count - self.capacity)]))
-        lost = max(0, self.rows_started - self.capacity - first)  # overwritten while reading
+        lost = max(0, self.started_row_count - self.capacity - first)  # overwritten while reading
         return select_valid_rows(rows[lost:], first + lost)
 
     def _search(self, low: int, high: int, reached: Callable[[float], bool]) -> int:
@@ -196,8 +196,8 @@ class RowBuffer:
     def last_time_s(self) -> float:
         """Return the time of the newest row in seconds, or minus infinity without rows."""
         return (
-            float(self.array[(self.rows_completed - 1) % self.capacity, 0])
-            if self.rows_completed
+            float(self.array[(self.completed_row_count - 1) % self.capacity, 0])
+            if self.completed_row_count
             else -np.inf
         )
 
@@ -205,8 +205,8 @@ class RowBuffer:
     def first_time_s(self) -> float:
         """Return the time of the oldest available row in seconds, or infinity without rows."""
         return (
-            float(self.array[max(0, self.rows_started - self.capacity) % self.capacity, 0])
-            if self.rows_completed
+            float(self.array[max(0, self.started_row_count - self.capacity) % self.capacity, 0])
+            if self.completed_row_count
             else np.inf
         )
 
@@ -216,7 +216,7 @@ def calculate_buffer_size(capacity: int, width: int) -> int:
     return 8 * (2 + capacity * (width + 1))
 
 
-def select_valid_rows(rows: FloatArray, first: int) -> FloatArray:
+def select_valid_rows(rows: FloatArray, first_number: int) -> FloatArray:
     """Return the valid rows without their numbers.
 
     Valid rows are numbered from ``first`` on and have ascending times.
@@ -224,7 +224,7 @@ def select_valid_rows(rows: FloatArray, first: int) -> FloatArray:
     if not len(rows):
         return rows[:, :-1]
     times = rows[:, 0]
-    good = rows[:, -1] == np.arange(first, first + len(rows))
+    good = rows[:, -1] == np.arange(first_number, first_number + len(rows))
     good[1:] &= times[1:] > np.maximum.accumulate(np.where(good, times, -np.inf))[:-1]
     return rows[good, :-1]
 
@@ -254,24 +254,24 @@ class ScopeRing:
             RowBuffer(ticks, layout.tick_width, memory[cut:] if memory is not None else None),
         )
 
-    def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
-        """Return the samples after ``since``, in seconds of the clock.
+    def get_record_since(self, start_time_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+        """Return the samples after ``start_time_s``, in seconds of the clock.
 
         ``names`` selects channels; None selects all channels.
         """
-        return self.get_record_between(np.nextafter(since, np.inf), np.inf, names)
+        return self.get_record_between(np.nextafter(start_time_s, np.inf), np.inf, names)
 
     def get_record_between(
-        self, begin: float, end: float, names: Collection[str] | None = None
+        self, start_time_s: float, end_time_s: float, names: Collection[str] | None = None
     ) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the clock.
+        """Return the samples from ``start_time_s`` to ``end_time_s``, inclusive, in seconds of the clock.
 
         ``names`` selects channels; None selects all channels.
         """
         return make_record(
             self.layout,
-            self.samples.copy_between(begin, end),
-            self.ticks.copy_between(begin - _BEFORE, end),
+            self.samples.copy_rows_between(start_time_s, end_time_s),
+            self.ticks.copy_rows_between(start_time_s - _BEFORE, end_time_s),
             names,
         )
 

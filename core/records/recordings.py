@@ -23,21 +23,21 @@ class ScopeRecordings:
     def __init__(self, ring: ScopeRing, folder: Path | None, storage_error: str = "") -> None:
         self.ring, self.folder, self.storage_error = ring, folder, storage_error
 
-    def get_record_since(self, since: float, names: Collection[str] | None = None) -> ScopeRecord:
-        """Return the samples after ``since``, in seconds of the clock.
+    def get_record_since(self, start_time_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+        """Return the samples after ``start_time_s``, in seconds of the clock.
 
         ``names`` selects channels; None selects all channels.
         """
-        return self.ring.get_record_since(since, names)
+        return self.ring.get_record_since(start_time_s, names)
 
     def get_record_between(
-        self, begin: float, end: float, names: Collection[str] | None = None
+        self, start_time_s: float, end_time_s: float, names: Collection[str] | None = None
     ) -> ScopeRecord:
-        """Return the samples from ``begin`` to ``end``, inclusive, in seconds of the clock.
+        """Return the samples from ``start_time_s`` to ``end_time_s``, inclusive, in seconds of the clock.
 
         ``names`` selects channels; None selects all channels.
         """
-        return self.ring.get_record_between(begin, end, names)
+        return self.ring.get_record_between(start_time_s, end_time_s, names)
 
     def is_saving(self, _name: str) -> bool:
         """Return whether the record of this alarm is still being written."""

@@ -98,12 +98,12 @@ class RingFile:
         start = self._head if first else self._head + self._ring.samples.array.nbytes
         counts = self._head - (2 if first else 1) * _COUNTS.size
         line = rows.array.shape[1] * 8
-        before = rows.rows_completed - sum(len(part) for _, part in parts)
+        before = rows.completed_row_count - sum(len(part) for _, part in parts)
         try:
-            _write(self._file, _COUNTS.pack(rows.rows_completed, before), counts)
+            _write(self._file, _COUNTS.pack(rows.completed_row_count, before), counts)
             for slot, part in parts:
                 _write(self._file, np.ascontiguousarray(part, dtype="<f8").tobytes(), start + slot * line)
-            _write(self._file, _COUNTS.pack(rows.rows_completed, rows.rows_completed), counts)
+            _write(self._file, _COUNTS.pack(rows.completed_row_count, rows.completed_row_count), counts)
         except OSError as error:
             raise why(self.path, error) from error
 
@@ -146,7 +146,7 @@ def _write(file: int, data: bytes, at: int) -> None:
 
 
 # files of the operator screen, for the present start and for the previous one
-NOW, LAST = "now.ring", "before.ring"
+CURRENT_RING_NAME, PREVIOUS_RING_NAME = "now.ring", "before.ring"
 RUN_RING_NAME = "run.ring"  # file of the last run without the operator screen
 
 
@@ -157,8 +157,8 @@ def create_ring_file(folder: Path, name: str, ring: ScopeRing) -> RingFile:
     created.
     """
     with suppress(OSError):
-        if name == NOW and _free(folder / NOW):
-            (folder / NOW).replace(folder / LAST)
+        if name == CURRENT_RING_NAME and _free(folder / CURRENT_RING_NAME):
+            (folder / CURRENT_RING_NAME).replace(folder / PREVIOUS_RING_NAME)
     return RingFile(folder / name, ring)
 
 
@@ -201,13 +201,13 @@ class _Found:
     head: int
 
 
-def read_ring_file(path: Path, begin: float = -np.inf, end: float = np.inf) -> ScopeRecord:
+def read_ring_file(path: Path, start_time_s: float = -np.inf, end_time_s: float = np.inf) -> ScopeRecord:
     """Return the record in a ring file, even while the file is being written.
 
     Raises RecordError if the file cannot be read or is damaged.
     """
     with convert_exceptions(partial(make_damage_error, path)):
-        return check_record(_read_ring(path, begin, end))
+        return check_record(_read_ring(path, start_time_s, end_time_s))
 
 
 def _read_ring(path: Path, begin: float, end: float) -> ScopeRecord:

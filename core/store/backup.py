@@ -61,9 +61,9 @@ def find_all_problems(path: Path) -> tuple[str, ...]:
 
 
 def _looked_through(path: Path, look: Callable[[sqlite3.Connection], tuple[str, ...]]) -> tuple[str, ...]:
-    database.check_file(path, thorough=False)
+    database.check_file(path, is_thorough=False)
     try:
-        with closing(connect_store(path, read_only=True)) as connection:
+        with closing(connect_store(path, is_read_only=True)) as connection:
             log_damage.check_log_is_readable(path, connection)
             return look(connection)
     except sqlite3.Error as error:
@@ -175,7 +175,7 @@ def _read_users(path: Path) -> tuple[UserRow, ...]:
     """Return the users of the store that is about to be replaced, or () if they cannot be read."""
     try:
         database.check_header(path)
-        with closing(connect_store(path, read_only=True)) as connection:
+        with closing(connect_store(path, is_read_only=True)) as connection:
             return user_records.read_user_list(connection).rows
     except (StoreError, sqlite3.Error):
         return ()
@@ -225,7 +225,7 @@ def _empty_log(path: Path) -> None:
     busy = 0
     with (
         suppress(sqlite3.Error, StoreError),
-        closing(connect_store(path, read_only=False)) as connection,
+        closing(connect_store(path, is_read_only=False)) as connection,
     ):
         busy = connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0]
     if busy:
@@ -246,7 +246,7 @@ def _copy(source: Path, target: Path, change: Callable[[sqlite3.Connection], Non
     try:
         with create_unfinished_file(target) as unfinished:
             with (
-                closing(connect_store(source, read_only=True)) as reading,
+                closing(connect_store(source, is_read_only=True)) as reading,
                 closing(sqlite3.connect(unfinished, isolation_level=None)) as writing,
             ):
                 reading.backup(writing)
@@ -295,7 +295,7 @@ def check_backup(connection: sqlite3.Connection, path: Path) -> BackupVerdict:
         found = find_problems(path)
         if found:
             return BackupVerdict(found[0])
-        with closing(connect_store(path, read_only=True)) as then:
+        with closing(connect_store(path, is_read_only=True)) as then:
             older = read_store_version(then) != read_store_version(connection)
             return BackupVerdict("", _count_differences(connection, then, has_checksums=not older), older)
     except StoreError as error:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from core import file_replacement
 from core.file_lock import create_unfinished_file, remove_abandoned_files
-from core.file_replacement import NEW_FILE_MODE, replace_atomically, restrict_folder_access
+from core.file_replacement import PRIVATE_FILE_MODE, replace_atomically, restrict_folder_access
 from core.input_file import open_input_file
 from core.message import Message
 from core.store import row_checksums
@@ -120,13 +120,13 @@ def check_is_file(path: Path) -> None:
         )
 
 
-def check_file(path: Path, *, thorough: bool) -> int:
+def check_file(path: Path, *, is_thorough: bool) -> int:
     """Return the version of the store in ``path``, without writing to the file.
 
     If ``thorough`` is True, every page is checked. Raises StoreError if the file is not a TurnDesk store,
     has a newer version or is damaged.
     """
-    return _checked(path, thorough=thorough)[0]
+    return _checked(path, thorough=is_thorough)[0]
 
 
 def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
@@ -137,7 +137,7 @@ def _checked(path: Path, *, thorough: bool) -> tuple[int, list[str]]:
     check_header(path)
     newest = len(load_migrations())
     try:
-        with closing(connect_store(path, read_only=True)) as connection:
+        with closing(connect_store(path, is_read_only=True)) as connection:
             version = read_store_version(connection)
             wrong = _find_damage(connection) if thorough else []
     except sqlite3.Error as error:
@@ -236,7 +236,7 @@ def create_store_file(path: Path) -> None:
     try:
         for leftover in (unfinished, *get_log_and_index_paths(unfinished)):
             leftover.unlink(missing_ok=True)
-        unfinished.touch(NEW_FILE_MODE)
+        unfinished.touch(PRIVATE_FILE_MODE)
         with closing(sqlite3.connect(unfinished, isolation_level=None)) as connection:
             configure_connection(connection)
             # The file gets its final name only when it is complete and on the disk, so the single steps need
@@ -297,13 +297,13 @@ def open_read_only(folder: Path) -> OpenedStore:
     path = folder / STORE_FILE_NAME
     if not has_store(folder):
         return OpenedStore(path, create_empty_store())
-    version = check_file(path, thorough=False)
+    version = check_file(path, is_thorough=False)
     if version < len(load_migrations()):
         raise StoreError(
             Message("{path} is from an older TurnDesk; upgrade it: turndesk store upgrade", path=path),
             "older-version",
         )
-    reader = connect_store(path, read_only=True)
+    reader = connect_store(path, is_read_only=True)
     try:
         check_log_is_readable(path, reader)
     except StoreError:
@@ -331,7 +331,7 @@ def open_for_writing(folder: Path) -> OpenedStore:
         lock.mark_file_open()
         writer, mended = _writing(path, version, wrong)
         undo.callback(writer.close)
-        reader = connect_store(path, read_only=True)
+        reader = connect_store(path, is_read_only=True)
         undo.pop_all()
         return OpenedStore(path, reader, writer, lock, put_aside + mended)
 
@@ -378,7 +378,7 @@ def _refuse_lost_file(path: Path) -> None:
 
 
 def _writing(path: Path, version: int, wrong: list[str]) -> tuple[sqlite3.Connection, tuple[str, ...]]:
-    connection = connect_store(path, read_only=False)
+    connection = connect_store(path, is_read_only=False)
     try:
         if 0 < version < len(load_migrations()):
             _save_copy(connection, path.with_name(f"{path.stem}-version-{version}.db"))

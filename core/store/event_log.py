@@ -64,14 +64,14 @@ class EventLog:
         self._store = store
 
     def read_events(
-        self, search: str = "", limit: int = 100, kinds: Collection[str] = ()
+        self, search_text: str = "", limit: int = 100, kinds: Collection[str] = ()
     ) -> tuple[EventRow, ...]:
         """Return the latest events, newest first.
 
-        ``search`` selects events whose kind or text contains this text, ignoring case. ``kinds`` selects
+        ``search_text`` selects events whose kind or text contains this text, ignoring case. ``kinds`` selects
         events of these kinds; if it is empty, all kinds are selected.
         """
-        return self._store.run_query(find_events, search, limit, kinds)
+        return self._store.run_query(find_events, search_text, limit, kinds)
 
     def log_event(
         self, kind: str, text: str, line: int = 0, record: str = "", author: str = ""

@@ -180,7 +180,7 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
     the copy cannot be saved.
     """
     log, _ = get_log_and_index_paths(path)
-    with closing(connect_store(path, read_only=True)) as reader:
+    with closing(connect_store(path, is_read_only=True)) as reader:
         lost = _changes_lost(path, reader)
     if not lost:
         return ()
@@ -190,7 +190,7 @@ def save_damaged_log(path: Path) -> tuple[str, ...]:
         restrict_access(kept)
     except OSError as error:
         raise why(kept, error) from error
-    with closing(connect_store(path, read_only=False)) as writer:
+    with closing(connect_store(path, is_read_only=False)) as writer:
         writer.execute("PRAGMA wal_checkpoint(TRUNCATE)")
     return (
         (

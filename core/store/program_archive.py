@@ -55,7 +55,7 @@ class ProgramArchive:
         Later runs under this name are recorded for this text.
         """
         key = program_records.make_bytes_key(text)
-        self._loaded.add(name, key)
+        self._loaded.record_loaded_text(name, key)
 
         def operation(connection: sqlite3.Connection) -> None:
             job_queue.record_loaded_text(connection, name, key)
@@ -63,7 +63,7 @@ class ProgramArchive:
 
         return self._store.store_latest_durably(("text", name), operation)
 
-    def rename_program(self, old: str, new: str) -> Future[None]:
+    def rename_program(self, old_name: str, new_name: str) -> Future[None]:
         """Rename a program together with its versions, run record and notes."""
-        self._loaded.rename(old, new)
-        return self._store.write(lambda c: program_records.transfer_records(c, old, new))
+        self._loaded.rename_program(old_name, new_name)
+        return self._store.write(lambda c: program_records.transfer_records(c, old_name, new_name))

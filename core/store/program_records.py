@@ -227,7 +227,11 @@ def record_interrupted_runs(connection: sqlite3.Connection, outcome: str) -> tup
 
 
 def record_complete_cycles(
-    connection: sqlite3.Connection, program: str, seconds: float, count: int, best: float
+    connection: sqlite3.Connection,
+    program: str,
+    last_cycle_time_s: float,
+    cycle_count: int,
+    shortest_cycle_time_s: float,
 ) -> None:
     """Record complete cycles, with the time of the last cycle and the shortest time, in seconds.
 
@@ -238,7 +242,7 @@ def record_complete_cycles(
     connection.execute(
         "UPDATE runs SET cycles = cycles + ?3, latest = ?1, best = min(coalesce(nullif(best, 0.0), ?4), ?4)"
         " WHERE program = ?2",
-        (seconds, key, count, best),
+        (last_cycle_time_s, key, cycle_count, shortest_cycle_time_s),
     )
 
 
@@ -253,31 +257,31 @@ def record_proof(
     )
 
 
-def transfer_records(connection: sqlite3.Connection, old: str, new: str) -> None:
+def transfer_records(connection: sqlite3.Connection, old_name: str, new_name: str) -> None:
     """Transfer the versions, counts, run records, settings and measured features to a new program name.
 
     If the new name already has versions or features, these remain, and those of the old name are not
     transferred. Raises StoreError if the new name is invalid.
     """
-    check_program_name(new)
+    check_program_name(new_name)
     connection.execute(
         "UPDATE programs SET name = ?2 WHERE name = ?1 AND NOT EXISTS"
         " (SELECT 1 FROM programs WHERE name = ?2)",
-        (old, new),
+        (old_name, new_name),
     )
     for table in ("part_cycles", "production_stops", "jobs"):
-        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
+        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new_name, old_name))
     connection.execute(
         "UPDATE part_features SET program = ?2 WHERE program = ?1 AND NOT EXISTS"
         " (SELECT 1 FROM part_features WHERE program = ?2 AND retired = 0)",
-        (old, new),
+        (old_name, new_name),
     )
     for table in ("runs", "part_counts"):
-        connection.execute(f"DELETE FROM {table} WHERE program = ?", (new,))
-        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new, old))
+        connection.execute(f"DELETE FROM {table} WHERE program = ?", (new_name,))
+        connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (new_name, old_name))
     for key in (make_stock_setting_key, make_part_setting_key, make_notes_setting_key, make_loaded_text_key):
-        connection.execute("DELETE FROM settings WHERE key = ?", (key(new),))
-        connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new), key(old)))
+        connection.execute("DELETE FROM settings WHERE key = ?", (key(new_name),))
+        connection.execute("UPDATE settings SET key = ? WHERE key = ?", (key(new_name), key(old_name)))
 
 
 def _row(connection: sqlite3.Connection, program: str) -> str:

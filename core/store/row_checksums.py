@@ -141,13 +141,13 @@ def find_all_broken_rows(
 
 
 def find_broken_rows(
-    connection: sqlite3.Connection, table: str, since: int | None = None
+    connection: sqlite3.Connection, table: str, first_key: int | None = None
 ) -> frozenset[RowKey]:
     """Return the keys of rows that do not match their checksums, including rows that no longer exist.
 
     ``since`` limits the check of a history to the entries from this key on.
     """
-    rows, sums = _rows(connection, table, since), _sums(connection, table, since)
+    rows, sums = _rows(connection, table, first_key), _sums(connection, table, first_key)
     return frozenset(
         key
         for key in rows.keys() | sums.keys()

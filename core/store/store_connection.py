@@ -10,7 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from core.file_lock import is_locked, lock_file, mark_locked
-from core.file_replacement import NEW_FILE_MODE
+from core.file_replacement import PRIVATE_FILE_MODE
 from core.message import Message
 from core.store.store_errors import StoreError, StoreErrorCause, find_cause, why
 from core.store.store_file import resolve_link
@@ -22,7 +22,7 @@ FOLDERS_OPEN_FOR_WRITING = set[Path]()  # folders whose store this process has o
 _UNWRITABLE_CAUSES = frozenset({StoreErrorCause.FULL, StoreErrorCause.FORBIDDEN})
 
 
-def connect_store(path: Path, *, read_only: bool) -> sqlite3.Connection:
+def connect_store(path: Path, *, is_read_only: bool) -> sqlite3.Connection:
     """Open a connection to the store; the caller begins transactions explicitly.
 
     Reading needs a little disk space in the folder of the file for SQLite's index. If the disk has no space
@@ -30,9 +30,9 @@ def connect_store(path: Path, *, read_only: bool) -> sqlite3.Connection:
     opened.
     """
     try:
-        return _connection(path, "mode=ro" if read_only else "mode=rw")
+        return _connection(path, "mode=ro" if is_read_only else "mode=rw")
     except sqlite3.Error as error:
-        if not read_only or find_cause(path, error) not in _UNWRITABLE_CAUSES or has_write_ahead_log(path):
+        if not is_read_only or find_cause(path, error) not in _UNWRITABLE_CAUSES or has_write_ahead_log(path):
             raise why(path, error) from error
     try:
         return _connection(path, "mode=ro&immutable=1")
@@ -103,7 +103,7 @@ class WriterLock:
     def __init__(self, folder: Path, pause: Callable[[float], object] = time.sleep) -> None:
         self._path = folder / _LOCK
         try:
-            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, NEW_FILE_MODE)
+            self._file = os.open(self._path, os.O_RDWR | os.O_CREAT, PRIVATE_FILE_MODE)
         except OSError as error:
             raise why(self._path, error) from error
         try:

@@ -35,9 +35,9 @@ class StoreErrorCause(Enum):
         "this user does not have the required permission for {path} ({error}); check its "
         "permissions and the permissions of its folder"
     )
-    GONE = "{path} was not found: check the name, or put the file back and start turndesk again"
+    MISSING = "{path} was not found: check the name, or put the file back and start turndesk again"
     FAILING = "{path}: the disk is failing ({error}); check that it is connected and in good condition"
-    HANGS = (
+    NOT_RESPONDING = (
         "the disk does not respond: changes are waiting to be written to {path}; check the disk and its cable"
     )
     DAMAGED = "{path} is damaged ({error}) and was not changed. Restore a backup: turndesk store restore FILE"
@@ -59,9 +59,9 @@ _CODES = {
     StoreErrorCause.FULL: "disk-full",
     StoreErrorCause.LOCKED: "locked",
     StoreErrorCause.FORBIDDEN: "forbidden",
-    StoreErrorCause.GONE: "not-found",
+    StoreErrorCause.MISSING: "not-found",
     StoreErrorCause.FAILING: "disk-failing",
-    StoreErrorCause.HANGS: "disk-hangs",
+    StoreErrorCause.NOT_RESPONDING: "disk-hangs",
     StoreErrorCause.DAMAGED: "damaged",
     StoreErrorCause.OTHER: "unusable",
 }
@@ -95,7 +95,7 @@ def find_cause(path: Path, error: sqlite3.Error | OSError) -> StoreErrorCause:
         return StoreErrorCause.DAMAGED
     code = getattr(error, "sqlite_errorcode", None)
     if code == sqlite3.SQLITE_READONLY_DBMOVED:
-        return StoreErrorCause.GONE
+        return StoreErrorCause.MISSING
     cause = (
         _BY_CODE.get(code & 0xFF, StoreErrorCause.OTHER) if isinstance(code, int) else StoreErrorCause.OTHER
     )
@@ -137,5 +137,5 @@ def _of_system(error: OSError) -> StoreErrorCause:
     if error.errno in _FORBIDDEN:
         return StoreErrorCause.FORBIDDEN
     if error.errno in _MISSING_ERRNOS:
-        return StoreErrorCause.GONE
+        return StoreErrorCause.MISSING
     return StoreErrorCause.FAILING if error.errno == errno.EIO else StoreErrorCause.OTHER

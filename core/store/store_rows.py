@@ -13,7 +13,7 @@ from math import isfinite
 from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_type_hints
 
 from core.message import Message
-from core.tool_edges import EDGE_NUMBERS, make_edge_key
+from core.tool_edges import EDGE_NUMBERS, make_row_number
 
 MM_PER_INCH = 25.4
 TOOL_OFFSET_LIMIT_MM = 1270.0  # mm, 50 in, more than the travel of any such lathe
@@ -35,7 +35,7 @@ TOOL_KINDS = (
 TOOL_HANDS = ("right", "left", "neutral")
 _ROUNDING = 1e-9  # in
 OFFSET_NUMBERS = range(1, 33)
-TOOL_ROW_NUMBERS = frozenset(make_edge_key(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS)
+TOOL_ROW_NUMBERS = frozenset(make_row_number(tool, edge) for tool in OFFSET_NUMBERS for edge in EDGE_NUMBERS)
 """Numbers of the tables of tools: T, and their further cutting edges."""
 ZERO_CODES = range(54, 60)
 MILL_TOOL_NUMBERS = range(1, 1000)
@@ -97,7 +97,7 @@ class RowField:
             return Message("up to {high} characters on one line", high=f"{self.maximum:g}")
         return f"{self.minimum:g}…{self.maximum:g}"
 
-    def accepts(self, value: object) -> bool:
+    def is_valid_value(self, value: object) -> bool:
         """Return whether the store accepts a value.
 
         NaN is never accepted.
@@ -262,11 +262,11 @@ FIELDS_BY_KIND: Mapping[OffsetKind, Mapping[str, RowField]] = {
     OffsetKind.PRESET: read_row_fields(PresetRow),
 }
 OffsetRow = ToolRow | SecondaryRow | ZeroRow | ShapeRow | MillRow | PresetRow
-R = TypeVar("R", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
+ConcreteRowT = TypeVar("ConcreteRowT", ToolRow, SecondaryRow, ZeroRow, ShapeRow, MillRow, PresetRow)
 RowT = TypeVar("RowT", bound=OffsetRow)  # also for rows whose type is known only at run time
 
 
-def replace_fields(row: R, values: Mapping[str, FieldValue]) -> R:
+def replace_fields(row: ConcreteRowT, values: Mapping[str, FieldValue]) -> ConcreteRowT:
     """Return the row with the given fields replaced.
 
     Raises ValueError for an unknown field name.

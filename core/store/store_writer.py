@@ -107,7 +107,7 @@ class UnwrittenEntries:
         now = get_utc_now_text()
         event_log.add_events(connection, (*self._events, *(EventRow(now, "warning", why) for why in refused)))
 
-    def clear(self) -> None:
+    def clear_entries(self) -> None:
         """Remove all entries after they have been written to disk."""
         self._events.clear()
         self._dropped = 0
@@ -209,7 +209,7 @@ class StoreWriter:
             waited = self._clock() - self._posted[0]
         except IndexError:
             return ""
-        return str(StoreErrorCause.HANGS.make_error(self._path, "")) if waited > SLOW_WRITE_S else ""
+        return str(StoreErrorCause.NOT_RESPONDING.make_error(self._path, "")) if waited > SLOW_WRITE_S else ""
 
     def queue_operation(self, operation: Operation[T]) -> Future[T]:
         """Queue ``operation`` to run in its own transaction.
@@ -281,7 +281,7 @@ class StoreWriter:
             self._backlog = self._unwritten.count_entries(self._trouble or str(failure))
             self._tell(lambda future: future.set_exception(failure))
             return
-        self._unwritten.clear()
+        self._unwritten.clear_entries()
         self._trouble, self._backlog = "", None
         self._tell(lambda future: future.set_result(None))
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import AxisSample, DriverError, Segments, StopMode, is_queue_finished
+from core.ports import AxisSample, DriverError, MotionSegments, StopMode, is_queue_finished
 from drivers.canopen.canopen_bus import CanBus
 from drivers.canopen.canopen_config import CanopenConfig
 from drivers.canopen.canopen_homing import CanopenHoming
 from drivers.canopen.canopen_objects import DriveState
-from drivers.canopen.canopen_setup import build_limit_objects
+from drivers.canopen.canopen_setup import build_travel_limit_objects
 from drivers.canopen.drive_set import MOTION_MODES, DriveSet
 from drivers.canopen.position_modes import CyclicFollower, ProfiledFollower, SetpointFollower, SyncSchedule
 from drivers.canopen.pvt_mode import PvtFollower
@@ -31,7 +31,7 @@ def create_follower(
         return ProfiledFollower(drives.axes, drives.axis_indices, queue)
     if MOTION_MODES[config.bus.mode].is_cyclic:
         return CyclicFollower(
-            drives.axes, drives.axis_indices, queue, MOTION_MODES[config.bus.mode].mode, schedule
+            drives.axes, drives.axis_indices, queue, MOTION_MODES[config.bus.mode].drive_mode, schedule
         )
     return PvtFollower(drives.axes, drives.axis_indices, queue, config.commit_time_s, config.bus.record)
 
@@ -88,8 +88,8 @@ class CanopenAxes:
         if not self.is_cyclic:
             self.advance(now)
         self._check_braking_time(now)
-        self.drives.update_motion(now)
-        self.queue.discard_before(now - _HISTORY_S)
+        self.drives.update_moving_axes(now)
+        self.queue.discard_pieces_before(now - _HISTORY_S)
 
     def advance(self, now: float) -> None:
         """Execute the next step of a homing, or feed the next setpoints.
@@ -110,13 +110,13 @@ class CanopenAxes:
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue, or the present time if the queue is empty."""
-        return self.queue.queue_end(self.now())
+        return self.queue.get_end_time(self.now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at time ``time_s``."""
-        return self.queue.commanded_state_at(time_s)
+        return self.queue.get_commanded_state(time_s)
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
         Raises DriverError if the setpoints are invalid or the drives cannot follow them.
@@ -126,12 +126,12 @@ class CanopenAxes:
         require_no_homing(homing.config.name if homing is not None else "")
         check_limits(segments, self.config.axes, self._homed())
         self.follower.check_segments(segments)
-        self.queue.splice(segments, self.now())
+        self.queue.splice_segments(segments, self.now())
 
     def sample(self) -> AxisSample:
         """Return the state of the axes from the last replies; its time is that of their SYNC."""
         actual, powered, seen = self._actual_positions(), self._powered(), self.drives.last_reply_s
-        demand, velocity = self.queue.commanded_state_at(self.follower.get_path_time(seen))
+        demand, velocity = self.queue.get_commanded_state(self.follower.get_path_time(seen))
         busy = self.active_homing is not None or self._given_up is not None
         if not powered or busy:
             demand = actual
@@ -148,14 +148,14 @@ class CanopenAxes:
 
     @property
     def _plays(self) -> bool:
-        return self.drives.is_moving or (self.is_cyclic and self.follower.is_playing)
+        return self.drives.is_moving or (self.is_cyclic and self.follower.is_executing)
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the power of the drives on or off, and wait until all drives have switched.
 
         Raises DriverError that names the drives that do not switch on.
         """
-        if not on:
+        if not is_on:
             self._off(DriveState.SWITCH_ON_DISABLED)
             self.drives.power_off()
             return
@@ -188,7 +188,7 @@ class CanopenAxes:
         self._need_power()
         require_standstill(axis, self.sample().moving)
         self.follower.abort_transfer()
-        self.active_homing = CanopenHoming(driven, self.follower.mode, self.now())
+        self.active_homing = CanopenHoming(driven, self.follower.drive_mode, self.now())
 
     def clear_fault(self) -> None:
         """Clear the fault and reset the drives, which remain without power.
@@ -206,7 +206,7 @@ class CanopenAxes:
 
     def is_follower_idle(self, now: float) -> bool:
         """Return whether neither the queue nor the drives contain setpoints that are still to be executed."""
-        return is_queue_finished(self.queue.queue_end(now), now) and not self.follower.is_playing
+        return is_queue_finished(self.queue.get_end_time(now), now) and not self.follower.is_executing
 
     def reset_queue(self) -> None:
         """Restart the setpoint queue at the measured positions."""
@@ -223,7 +223,7 @@ class CanopenAxes:
             self._trip(fault_text)
         elif self._on and not self._powered() and not fault_text:
             self._off(DriveState.SWITCH_ON_DISABLED)  # The power was removed by E-stop or STO.
-            self.drives.clear_home()
+            self.drives.mark_not_homed()
 
     def _trip(self, fault: str) -> None:
         """Set a fault, unless a fault is already active, and stop all axes."""
@@ -258,11 +258,11 @@ class CanopenAxes:
             self.active_homing, self._given_up = None, self.active_homing
         elif self._given_up is None:
             at = self.now() + self.commit
-            if any(self.queue.commanded_state_at(at)[1]):
+            if any(self.queue.get_commanded_state(at)[1]):
                 self.queue.brake_to_rest(at, [axis.amax for axis in self.config.axes])
             else:
-                place, _ = self.queue.commanded_state_at(at)  # Setpoints until then remain.
-                self.queue.splice(Segments.make_rest(at, place), at - self.commit)
+                place, _ = self.queue.get_commanded_state(at)  # Setpoints until then remain.
+                self.queue.splice_segments(MotionSegments.make_rest(at, place), at - self.commit)
             self.follower.handle_braking(at)
 
     def _go_on(self, now: float) -> None:
@@ -274,8 +274,8 @@ class CanopenAxes:
         if homing.is_done:
             if self.active_homing is not None:
                 homing.axis.is_homed = True
-                for index, sub, value in build_limit_objects(homing.config):
-                    homing.axis.drive.setup.try_write(index, sub, value)
+                for index, sub, value in build_travel_limit_objects(homing.config):
+                    homing.axis.drive.setup.write_optional_object(index, sub, value)
             self.active_homing = self._given_up = None
             self.queue.reset_to(
                 self._actual_positions()
@@ -292,7 +292,7 @@ class CanopenAxes:
 
         For an axis without a drive, the queued position is returned.
         """
-        p = list(self.queue.commanded_state_at(self.now())[0])
+        p = list(self.queue.get_commanded_state(self.now())[0])
         for index, axis in zip(self.drives.axis_indices, self.drives.axes, strict=True):
             p[index] = axis.drive.position * axis.config.count
         return tuple(p)

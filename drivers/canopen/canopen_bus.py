@@ -35,16 +35,18 @@ _ECHOING_INTERFACES = ("udp_multicast",)  # Receives its own frames, so another 
 class CanBus(canopen.Network):
     """CAN bus whose frames are all sent and received by the loop that owns the bus.
 
-    In tests, ``idle`` is called to advance the time while the bus waits.
+    In tests, ``advance_time`` is called to advance the time while the bus waits.
     """
 
-    def __init__(self, config: CanopenTable, clock: Clock, idle: Callable[[], None] | None = None) -> None:
+    def __init__(
+        self, config: CanopenTable, clock: Clock, advance_time: Callable[[], None] | None = None
+    ) -> None:
         super().__init__(open_interface(config))
         self.config = config
         self.clock = clock
         self.garbled_frame_count = 0
         self.failure: Fault | str = ""  # Reason for the bus failure until the bus is opened again.
-        self._idle = idle
+        self._idle = advance_time
         # Called during every wait; returns seconds until the next call.
         self.wait_callback: Callable[[], float] | None = None
         self.next_heartbeat_s = clock.now()  # Time of TurnDesk's next heartbeat.
@@ -144,8 +146,8 @@ class CanBus(canopen.Network):
         return True
 
     @property
-    def is_stepped(self) -> bool:
-        """Return whether time advances only when the bus calls ``idle``, as in tests."""
+    def has_stepped_time(self) -> bool:
+        """Return whether time advances only when the bus calls ``advance_time``, as in tests."""
         return self._idle is not None
 
     def mark_failed(self, reason: str) -> None:

@@ -25,12 +25,12 @@ class AxisConfig(AxisProperties):
     home_latch_speed: float = 0.0
     home_offset: float = 0.0
 
-    def velocity(self, speed: float) -> float:
+    def convert_speed(self, speed: float) -> float:
         """Convert a speed in mm/s or degrees/s into the unit of the drive, counts/s or rpm."""
         counts = speed / self.count
         return counts * 60.0 / self.counts_per_rev if self.counts_per_rev else counts
 
-    def acceleration(self, accel: float) -> int:
+    def convert_acceleration(self, accel: float) -> int:
         """Convert an acceleration in mm/s² or degrees/s² into the unit of the drive, counts/s² or rpm/s.
 
         The result is at least 1.
@@ -48,9 +48,9 @@ class SpindleConfig:
     """
 
     node: CanNode
-    rpm_max: float
-    accel: float
-    decel: float
+    max_rpm: float
+    acceleration_rpm_per_s: float
+    deceleration_rpm_per_s: float
     is_c_axis: bool = False
 
 
@@ -66,7 +66,7 @@ class EncoderConfig:
     index: int
     subindex: int
     counts_per_rev: int  # Negative: counts down with M03.
-    rpm_max: float
+    max_rpm: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -73,12 +73,12 @@ class CanEncoder:
         if self._drive is None:
             self.node.nmt.state = "OPERATIONAL"
 
-    def record_sync(self, now: float, *, reply_expected: bool = True) -> None:
+    def record_sync(self, now_s: float, *, reply_expected: bool = True) -> None:
         """Record that a SYNC was sent at time ``now``.
 
         With ``reply_expected``, the encoder must reply to this SYNC.
         """
-        self.missing_reply_count, self._asked = self.missing_reply_count + reply_expected, now
+        self.missing_reply_count, self._asked = self.missing_reply_count + reply_expected, now_s
 
     def supervise(self) -> None:
         """Set a fault if heartbeats or replies are missing."""
@@ -103,7 +103,7 @@ class CanEncoder:
         except DriverError as error:
             self.failure = Fault("spindle encoder {error}", "spindle-encoder", error=error)
 
-    def measured_rpm(self) -> float:
+    def measure_rpm(self) -> float:
         """Return the mean speed of the last 0.1 s in rpm, signed."""
         if len(self._reads) < 2:
             return 0.0
@@ -142,7 +142,7 @@ class CanEncoder:
         turns = setup.read(od.ENCODER_TURNS)
         self._range = (setup.read(od.ENCODER_RANGE) if scaled else counts * max(turns, 1)) or _COUNTER_RANGE
         wait = self._bus.config.sync * self._bus.config.slow_reply_divisor
-        between = (MAX_MISSING_REPLIES + 1) * wait * config.rpm_max / 60.0  # Maximum revolutions.
+        between = (MAX_MISSING_REPLIES + 1) * wait * config.max_rpm / 60.0  # Maximum revolutions.
         if self._range < 2.0 * between * counts:
             raise DriverError(
                 "{name}: the encoder count wraps around after {range} rev, but the spindle may turn "
@@ -174,7 +174,7 @@ class CanEncoder:
         turns = moved / abs(self._config.counts_per_rev)
         most = (
             _MAX_SPEED_FACTOR
-            * self._config.rpm_max
+            * self._config.max_rpm
             / 60.0
             * max(passed, self._bus.config.sync * self._bus.config.slow_reply_divisor)
         )
@@ -222,19 +222,19 @@ class MeasuredSpindle:
     def __init__(self, encoder: CanEncoder | None) -> None:
         self._encoder = encoder
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Raise DriverError unless ``rpm`` is 0, because the bus has no spindle drive."""
         if rpm:
             raise DriverError(
                 "this bus has no spindle drive; check spindle.driver", "spindle-off", reason="no-drive"
             )
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Do nothing, because the bus has no spindle drive."""
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed, or 0 without an encoder."""
-        return self._encoder.measured_rpm() if self._encoder is not None else 0.0
+        return self._encoder.measure_rpm() if self._encoder is not None else 0.0
 
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time in seconds and the revolutions of the last reply of the encoder.

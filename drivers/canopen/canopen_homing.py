@@ -121,13 +121,13 @@ class CanopenHoming:
         slow = config.home_latch_speed or config.home_speed / 10.0
         setup.write(od.HOME_METHOD, 0, config.home_method)
         for index, sub, value in (
-            (od.HOME_SPEEDS, 1, max(round(config.velocity(config.home_speed)), 1)),
-            (od.HOME_SPEEDS, 2, max(round(config.velocity(slow)), 1)),
-            (od.HOME_ACCEL, 0, config.acceleration(config.amax)),
+            (od.HOME_SPEEDS, 1, max(round(config.convert_speed(config.home_speed)), 1)),
+            (od.HOME_SPEEDS, 2, max(round(config.convert_speed(slow)), 1)),
+            (od.HOME_ACCEL, 0, config.convert_acceleration(config.amax)),
         ):
-            setup.try_write(index, sub, value)
+            setup.write_optional_object(index, sub, value)
         place = round(config.home_offset / config.count)
-        if not setup.try_write(config.profile.home_offset_object, 0, place) and place:
+        if not setup.write_optional_object(config.profile.home_offset_object, 0, place) and place:
             raise DriverError(
                 "{name}: the drive has no object {home_place}h (home offset), so "
                 "axis.{name2}.home.offset must be 0",
@@ -170,7 +170,7 @@ class SpindleHoming:
         self._drive.setup.write(od.HOME_METHOD, 0, _INDEX_METHOD)
         self._begin(0, now)
 
-    def set_position(self, counts: int, now: float) -> None:
+    def start_position_setting(self, counts: int, now: float) -> None:
         """Start a homing that sets the present position to ``counts``.
 
         Raises DriverError.
@@ -189,7 +189,7 @@ class SpindleHoming:
         """
         drive, waited = self._drive, now - self._since
         if not self._told:
-            if drive.enabled and drive.reported_mode == HM:
+            if drive.is_enabled and drive.reported_mode == HM:
                 drive.mode_bits, self._told, self._since = NEW, True, now
             elif waited > _POWERED_MODE_CHANGE_S:
                 raise DriverError(
@@ -233,11 +233,11 @@ class IndexPhase:
         self._last = 0
         self.counts: int | None = None
 
-    def set_index(self, position: int) -> None:
+    def set_index_position(self, position: int) -> None:
         """Set the phase from a drive position that is counted from the index."""
         self.counts, self._last = position % self._per_turn, position
 
-    def update(self, position: int, *, ignore_jumps: bool) -> None:
+    def track_position(self, position: int, *, ignore_jumps: bool) -> None:
         """Track the drive position; call this method once per cycle.
 
         With ``ignore_jumps``, the change of the position is ignored, because homing sets the counter while

@@ -45,9 +45,9 @@ class CanopenSamples:
     """``core.ports.SampleSource`` that stores the replies of the drives to each SYNC."""
 
     def __init__(
-        self, axes: CanopenAxes, spindle: Spindle, sync: float, spindle_drive: Cia402Drive | None
+        self, axes: CanopenAxes, spindle: Spindle, sync_period_s: float, spindle_drive: Cia402Drive | None
     ) -> None:
-        self.sample_rate_hz = 1.0 / sync
+        self.sample_rate_hz = 1.0 / sync_period_s
         self._axes, self._spindle, self._spindle_drive = axes, spindle, spindle_drive
         self._drives = {axis.config.name: axis.drive for axis in axes.drives.axes}
         self._log = SampleLog(len(axes.axes))
@@ -62,7 +62,7 @@ class CanopenSamples:
             self._drives[name].torque_percent if name in self._drives else _NAN for name in self._axes.axes
         ]
         turning = self._spindle_drive.torque_percent if self._spindle_drive is not None else _NAN
-        left = self._axes.queue.queue_end(now) - now
+        left = self._axes.queue.get_end_time(now) - now
         self._log.append_row(
             sample.t, *sample.demand, *sample.actual, *load, self._spindle.speed(), turns, turning, left
         )
@@ -284,9 +284,9 @@ class CanopenMachine:
                 self.spindle_c.failure if self.spindle_c is not None else ""
             )
             if self.spindle is not None:
-                self.spindle.update()
+                self.spindle.supervise_drive()
             if self.spindle_c is not None:
-                self.spindle_c.update(now)
+                self.spindle_c.advance_mode_change(now)
             if self.encoder is not None:
                 self.encoder.supervise()
             early = _EPSILON if self._waits else self._early
@@ -322,7 +322,7 @@ class CanopenMachine:
             self.axes.stop(StopMode.RAMP_OFF)
             self.io.switch_to_safe_state()
             if self.spindle is not None:
-                self.spindle.coast()
+                self.spindle.start_coasting()
                 if self.spindle.drive not in self.axes.drives.drives:
                     self.spindle.drive.goal_state = (
                         DriveState.SWITCH_ON_DISABLED

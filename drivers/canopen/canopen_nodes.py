@@ -20,7 +20,7 @@ from core.table_schema import (
 )
 from drivers.canopen.drive_profiles import PROFILES
 
-FIRST_MODULE = "401"  # Stands for the first I/O module in addresses.
+FIRST_MODULE_ADDRESS = "401"  # Stands for the first I/O module in addresses.
 DRIVE, MODULE, ENCODER_PROFILE = 402, 401, 406  # Profiles of CiA.
 NODES, SDO, SPINDLE = "canopen.nodes", "canopen.sdo", "spindle"
 _TERMINAL_PATTERN = re.compile(r"([A-Za-z0-9_]+)\.([0-9A-Fa-f]{4})\.(\d{1,3})(?:\.(\d{1,2}))?")
@@ -136,14 +136,14 @@ def resolve_terminal(file: MachineFileReading, text: str) -> CanTerminal | None:
     Return None if the text is not a terminal address.
     """
     found = parse_terminal(text)
-    if found is None or found.node != FIRST_MODULE:
+    if found is None or found.node != FIRST_MODULE_ADDRESS:
         return found
-    return replace(found, node=next(iter(list_module_names(file)), FIRST_MODULE))
+    return replace(found, node=next(iter(list_module_names(file)), FIRST_MODULE_ADDRESS))
 
 
-def iterate_input_addresses() -> Iterator[str]:
+def generate_input_addresses() -> Iterator[str]:
     """Yield the input addresses of the first I/O module, bit by bit and without end."""
-    return (f"{FIRST_MODULE}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
+    return (f"{FIRST_MODULE_ADDRESS}.{INPUT:04X}.{n // BITS + 1}.{n % BITS}" for n in itertools.count())
 
 
 # --- reading ---------------------------------------------------------------------------------------------

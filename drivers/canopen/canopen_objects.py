@@ -90,10 +90,12 @@ def build_drive_dictionary(profile: DriveProfile = CIA402_PROFILE) -> ObjectDict
         found.add_object(_variable(index, 0, U32))
     if profile.home_offset_object not in found:
         found.add_object(_variable(profile.home_offset_object, 0, I32))
-    if profile.inputs.object_index not in found:
-        found.add_object(_record(profile.inputs.object_index, ((profile.inputs.subindex, U16, "ro"),)))
-    if profile.queue is not None:
-        order = _variable(profile.queue.object_index, 0, U64)
+    if profile.input_entry.object_index not in found:
+        found.add_object(
+            _record(profile.input_entry.object_index, ((profile.input_entry.subindex, U16, "ro"),))
+        )
+    if profile.record_queue is not None:
+        order = _variable(profile.record_queue.object_index, 0, U64)
         order.access_type = "wo"
         found.add_object(order)
     return found

@@ -16,7 +16,7 @@ from drivers.canopen.canopen_nodes import (
     BITS,
     CYCLIC_MODES,
     DRIVE,
-    FIRST_MODULE,
+    FIRST_MODULE_ADDRESS,
     INPUT,
     MODULE,
     NODES,
@@ -374,7 +374,7 @@ def _wrong_terminal(file: MachineFileReading, text: str, *, output: bool, analog
         )
         return Message(template, sample=sample)
     modules = list_module_names(file)
-    plain = terminal.node == FIRST_MODULE
+    plain = terminal.node == FIRST_MODULE_ADDRESS
     profile = (MODULE if modules else 0) if plain else read_node_profile(file, terminal.node)
     if not profile:
         return Message(

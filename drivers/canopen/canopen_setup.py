@@ -105,7 +105,7 @@ class NodeSetup:
                 value=value,
             )
 
-    def write_bytes(self, index: int, subindex: int, data: bytes) -> None:
+    def write_object_bytes(self, index: int, subindex: int, data: bytes) -> None:
         """Write the bytes of an object without reading them back.
 
         Raises DriverError.
@@ -132,7 +132,7 @@ class NodeSetup:
             *file_objects,
         ):
             if (
-                not self.try_write(index, sub, value)
+                not self.write_optional_object(index, sub, value)
                 and (index, sub) in named
                 and index not in MISSING_OBJECT_EFFECTS
             ):
@@ -155,7 +155,7 @@ class NodeSetup:
                 place=where,
             )
 
-    def try_write(self, index: int, subindex: int, value: int) -> bool:
+    def write_optional_object(self, index: int, subindex: int, value: int) -> bool:
         """Write an object if the node has it, and return whether the node has it.
 
         Raises DriverError.
@@ -188,10 +188,14 @@ class NodeSetup:
                 profile=profile,
             )
 
-    def require_modes(self, modes: int, family_modes: int = 0) -> None:
+    def require_modes(self, required_modes: int, family_modes: int = 0) -> None:
         """Raise DriverError if a required mode is neither in object 6502h nor in ``family_modes``."""
-        offered = family_modes | (self.read(od.SUPPORTED) if self.has_object(od.SUPPORTED, 0) else modes)
-        lacking = [_MODE_NAMES[mode] for mode, bit in MODE_BITS.items() if modes & bit and not offered & bit]
+        offered = family_modes | (
+            self.read(od.SUPPORTED) if self.has_object(od.SUPPORTED, 0) else required_modes
+        )
+        lacking = [
+            _MODE_NAMES[mode] for mode, bit in MODE_BITS.items() if required_modes & bit and not offered & bit
+        ]
         if lacking:
             raise self._setup_error(
                 "{name}: the drive does not support mode {lacking}; check [canopen] mode",
@@ -280,7 +284,7 @@ class NodeSetup:
         if present_data == data:
             return False
         try:
-            self.write_bytes(index, sub, data)
+            self.write_object_bytes(index, sub, data)
         except DriverError as error:
             if present_data is None or _abort_code(error) not in _READ_ONLY_CODES:
                 raise
@@ -437,8 +441,8 @@ def build_axis_objects(config: AxisConfig, bus: CanopenTable) -> ObjectValues:
         *build_stop_objects(bus),
         (od.WINDOW, 0, round(config.following_window / config.count)),
         (od.WINDOW_TIME, 0, round(1000 * config.following_time)),
-        (od.QUICK_DECEL, 0, config.acceleration(config.amax)),
-        *(build_limit_objects(config) if config.absolute else ()),
+        (od.QUICK_DECEL, 0, config.convert_acceleration(config.amax)),
+        *(build_travel_limit_objects(config) if config.absolute else ()),
     )
 
 
@@ -466,7 +470,7 @@ def build_monitoring_objects(bus: CanopenTable) -> ObjectValues:
     )
 
 
-def build_limit_objects(config: AxisConfig) -> ObjectValues:
+def build_travel_limit_objects(config: AxisConfig) -> ObjectValues:
     """Return the software limits for the drive, which are valid only after homing."""
     if config.travel is None:
         return ()

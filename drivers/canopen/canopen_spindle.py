@@ -23,7 +23,7 @@ from drivers.canopen.canopen_setup import build_stop_objects
 from drivers.canopen.cia402_drives import SPEED, SPEED_TARGET, Cia402Drive, DriveSetupData
 from drivers.canopen.drive_set import DrivenAxis
 from drivers.port_checks import require_free_drive, require_spindle_ready
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 
 _STANDSTILL_RPM = 2.0  # rpm
 # Without these objects, the spindle would continue to turn if this computer stops responding.
@@ -45,7 +45,7 @@ class CanopenSpindle:
         self._ordered = 0.0  # Time of the last power request in s.
         self.is_used_as_c = False  # Used as C, so the drive does not turn as the spindle.
         self.is_c_requested = False  # Must remain C.
-        self.ignores_counter = False  # Ignore changes of the counter during homing.
+        self.is_counter_ignored = False  # Ignore changes of the counter during homing.
         self.drive = Cia402Drive(bus, config.node, SPEED_TARGET, (SPEED,))
 
     def connect(self) -> None:
@@ -54,13 +54,13 @@ class CanopenSpindle:
         Raises DriverError.
         """
         config = self._config
-        queue = self.drive.profile.queue if config.is_c_axis else None
+        queue = self.drive.profile.record_queue if config.is_c_axis else None
         standing = (
             *self.drive.profile.unit_objects,
             *build_stop_objects(self._bus.config),
-            (od.PROFILE_ACCEL, 0, round(config.accel)),
-            (od.PROFILE_DECEL, 0, round(config.decel)),
-            (od.QUICK_DECEL, 0, round(config.decel)),
+            (od.PROFILE_ACCEL, 0, round(config.acceleration_rpm_per_s)),
+            (od.PROFILE_DECEL, 0, round(config.deceleration_rpm_per_s)),
+            (od.QUICK_DECEL, 0, round(config.deceleration_rpm_per_s)),
         )
         if queue is not None:
             standing = (*standing, (od.IP_SUBMODE, 0, queue.submode))
@@ -76,15 +76,15 @@ class CanopenSpindle:
         )
         self.drive.commanded_mode, self.drive.target_value = PV, 0
 
-    def update(self) -> None:
+    def supervise_drive(self) -> None:
         """Supervise the drive and switch it off at standstill.
 
         This method never switches the drive on.
         """
         drive = self.drive
         drive.supervise(3.0 * self._bus.config.heartbeat)
-        lost = self._came_on and not drive.enabled
-        self._came_on = drive.enabled and drive.goal_state is DriveState.OPERATION_ENABLED
+        lost = self._came_on and not drive.is_enabled
+        self._came_on = drive.is_enabled and drive.goal_state is DriveState.OPERATION_ENABLED
         if drive.failure:
             drive.goal_state, drive.target_value = DriveState.QUICK_STOP_ACTIVE, 0
         elif self.is_used_as_c:
@@ -100,16 +100,16 @@ class CanopenSpindle:
         drive, now = self.drive, self._bus.clock.now()
         if is_power_lost:
             drive.goal_state, drive.target_value = DriveState.SWITCH_ON_DISABLED, 0
-        elif not drive.enabled and now - self._ordered > _POWER_ON_S:
+        elif not drive.is_enabled and now - self._ordered > _POWER_ON_S:
             drive.failure = Fault(
                 "spindle: the drive does not switch on; check that the E-stop is released and the "
                 "drive has power",
                 "spindle",
             )
-        elif drive.target_value == 0 and abs(drive.speed) < _STANDSTILL_RPM:
+        elif drive.target_value == 0 and abs(drive.measured_speed) < _STANDSTILL_RPM:
             drive.goal_state = DriveState.SWITCH_ON_DISABLED
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
 
         Raises DriverError if ``rpm`` is not 0 while a fault is active or the drive is engaged as C.
@@ -123,14 +123,14 @@ class CanopenSpindle:
                 "spindle-off",
                 reason="held-as-c",
             )
-        limit = self._config.rpm_max
+        limit = self._config.max_rpm
         self.drive.target_value = round(min(max(rpm, -limit), limit))
         if rpm and self.is_used_as_c:
             return  # The spindle turns after C is released.
         if rpm and self.drive.goal_state is not DriveState.OPERATION_ENABLED:
             self.drive.goal_state, self._ordered = DriveState.OPERATION_ENABLED, self._bus.clock.now()
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
         self.drive.target_value = 0
         if not self.is_used_as_c:
@@ -146,7 +146,7 @@ class CanopenSpindle:
         """Return whether a speed other than 0 is commanded."""
         return self.drive.target_value != 0
 
-    def restore_speed(self) -> None:
+    def apply_stored_speed(self) -> None:
         """Execute the speed command that was received while the drive was in C axis mode."""
         if self.drive.target_value:
             self.drive.goal_state, self._ordered = DriveState.OPERATION_ENABLED, self._bus.clock.now()
@@ -164,7 +164,7 @@ class CanopenSpindle:
 
     def speed(self) -> float:
         """Return the measured speed in rpm, signed, or 0 while the drive is in C axis mode."""
-        return 0.0 if self.is_used_as_c else float(self.drive.speed)
+        return 0.0 if self.is_used_as_c else float(self.drive.measured_speed)
 
     def read_angle(self) -> tuple[float, float] | None:
         """Return the time in seconds and the revolutions of the last reply.
@@ -174,7 +174,7 @@ class CanopenSpindle:
         if not self.counts_per_rev:
             return None
         now = self.drive.position
-        if self.ignores_counter:
+        if self.is_counter_ignored:
             return self.drive.last_reply_s, self._counts / self.counts_per_rev
         # The counter wraps around every few hours.
         self._counts += (now - self._last + 2**31) % 2**32 - 2**31
@@ -183,8 +183,8 @@ class CanopenSpindle:
 
     def accept_counter_jump(self) -> None:
         """Accept a counter value that homing has set, without counting the jump as rotation."""
-        if self.ignores_counter:
-            self._last, self.ignores_counter = self.drive.position, False
+        if self.is_counter_ignored:
+            self._last, self.is_counter_ignored = self.drive.position, False
 
     def read_fault(self) -> str:
         """Return the fault of the drive or the bus, or an empty text."""
@@ -239,21 +239,21 @@ class CanopenSpindleC:
 
     # --- the port ----------------------------------------------------------------------------------------
 
-    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
+    def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Engage the drive as the C axis, or release the drive as the spindle.
 
-        With ``orient``, the spindle first turns to its position relative to the index. Raises DriverError
-        if the drive cannot be engaged now.
+        With ``should_orient``, the spindle first turns to its position relative to the index. Raises
+        DriverError if the drive cannot be engaged now.
         """
-        if enabled and self.failure:
+        if is_enabled and self.failure:
             raise DriverError(self.failure)
-        if enabled and not self._wanted:
-            turning = self._spindle.has_speed_command or abs(self._drive.speed) >= _STANDSTILL_RPM
+        if is_enabled and not self._wanted:
+            turning = self._spindle.has_speed_command or abs(self._drive.measured_speed) >= _STANDSTILL_RPM
             require_free_drive(
                 self._axes.sample().enabled, self.step is CanopenCStep.SPINDLE_MODE and turning
             )
-            self._orient = orient
-        self._want(enabled)
+            self._orient = should_orient
+        self._want(is_enabled)
 
     def is_c_ready(self) -> bool:
         """Return whether C is engaged and may move."""
@@ -261,9 +261,9 @@ class CanopenSpindleC:
 
     # --- each cycle --------------------------------------------------------------------------------------
 
-    def update(self, now: float) -> None:
+    def advance_mode_change(self, now: float) -> None:
         """Continue the change between spindle mode and C axis mode, if a change is in progress."""
-        self._phase.update(
+        self._phase.track_position(
             self._drive.position,
             ignore_jumps=self.step in {CanopenCStep.FIND_INDEX, CanopenCStep.SET_POSITION},
         )
@@ -306,7 +306,7 @@ class CanopenSpindleC:
         elif not self._axes.is_follower_idle(now):
             self._since = now
         elif self._orient and self._phase.counts is None:
-            self._spindle.ignores_counter = True
+            self._spindle.is_counter_ignored = True
             self._homing.start_index_search(now)
             self._enter(CanopenCStep.FIND_INDEX, now)
         else:
@@ -314,28 +314,28 @@ class CanopenSpindleC:
 
     def _search(self, now: float) -> None:
         if self._is_homing_done(now):
-            self._phase.set_index(self._drive.position)
+            self._phase.set_index_position(self._drive.position)
             self._set_drive_position(now)
 
     def _set_drive_position(self, now: float) -> None:
         """Set the drive's counter to the position of C without motion."""
         self._off = self._angle_to_position()
         place = self._place() - self._off
-        self._spindle.ignores_counter = True
-        self._homing.set_position(round(place / self._axis.config.count), now)
+        self._spindle.is_counter_ignored = True
+        self._homing.start_position_setting(round(place / self._axis.config.count), now)
         self._enter(CanopenCStep.SET_POSITION, now)
 
     def _here(self, now: float) -> None:
         if self._is_homing_done(now):
             self._spindle.accept_counter_jump()
             self._drive.commanded_mode = IP
-            if self._axis.records is None:
+            if self._axis.record_queue is None:
                 raise DriverError(
                     "C axis not available: {title} does not have a position queue",
                     "c-coupling",
                     title=self._drive.profile.title,
                 )
-            self._axis.records.clear()
+            self._axis.record_queue.clear_records()
             self._enter(CanopenCStep.POWER_ON, now)
 
     def _is_homing_done(self, now: float) -> bool:
@@ -352,7 +352,7 @@ class CanopenSpindleC:
     def _power(self, now: float) -> None:
         if not self._wanted:
             self._enter(CanopenCStep.RESTORE_SPEED_MODE, now)
-        elif self._drive.enabled and self._drive.reported_mode == IP:
+        elif self._drive.is_enabled and self._drive.reported_mode == IP:
             self._add_to_axes()
             self._begin_turn()
             self._enter(CanopenCStep.TURN_TO_POSITION, now)
@@ -363,7 +363,7 @@ class CanopenSpindleC:
         if not self._wanted:
             self._axes.stop(StopMode.RAMP_HOLD)
             self._enter(CanopenCStep.DISENGAGE, now)
-        elif is_queue_finished(self._axes.queue.queue_end(now), now) and not self._axes.drives.is_moving:
+        elif is_queue_finished(self._axes.queue.get_end_time(now), now) and not self._axes.drives.is_moving:
             self._goal = None
             self._enter(CanopenCStep.ENGAGED, now)
 
@@ -380,18 +380,18 @@ class CanopenSpindleC:
     def _back(self, now: float) -> None:
         drive = self._drive
         drive.goal_state, drive.mode_bits, drive.commanded_mode = DriveState.SWITCH_ON_DISABLED, 0, PV
-        if drive.reported_mode == PV and not drive.enabled:
+        if drive.reported_mode == PV and not drive.is_enabled:
             self._spindle.is_used_as_c = False
             self._spindle.accept_counter_jump()
             self.step = CanopenCStep.SPINDLE_MODE
-            self._spindle.restore_speed()
+            self._spindle.apply_stored_speed()
         elif now - self._since > _MODE_CHANGE_S and not self.failure:
             self._fail("the spindle drive remains in mode {shown_mode}", shown_mode=drive.reported_mode)
 
     # --- inside ------------------------------------------------------------------------------------------
 
     def _demand(self) -> float:
-        return self._axes.queue.commanded_state_at(self._axes.now())[0][self._number]
+        return self._axes.queue.get_commanded_state(self._axes.now())[0][self._number]
 
     def _place(self) -> float:
         return self._demand() if self._goal is None else self._goal
@@ -421,11 +421,11 @@ class CanopenSpindleC:
         axes, config = self._axes, self._axis.config
         off = self._off
         if abs(off) > config.count:
-            rest, _ = axes.queue.commanded_state_at(axes.now())
+            rest, _ = axes.queue.get_commanded_state(axes.now())
             speed = min(config.vmax, INDEX_SEARCH_RPM * 6.0)
             start = axes.now() + axes.commit
             axes.splice(
-                plan_straight_move(
+                plan_axis_move(
                     start, rest, self._number, target=rest[self._number] + off, speed=speed, accel=config.amax
                 )
             )

@@ -29,7 +29,7 @@ class SurveyResult(NamedTuple):
     """
 
     name: str
-    node: int
+    node_id: int
     error_text: str
     detail: str
 
@@ -45,14 +45,14 @@ class _SilentBus(CanBus):
 
 
 def identify_nodes(
-    config: CanopenConfig, clock: Clock, idle: Callable[[], None] | None = None
+    config: CanopenConfig, clock: Clock, advance_time: Callable[[], None] | None = None
 ) -> list[SurveyResult]:
     """Identify every node of the machine file, in the order of the file.
 
-    ``idle`` is passed to the bus and advances the time in tests. Raises DriverError if the bus cannot be
-    opened.
+    ``advance_time`` is passed to the bus and advances the time in tests. Raises DriverError if the bus
+    cannot be opened.
     """
-    bus = _SilentBus(config.bus, clock, idle)
+    bus = _SilentBus(config.bus, clock, advance_time)
     axes = {axis.name: axis for axis in config.axes}
     try:
         return [_asked(bus, wanted, axes.get(wanted.name), config.bus.mode) for wanted in _wanted(config)]

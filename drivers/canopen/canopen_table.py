@@ -24,8 +24,8 @@ from drivers.canopen.canopen_nodes import (
     SDO_REFERENCE,
     CanNode,
     build_node,
+    generate_input_addresses,
     get_slow_reply_divisor,
-    iterate_input_addresses,
     parse_sdo_address,
     read_node_profile,
     read_nodes,
@@ -93,7 +93,7 @@ class CanopenTable:
         return get_slow_reply_divisor(self.sync)
 
     @property
-    def max_missing_replies(self) -> int:
+    def max_missing_reply_count(self) -> int:
         """Return the number of missing replies after which an axis drive is treated as silent.
 
         The number is 3, or the number of replies in 20 ms if that is larger.
@@ -234,9 +234,9 @@ DRIVER = DriverDeclaration(
         ),
         _ENCODER_TABLE,
     ),
-    backend="canopen",
+    backend_name="canopen",
     spindle="cia402",
-    count_rate=2.0**23,
+    max_count_rate=2.0**23,
     normalize_terminal=resolve_terminal,
-    inputs=iterate_input_addresses,
+    inputs=generate_input_addresses,
 )

@@ -20,7 +20,7 @@ from drivers.port_checks import FirstTouchInput, find_output, require_output_all
 # --- A CiA 401 module: inputs, outputs with safe states, and analog words.
 
 
-PDO_BYTES = 8  # Bytes of inputs or outputs in one PDO.
+PDO_BYTE_COUNT = 8  # Bytes of inputs or outputs in one PDO.
 _PDO_WORDS = 4  # Analog words in one PDO.
 _ANALOG_DELTA = 328  # 1 % of an analog word
 _RESEND_PERIOD_S = 0.1  # Seconds after which unchanged outputs are sent again.
@@ -40,8 +40,8 @@ class Cia401Module:
         objects = od.load_dictionary(config.name, config.eds, od.build_module_dictionary)
         self.setup = NodeSetup(bus, config.name, config.id, objects)
         self.node = self.setup.node
-        self.inputs = bytearray(PDO_BYTES)
-        self.outputs = bytearray(PDO_BYTES)
+        self.inputs = bytearray(PDO_BYTE_COUNT)
+        self.outputs = bytearray(PDO_BYTE_COUNT)
         self.analog = [0] * _PDO_WORDS
         self.counter_subindices: set[int] = set()  # Sub-indices of analog words that are counters.
         self.terminal_counts = {od.DIGITAL_IN: 0, od.DIGITAL_OUT: 0, od.ANALOG_IN: 0}
@@ -57,7 +57,7 @@ class Cia401Module:
         """
         self.setup.enter_pre_operational()
         self.setup.require_profile(401)
-        most = {od.DIGITAL_IN: PDO_BYTES, od.DIGITAL_OUT: PDO_BYTES, od.ANALOG_IN: _PDO_WORDS}
+        most = {od.DIGITAL_IN: PDO_BYTE_COUNT, od.DIGITAL_OUT: PDO_BYTE_COUNT, od.ANALOG_IN: _PDO_WORDS}
         self.terminal_counts = {index: min(self.setup.count_entries(index), most[index]) for index in most}
         for where in required_terminals:
             if where.subindex > self.terminal_counts[where.index]:
@@ -111,13 +111,13 @@ class Cia401Module:
         if self.terminal_counts[od.DIGITAL_IN] or self.terminal_counts[od.ANALOG_IN]:
             self.missing_reply_count += 1
 
-    def send_outputs(self, now: float) -> None:
+    def send_outputs(self, now_s: float) -> None:
         """Send the outputs if they have changed, and again every 0.1 s."""
         when, what = self._sent
         outputs = bytes(self.outputs[: self.terminal_counts[od.DIGITAL_OUT]])
-        if outputs and (outputs != what or now - when >= _RESEND_PERIOD_S):
+        if outputs and (outputs != what or now_s - when >= _RESEND_PERIOD_S):
             self._bus.send_message(0x200 + self.config.id, outputs)
-            self._sent = (now, outputs)
+            self._sent = (now_s, outputs)
 
     @property
     def is_silent(self) -> bool:
@@ -209,7 +209,7 @@ class CanopenIO:
                 )
         for name, module in self.modules.items():
             module.read_terminal_counts(where for where in self._required_terminals() if where.node == name)
-            safe, keep = bytearray(PDO_BYTES), bytearray(PDO_BYTES)
+            safe, keep = bytearray(PDO_BYTE_COUNT), bytearray(PDO_BYTE_COUNT)
             for output in self._config.outputs.values():
                 where = output.terminal
                 if where.node == name:
@@ -263,19 +263,19 @@ class CanopenIO:
             self._inputs = {name: self._read(where) for name, where in self._config.inputs.items()}
         return self._inputs
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return the states of all outputs by name, as last commanded."""
         return dict(self._written)
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch one output; the module receives the change at the next tick.
 
         Raises DriverError.
         """
         output = find_output(name, self._config.outputs)
         module = self._module(output.terminal)
-        require_output_allowed(name, on, self._bus.failure or module.failure)
-        self._switch(name, output.terminal, on)
+        require_output_allowed(name, is_on, self._bus.failure or module.failure)
+        self._switch(name, output.terminal, is_on)
 
     def _switch(self, name: str, where: CanTerminal, on: bool) -> None:
         module = self._module(where)
@@ -352,9 +352,9 @@ class CanopenProbe(FirstTouchInput):
     The position latch of the drives (object 60B8h) is not used, because its input is rarely free.
     """
 
-    def __init__(self, axes: CanopenAxes, io: CanopenIO, sync: float) -> None:
+    def __init__(self, axes: CanopenAxes, io: CanopenIO, sync_period_s: float) -> None:
         super().__init__()
-        self._axes, self._io, self._sync = axes, io, sync
+        self._axes, self._io, self._sync = axes, io, sync_period_s
 
     def record_touch(self) -> None:
         """Latch the axis positions at the first touch; call this method once per bus cycle."""

@@ -50,7 +50,7 @@ class Cia402Drive:
     """
 
     def __init__(
-        self, bus: CanBus, config: CanNode, target: PdoEntry, optional_entries: tuple[PdoEntry, ...]
+        self, bus: CanBus, config: CanNode, target_entry: PdoEntry, optional_entries: tuple[PdoEntry, ...]
     ) -> None:
         self.bus = bus
         self.name = config.name
@@ -58,8 +58,8 @@ class Cia402Drive:
         objects, self.profile = od.load_drive_dictionary(config)
         self.setup = NodeSetup(bus, self.name, self.node_id, objects)
         self.node = self.setup.node
-        self._target_object = target
-        self._asked_for = (*optional_entries, self.profile.inputs)
+        self._target_object = target_entry
+        self._asked_for = (*optional_entries, self.profile.input_entry)
         self._told_as: tuple[PdoEntry, ...] = ()  # Optional objects that the drive has.
         self.reported_values: dict[int, int] = {}  # By object index.
         self.setpoint_mode: int | None = None  # In all other modes, the target is the present position.
@@ -78,7 +78,7 @@ class Cia402Drive:
         self.failure: Fault | str = ""
         self.has_restarted = False
         self._resetting = False
-        self._patience = bus.config.max_missing_replies  # Number of replies that may be missing.
+        self._patience = bus.config.max_missing_reply_count  # Number of replies that may be missing.
         self._beats = True  # The drive has a heartbeat.
 
     @property
@@ -87,7 +87,7 @@ class Cia402Drive:
         return decode_state(self.status_word)
 
     @property
-    def enabled(self) -> bool:
+    def is_enabled(self) -> bool:
         """Return whether the drive has power and follows commands."""
         return self.state is DriveState.OPERATION_ENABLED
 
@@ -102,15 +102,15 @@ class Cia402Drive:
     @property
     def reports_inputs(self) -> bool:
         """Return whether the drive reports digital inputs."""
-        return self.profile.inputs in self._told_as
+        return self.profile.input_entry in self._told_as
 
     @property
     def digital_inputs(self) -> int:
         """Return the digital inputs as bits, or 0 if the drive does not report its inputs."""
-        return self.reported_values.get(self.profile.inputs.object_index, 0)
+        return self.reported_values.get(self.profile.input_entry.object_index, 0)
 
     @property
-    def speed(self) -> int:
+    def measured_speed(self) -> int:
         """Return the measured speed in the unit of the drive, or 0 if the speed is not mapped to a PDO."""
         return self.reported_values.get(od.VELOCITY, 0)
 
@@ -152,7 +152,9 @@ class Cia402Drive:
             setup.map_sent_objects(2, self._told, *more, every=self.bus.config.slow_reply_divisor)
         self._map_torque()
         self._beats = od.HEARTBEAT not in setup.missing_objects
-        self._patience = self.bus.config.max_missing_replies if setup_data.is_axis else MAX_MISSING_REPLIES
+        self._patience = (
+            self.bus.config.max_missing_reply_count if setup_data.is_axis else MAX_MISSING_REPLIES
+        )
         self.node.nmt.add_heartbeat_callback(self._heartbeat)
         self.node.emcy.add_callback(self._emergency)
         self.status_word = setup.read(od.STATUS)
@@ -178,7 +180,9 @@ class Cia402Drive:
 
     def send_command(self) -> None:
         """Send the commanded values, which the drive applies at the next SYNC."""
-        if self.setpoint_mode is not None and not (self.enabled and self.reported_mode == self.setpoint_mode):
+        if self.setpoint_mode is not None and not (
+            self.is_enabled and self.reported_mode == self.setpoint_mode
+        ):
             self.target_value = self.position  # The drive starts at its present position.
         self.control_word = self._next_word()
         data = _COMMAND_FORMAT.pack(self.control_word, self.commanded_mode, self.target_value)

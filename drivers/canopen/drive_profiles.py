@@ -34,13 +34,14 @@ INPUT_ENTRY = PdoEntry(0x60FD, 0, 32)
 class DriveQueue(NamedTuple):
     """Record queue in a drive.
 
-    ``submode`` is the value for object 60C0h, and ``max_records`` the number of records that may be queued.
+    ``submode`` is the value for object 60C0h, and ``max_record_count`` the number of records that may be
+    queued.
     """
 
     record_format: RecordFormat
     object_index: int
     submode: int
-    max_records: int
+    max_record_count: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +56,9 @@ class DriveProfile:
     title: str
     uses_rpm: bool = False
     mode_bits: int = 0  # Bits of 0x6502 that apply even if not reported.
-    inputs: PdoEntry = INPUT_ENTRY  # digital inputs
+    input_entry: PdoEntry = INPUT_ENTRY  # digital inputs
     home_offset_object: int = 0x607C  # Object of the home offset.
-    queue: DriveQueue | None = None
+    record_queue: DriveQueue | None = None
     unit_objects: tuple[tuple[int, int, int], ...] = ()  # Written first to select these units.
     vendor_id: int = 0  # Vendor in the EDS file; `words` are parts of the product name.
     product_words: tuple[str, ...] = ()
@@ -73,8 +74,8 @@ PROFILES = {
             "epos2",
             "maxon EPOS2",
             uses_rpm=True,
-            inputs=PdoEntry(0x2071, 1, 16),
-            queue=DriveQueue(RecordFormat.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
+            input_entry=PdoEntry(0x2071, 1, 16),
+            record_queue=DriveQueue(RecordFormat.EPOS2, 0x20C1, -1, 56),  # The drive accepts 64.
             vendor_id=_MAXON,
             product_words=("EPOS2",),
         ),
@@ -92,16 +93,16 @@ PROFILES = {
         DriveProfile(
             "copley",
             "Copley Accelnet or Xenus",
-            queue=DriveQueue(RecordFormat.COPLEY, 0x2010, -2, 26),  # The drive accepts 32.
+            record_queue=DriveQueue(RecordFormat.COPLEY, 0x2010, -2, 26),  # The drive accepts 32.
             vendor_id=_COPLEY,
         ),
     )
 }
-QUEUE_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.queue is not None)
+QUEUE_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.record_queue is not None)
 RPM_PROFILE_NAMES = tuple(name for name, profile in PROFILES.items() if profile.uses_rpm)
 
 
-def find_profile(name: str, vendor: int | None, product: str | None) -> DriveProfile:
+def find_profile(name: str, vendor_id: int | None, product_name: str | None) -> DriveProfile:
     """Return the profile of the drive family with this name.
 
     If ``name`` is empty, find the family by the vendor and product in the EDS file.
@@ -110,9 +111,9 @@ def find_profile(name: str, vendor: int | None, product: str | None) -> DrivePro
         return PROFILES[name]
     for profile in PROFILES.values():
         named = not profile.product_words or any(
-            word in (product or "").upper() for word in profile.product_words
+            word in (product_name or "").upper() for word in profile.product_words
         )
-        if profile.vendor_id and profile.vendor_id == vendor and named:
+        if profile.vendor_id and profile.vendor_id == vendor_id and named:
             return profile
     return CIA402_PROFILE
 

@@ -57,7 +57,7 @@ def unpack_epos2_record(data: bytes) -> tuple[int, int, int]:
     return data[7], _signed(data[4:7]), _RECORD_FORMAT.unpack(data[:4])[0]
 
 
-def pack_copley_segment(number: int, duration_ms: int, velocity: float, position: float) -> bytes:
+def pack_copley_segment(segment_number: int, duration_ms: int, velocity: float, position: float) -> bytes:
     """Pack one Copley segment of format 0: number, time, position, and velocity in 0.1 counts/s.
 
     Raises ValueError if the position or velocity exceeds 24 bits, or the time exceeds 255 ms.
@@ -67,7 +67,7 @@ def pack_copley_segment(number: int, duration_ms: int, velocity: float, position
         raise ValueError(
             f"a segment of {duration_ms} ms, {place} counts and {velocity:.0f} counts/s does not fit"
         )
-    return bytes([number % _COUNTER_RANGE, duration_ms]) + _low(place) + _low(speed)
+    return bytes([segment_number % _COUNTER_RANGE, duration_ms]) + _low(place) + _low(speed)
 
 
 def unpack_copley_segment(data: bytes) -> tuple[int, int, float, int]:
@@ -83,18 +83,18 @@ class RecordQueue:
     ) -> None:
         """Create the queue; ``send_bytes`` sends a record to the drive immediately."""
         self._config, self._setup, self._send = config, setup, send_bytes
-        self.queue = queue
+        self.drive_queue = queue
         self._pushed = 0
 
-    def clear(self) -> None:
+    def clear_records(self) -> None:
         """Clear the queue in the drive.
 
         Raises DriverError.
         """
         self._pushed = 0
-        if self.queue.record_format is RecordFormat.COPLEY:
+        if self.drive_queue.record_format is RecordFormat.COPLEY:
             for order in (_CLEAR, _COUNT_ANEW):
-                self._setup.write_bytes(self.queue.object_index, 0, bytes([order]) + bytes(7))
+                self._setup.write_object_bytes(self.drive_queue.object_index, 0, bytes([order]) + bytes(7))
         else:
             for clear in (0, 1):
                 self._setup.write(od.BUFFER, 6, clear)
@@ -107,10 +107,10 @@ class RecordQueue:
         """
         config = self._config
         place = position / config.count
-        if self.queue.record_format is RecordFormat.COPLEY:
+        if self.drive_queue.record_format is RecordFormat.COPLEY:
             self._send(pack_copley_segment(self._pushed, duration_ms, velocity / config.count, place))
         else:
-            self._send(pack_epos2_record(duration_ms, config.velocity(velocity), place))
+            self._send(pack_epos2_record(duration_ms, config.convert_speed(velocity), place))
         self._pushed += 1
 
 
@@ -129,7 +129,7 @@ class MotionMode:
     If ``is_cyclic`` is true, one setpoint is sent per SYNC.
     """
 
-    mode: int
+    drive_mode: int
     target_entry: PdoEntry = POSITION_TARGET
     is_cyclic: bool = False
 
@@ -154,19 +154,19 @@ class DrivenAxis:
     is_homed: bool = False
     last_counts: int = 0  # Counts at the previous reply.
     is_moving: bool = False
-    records: RecordQueue | None = None  # Queue of the drive if its family has one.
+    record_queue: RecordQueue | None = None  # Queue of the drive if its family has one.
 
     def __post_init__(self) -> None:
         """Create the record queue if the drive family has one."""
-        queue = self.config.profile.queue
-        self.records = None
+        queue = self.config.profile.record_queue
+        self.record_queue = None
         if queue is not None:
-            self.records = RecordQueue(self.config, queue, self.drive.setup, self.drive.send_record)
+            self.record_queue = RecordQueue(self.config, queue, self.drive.setup, self.drive.send_record)
 
     @property
     def is_ready(self) -> bool:
         """Return whether the drive has power and reports the commanded mode."""
-        return self.drive.enabled and self.drive.reported_mode == self.drive.commanded_mode
+        return self.drive.is_enabled and self.drive.reported_mode == self.drive.commanded_mode
 
 
 class DriveSet:
@@ -182,7 +182,7 @@ class DriveSet:
             if axis.node is not None
         ]
         for axis in self.axes:
-            axis.drive.setpoint_mode = motion_mode.mode if motion_mode.is_cyclic else None
+            axis.drive.setpoint_mode = motion_mode.drive_mode if motion_mode.is_cyclic else None
         # Times of the SYNC of the last replies and of the last exchange.
         self.last_reply_s = self._sent = bus.clock.now()
         self._compared = self.last_reply_s  # Time of the last comparison of positions.
@@ -195,7 +195,7 @@ class DriveSet:
     @property
     def is_powered(self) -> bool:
         """Return whether all drives have power."""
-        return all(axis.drive.enabled for axis in self.axes)
+        return all(axis.drive.is_enabled for axis in self.axes)
 
     @property
     def is_moving(self) -> bool:
@@ -239,7 +239,7 @@ class DriveSet:
         SYNC. A caller that waits for the drives repeats this method. In cyclic modes, the SYNC continues
         independently.
         """
-        if self._how.is_cyclic and not self._bus.is_stepped:
+        if self._how.is_cyclic and not self._bus.has_stepped_time:
             return self.axes  # The wait of the bus continues the SYNC.
         waiting = any(axis.drive.missing_reply_count for axis in self.axes)
         if not waiting or self._bus.clock.now() - self._sent >= 2 * self._bus.config.sync:
@@ -259,7 +259,10 @@ class DriveSet:
         failed.
         """
         for axis in self.axes:
-            axis.drive.commanded_mode, axis.drive.goal_state = self._how.mode, DriveState.OPERATION_ENABLED
+            axis.drive.commanded_mode, axis.drive.goal_state = (
+                self._how.drive_mode,
+                DriveState.OPERATION_ENABLED,
+            )
         if not self._bus.wait_until(lambda: all(axis.is_ready for axis in self.poll_axes()), _POWER_ON_S):
             slow = [
                 Message("{name} is {state}", name=axis.config.name, state=axis.drive.state)
@@ -277,7 +280,7 @@ class DriveSet:
     def power_off(self) -> None:
         """Switch all drives off, and wait up to 0.3 s until they have no power."""
         self.set_goal_state(DriveState.SWITCH_ON_DISABLED)
-        self._bus.wait_until(lambda: not any(axis.drive.enabled for axis in self.poll_axes()), 0.3)
+        self._bus.wait_until(lambda: not any(axis.drive.is_enabled for axis in self.poll_axes()), 0.3)
 
     def reset_faults(self) -> None:
         """Reset all faults, and configure the drives that have restarted.
@@ -300,7 +303,7 @@ class DriveSet:
             )
             raise DriverError(why, "drive-keeps-fault")
 
-    def clear_home(self) -> None:
+    def mark_not_homed(self) -> None:
         """Mark all axes without an absolute encoder as not homed, as required after an E-stop."""
         for axis in self.axes:
             axis.is_homed = axis.config.absolute
@@ -315,7 +318,7 @@ class DriveSet:
                 axis.is_homed = axis.config.absolute
         return fault_text
 
-    def update_motion(self, now: float) -> None:
+    def update_moving_axes(self, now: float) -> None:
         """Determine which axes move by comparing their positions in two replies.
 
         A silent drive is treated as stopped after the time that its own stop reaction takes.
@@ -343,18 +346,20 @@ class DriveSet:
         if not config.absolute:
             axis.drive.setup.require_homing_method(config.home_method)
         axis.is_homed, axis.last_counts = config.absolute, axis.drive.position
-        axis.drive.commanded_mode = self._how.mode
+        axis.drive.commanded_mode = self._how.drive_mode
 
 
 def build_drive_setup(config: AxisConfig, bus: CanopenTable, motion_mode: MotionMode) -> DriveSetupData:
     """Return the configuration for an axis drive."""
-    queue = config.profile.queue if motion_mode.mode == IP and not motion_mode.is_cyclic else None
+    queue = (
+        config.profile.record_queue if motion_mode.drive_mode == IP and not motion_mode.is_cyclic else None
+    )
     submode: ObjectValues = ((od.IP_SUBMODE, 0, queue.submode if queue is not None else 0),)
     return DriveSetupData(
-        mode_bits=MODE_BITS[motion_mode.mode] | (0 if config.absolute else MODE_BITS[HM]),
+        mode_bits=MODE_BITS[motion_mode.drive_mode] | (0 if config.absolute else MODE_BITS[HM]),
         default_objects=(
             *build_axis_objects(config, bus),
-            *(submode if motion_mode.mode == IP else ()),
+            *(submode if motion_mode.drive_mode == IP else ()),
             *(build_period_objects(bus.sync) if motion_mode.is_cyclic else ()),
         ),
         file_objects=config.node.sdo if config.node is not None else (),

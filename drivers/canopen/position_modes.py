@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.ports import DriverError, Fault, Segments, is_queue_finished
+from core.ports import DriverError, Fault, MotionSegments, is_queue_finished
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.canopen_nodes import MAX_SYNC_DELAY_FRACTION
 from drivers.canopen.canopen_objects import AT_ONCE, BIT_12, IP, NEW, PP
@@ -30,34 +30,34 @@ class SetpointFollower(ABC):
     The drives start from their present positions.
     """
 
-    mode: int  # Mode of CiA 402.
+    drive_mode: int  # Mode of CiA 402.
 
-    def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
-        """Create the follower; ``indices`` are the indices of the axes in the queue."""
+    def __init__(self, axes: Sequence[DrivenAxis], axis_indices: Sequence[int], queue: SetpointQueue) -> None:
+        """Create the follower; ``axis_indices`` are the indices of the axes in the queue."""
         self._axes = axes
-        self._indices = indices
+        self._indices = axis_indices
         self._queue = queue
         self.failure: Fault | str = ""  # Reason why the drives cannot follow the queue.
         self.must_send_now = False  # The commands must be sent in this tick.
         self.max_deviation_counts = 0.0  # Largest unavoidable deviation in counts.
 
     @property
-    def is_playing(self) -> bool:
+    def is_executing(self) -> bool:
         """Return whether the drives are still executing transferred setpoints."""
         return False
 
-    def get_path_time(self, t: float) -> float:
+    def get_path_time(self, time_s: float) -> float:
         """Return the time in the setpoint queue that the drives had reached at time ``t``."""
-        return t
+        return time_s
 
-    def check_segments(self, segments: Segments) -> None:
+    def check_segments(self, segments: MotionSegments) -> None:
         """Raise DriverError if the drives cannot follow ``segments``.
 
         This default implementation accepts any path.
         """
 
-    def handle_braking(self, brake_time: float) -> None:
-        """React to a queue that was replaced by braking from time ``brake_time`` on.
+    def handle_braking(self, brake_time_s: float) -> None:
+        """React to a queue that was replaced by braking from time ``brake_time_s`` on.
 
         This default implementation does nothing, because the next call of ``feed_setpoints`` transfers the
         braking.
@@ -90,29 +90,29 @@ class ProfiledFollower(SetpointFollower):
     plans its own motion.
     """
 
-    mode = PP
+    drive_mode = PP
 
-    def __init__(self, axes: Sequence[DrivenAxis], indices: Sequence[int], queue: SetpointQueue) -> None:
-        super().__init__(axes, indices, queue)
-        self._pending: tuple[float, Segments | None] | None = None
+    def __init__(self, axes: Sequence[DrivenAxis], axis_indices: Sequence[int], queue: SetpointQueue) -> None:
+        super().__init__(axes, axis_indices, queue)
+        self._pending: tuple[float, MotionSegments | None] | None = None
         self._told = -1.0
 
     @property
-    def is_playing(self) -> bool:
+    def is_executing(self) -> bool:
         """Return whether a target has not been sent or not been acknowledged yet."""
         return self._pending is not None or self._told >= 0.0
 
-    def check_segments(self, segments: Segments) -> None:
+    def check_segments(self, segments: MotionSegments) -> None:
         """Store a straight move as the next target.
 
         Raises DriverError if the path is not straight.
         """
-        dt = segments.dt[-1]
-        end = segments.p[-1] + (segments.v[-1] + 0.5 * segments.a[-1] * dt) * dt
-        displacement = end - segments.p[0]
+        dt = segments.durations_s[-1]
+        end = segments.positions[-1] + (segments.velocities[-1] + 0.5 * segments.accelerations[-1] * dt) * dt
+        displacement = end - segments.positions[0]
         length = float(np.linalg.norm(displacement))
         along = displacement / length if length > 0.0 else displacement
-        off = segments.p - segments.p[0]
+        off = segments.positions - segments.positions[0]
         off = off - np.outer(off @ along, along)
         limit = max(axis.config.count for axis in self._axes)
         if float(np.abs(off).max()) > limit:
@@ -122,11 +122,11 @@ class ProfiledFollower(SetpointFollower):
                 "drive-limits",
                 reason="one-move-only",
             )
-        self._pending = (float(segments.t[0]), segments)
+        self._pending = (float(segments.start_times_s[0]), segments)
 
-    def handle_braking(self, brake_time: float) -> None:
+    def handle_braking(self, brake_time_s: float) -> None:
         """Schedule the new end of the queue as the target, with the maximum deceleration."""
-        self._pending = (brake_time, None)
+        self._pending = (brake_time_s, None)
 
     def prepare_targets(self) -> None:
         """Discard the pending target and set the targets to the present positions."""
@@ -148,18 +148,18 @@ class ProfiledFollower(SetpointFollower):
             self._pending, self._told = None, now
             self._hand_over(segments)
 
-    def _hand_over(self, segments: Segments | None) -> None:
-        rest, _ = self._queue.commanded_state_at(float("inf"))
+    def _hand_over(self, segments: MotionSegments | None) -> None:
+        rest, _ = self._queue.get_commanded_state(float("inf"))
         self.must_send_now = True
         for axis, i in zip(self._axes, self._indices, strict=True):
             config, drive = axis.config, axis.drive
             accel = config.amax
             if segments is not None:
-                speed = config.velocity(float(np.abs(segments.v[:, i]).max()))
-                accel = float(np.abs(segments.a[:, i]).max())
+                speed = config.convert_speed(float(np.abs(segments.velocities[:, i]).max()))
+                accel = float(np.abs(segments.accelerations[:, i]).max())
                 drive.setup.write(od.PROFILE_SPEED, 0, max(round(speed), 1))
-            drive.setup.try_write(od.PROFILE_ACCEL, 0, config.acceleration(accel))
-            drive.setup.try_write(od.PROFILE_DECEL, 0, config.acceleration(accel))
+            drive.setup.write_optional_object(od.PROFILE_ACCEL, 0, config.convert_acceleration(accel))
+            drive.setup.write_optional_object(od.PROFILE_DECEL, 0, config.convert_acceleration(accel))
             drive.target_value = round(rest[i] / config.count)
             drive.mode_bits |= NEW | AT_ONCE
 
@@ -219,13 +219,13 @@ class CyclicFollower(SetpointFollower):
     def __init__(
         self,
         axes: Sequence[DrivenAxis],
-        indices: Sequence[int],
+        axis_indices: Sequence[int],
         queue: SetpointQueue,
         mode: int,
         schedule: SyncSchedule,
     ) -> None:
-        super().__init__(axes, indices, queue)
-        self.mode = mode
+        super().__init__(axes, axis_indices, queue)
+        self.drive_mode = mode
         self.schedule = schedule
         self.lag_s = 0.0  # Delay of the path relative to the clock in s.
         self._fed = -math.inf  # Time in the queue up to which the drives have setpoints.
@@ -234,15 +234,15 @@ class CyclicFollower(SetpointFollower):
         queue.get_transferred_until = lambda: self._fed
 
     @property
-    def is_playing(self) -> bool:
+    def is_executing(self) -> bool:
         """Return whether the path is delayed and has not ended yet."""
         return self.lag_s > 0.0 and not is_queue_finished(
-            self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s)
+            self._queue.get_end_time(-1e9), self.get_path_time(self.schedule.due_time_s)
         )
 
-    def get_path_time(self, t: float) -> float:
+    def get_path_time(self, time_s: float) -> float:
         """Return the time in the setpoint queue at time ``t``, which is earlier by the lag."""
-        return t - self.lag_s
+        return time_s - self.lag_s
 
     def abort_transfer(self) -> None:
         """Stop transferring setpoints and clear the lag."""
@@ -256,7 +256,7 @@ class CyclicFollower(SetpointFollower):
         A delay that is too long in total sets a fault.
         """
         if is_queue_finished(
-            self._queue.queue_end(-1e9), self.get_path_time(self.schedule.due_time_s) - waited_s
+            self._queue.get_end_time(-1e9), self.get_path_time(self.schedule.due_time_s) - waited_s
         ):
             self.lag_s = 0.0
             return
@@ -271,13 +271,13 @@ class CyclicFollower(SetpointFollower):
 
     def feed_setpoints(self, now: float) -> None:
         """Set the targets for the next SYNC, which the drives reach one SYNC later."""
-        standing = is_queue_finished(self._queue.queue_end(-1e9), self.get_path_time(now))
+        standing = is_queue_finished(self._queue.get_end_time(-1e9), self.get_path_time(now))
         self.lag_s = 0.0 if standing else max(self.lag_s - _RECOVERY_FRACTION * self.schedule.period_s, 0.0)
         self._fed = self.get_path_time(self.schedule.due_time_s + self.schedule.period_s)
-        p, _ = self._queue.commanded_state_at(self._fed)
+        p, _ = self._queue.get_commanded_state(self._fed)
         for axis, index in zip(self._axes, self._indices, strict=True):
             axis.drive.target_value = round(p[index] / axis.config.count)
-        if self.mode == IP:
+        if self.drive_mode == IP:
             self._interpolate(now)
 
     def _interpolate(self, now: float) -> None:

@@ -22,7 +22,7 @@ from drivers.setpoint_queue import SetpointQueue
 # the shortest record time.
 
 
-MotionFunction = Callable[
+GetMotion = Callable[
     [float], tuple[tuple[float, ...], tuple[float, ...]]
 ]  # Time to positions and velocities.
 
@@ -41,7 +41,7 @@ class PathPiece(NamedTuple):
 
 
 def fit_longest_piece(
-    motion_at: MotionFunction, t: float, max_duration_ms: int, count_sizes: Sequence[float]
+    motion_at: GetMotion, start_time_s: float, max_duration_ms: int, count_sizes: Sequence[float]
 ) -> PathPiece:
     """Return the longest piece whose cubic curve deviates from the path by at most half a count.
 
@@ -50,37 +50,46 @@ def fit_longest_piece(
     """
     ms = max_duration_ms
     while True:
-        off = find_max_deviation(motion_at, t, 0.001 * ms, count_sizes)
+        off = find_max_deviation(motion_at, start_time_s, 0.001 * ms, count_sizes)
         if off <= 0.5 or ms <= MIN_RECORD_MS:
             return PathPiece(ms, off)
         ms = max(ms // 2, MIN_RECORD_MS)
 
 
-def find_max_deviation(motion_at: MotionFunction, t: float, dt: float, count_sizes: Sequence[float]) -> float:
+def find_max_deviation(
+    motion_at: GetMotion, start_time_s: float, duration_s: float, count_sizes: Sequence[float]
+) -> float:
     """Return the largest deviation from the path, in counts of the axis that deviates most.
 
     The cubic curve runs from time ``t`` to ``t + dt``.
     """
-    p0, v0 = motion_at(t)
-    p1, v1 = motion_at(t + dt)
+    p0, v0 = motion_at(start_time_s)
+    p1, v1 = motion_at(start_time_s + duration_s)
     worst = 0.0
     for s in _CHECK_FRACTIONS:
-        p, _ = motion_at(t + s * dt)
+        p, _ = motion_at(start_time_s + s * duration_s)
         for i, count in enumerate(count_sizes):
-            cubic = interpolate_hermite(p0[i], v0[i], p1[i], v1[i], dt, s)
+            cubic = interpolate_hermite(p0[i], v0[i], p1[i], v1[i], duration_s, s)
             worst = max(worst, abs(cubic - p[i]) / count)
     return worst
 
 
-def interpolate_hermite(p0: float, v0: float, p1: float, v1: float, dt: float, fraction: float) -> float:
+def interpolate_hermite(
+    start_position: float,
+    start_velocity: float,
+    end_position: float,
+    end_velocity: float,
+    duration_s: float,
+    fraction: float,
+) -> float:
     """Return the value of the cubic curve through two points with given velocities.
 
-    The value applies at the fraction ``fraction`` of the duration ``dt``.
+    The value applies at the fraction ``fraction`` of the duration ``duration_s``.
     """
     r = 1.0 - fraction
-    return r * r * (p0 + fraction * (2.0 * p0 + v0 * dt)) + fraction * fraction * (
-        p1 + r * (2.0 * p1 - v1 * dt)
-    )
+    return r * r * (
+        start_position + fraction * (2.0 * start_position + start_velocity * duration_s)
+    ) + fraction * fraction * (end_position + r * (2.0 * end_position - end_velocity * duration_s))
 
 
 _log = logging.getLogger(__name__)
@@ -108,19 +117,19 @@ class PvtFollower(SetpointFollower):
     The duration of each record is a whole number of milliseconds.
     """
 
-    mode = IP
+    drive_mode = IP
 
     def __init__(
         self,
         axes: Sequence[DrivenAxis],
-        indices: Sequence[int],
+        axis_indices: Sequence[int],
         queue: SetpointQueue,
         lead_time_s: float,
-        record: float,
+        max_record_s: float,
     ) -> None:
-        super().__init__(axes, indices, queue)
+        super().__init__(axes, axis_indices, queue)
         self._ahead = lead_time_s - RESTART_DELAY_S
-        self._longest = round(1000 * record)
+        self._longest = round(1000 * max_record_s)
         self._phase = _Phase.REST
         self.next_point_time_s = 0.0  # Time of the next point.
         self._begun = 0.0
@@ -128,14 +137,14 @@ class PvtFollower(SetpointFollower):
         self.min_queued_time_s = float("inf")  # Shortest time that was queued in the drives, in s.
 
     @property
-    def is_playing(self) -> bool:
+    def is_executing(self) -> bool:
         """Return whether the drives are executing the records in their queues."""
         return self._phase is not _Phase.REST
 
     def prepare_targets(self) -> None:
         """Clear the record queues of the drives."""
         for axis in self._axes:
-            _get_record_queue(axis).clear()
+            _get_record_queue(axis).clear_records()
         self.abort_transfer()
 
     def abort_transfer(self) -> None:
@@ -147,7 +156,7 @@ class PvtFollower(SetpointFollower):
 
     def feed_setpoints(self, now: float) -> None:
         """Start the record queues, fill them, or let them end, depending on the path."""
-        if self._phase is _Phase.REST and not is_queue_finished(self._queue.queue_end(now), now):
+        if self._phase is _Phase.REST and not is_queue_finished(self._queue.get_end_time(now), now):
             self._start_queues(now)
         elif self._phase is _Phase.PLAYING:
             self._watch(now)
@@ -158,7 +167,7 @@ class PvtFollower(SetpointFollower):
 
     def _start_queues(self, now: float) -> None:
         """Send records at rest, and then start all drives at one SYNC from their present positions."""
-        if any(self._queue.commanded_state_at(now)[1]):
+        if any(self._queue.get_commanded_state(now)[1]):
             self.failure = Fault("the drives started late, after the path had begun", "queue-dry")
             return
         self.next_point_time_s = self._begun = now
@@ -185,12 +194,12 @@ class PvtFollower(SetpointFollower):
             self.failure = self.failure or Fault(why, "queue-dry")
 
     def _top_up(self, now: float) -> None:
-        rests = is_queue_finished(self._queue.queue_end(now), min(self.next_point_time_s, now))
-        if rests and now - self._queue.queue_end(-1e9) > _REST_TIME_S:
+        rests = is_queue_finished(self._queue.get_end_time(now), min(self.next_point_time_s, now))
+        if rests and now - self._queue.get_end_time(-1e9) > _REST_TIME_S:
             self._push(0)
             self._phase = _Phase.ENDING
             return
-        most = min(_get_record_queue(axis).queue.max_records for axis in self._axes)
+        most = min(_get_record_queue(axis).drive_queue.max_record_count for axis in self._axes)
         while self._queued_record_count(now) < most:
             piece = fit_longest_piece(
                 self._demand, self.next_point_time_s, self._longest, self._count_sizes()
@@ -221,7 +230,7 @@ class PvtFollower(SetpointFollower):
         return [axis.config.count for axis in self._axes]
 
     def _demand(self, t: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        p, v = self._queue.commanded_state_at(t)
+        p, v = self._queue.get_commanded_state(t)
         return tuple([p[i] for i in self._indices]), tuple([v[i] for i in self._indices])
 
     def _active(self, some: object) -> bool:
@@ -234,7 +243,7 @@ def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
 
     Raises DriverError if the drive family does not have a queue.
     """
-    if axis.records is None:
+    if axis.record_queue is None:
         raise DriverError(
             '{name}: {title} has no queue for [canopen] mode = "pvt"; choose "csp" or "ip", or '
             "set drive = {by_name}",
@@ -243,4 +252,4 @@ def _get_record_queue(axis: DrivenAxis) -> RecordQueue:
             title=axis.config.profile.title,
             by_name=_QUEUE_PROFILES_TEXT,
         )
-    return axis.records
+    return axis.record_queue

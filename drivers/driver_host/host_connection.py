@@ -29,7 +29,7 @@ from drivers.driver_host.host_messages import (
     text,
 )
 from drivers.driver_host.host_server import DriverHost
-from drivers.wakeups import ConnectionAttempt, ProcessBell
+from drivers.wakeups import ConnectionAttempt, ProcessWakeup
 
 _log = logging.getLogger(__name__)
 _POLL_VALIDITY_S = 0.002  # Seconds for which one poll serves all ports.
@@ -87,7 +87,7 @@ class HostConnection:
         link: HostLink,
         clock: Clock,
         restart_host: Callable[[], ConnectionAttempt[HostLink]] | None = None,
-        wakeup_bell: ProcessBell | None = None,
+        wakeup_bell: ProcessWakeup | None = None,
     ) -> None:
         self._link = link
         self._again = restart_host
@@ -135,7 +135,7 @@ class HostConnection:
         """
         self._posted.put(message)
         if self.wakeup_bell is not None:
-            self.wakeup_bell.ring()
+            self.wakeup_bell.wake()
 
     def enter_sleep(self) -> None:
         """Let the driver host send a wake-up for each change, until the next other request.
@@ -155,8 +155,8 @@ class HostConnection:
         """Return the files of the connection, which become readable only when the connection ends."""
         return self._link.end_signals
 
-    def poll_state(self, *, force: bool = False) -> Mapping[str, object]:
-        """Poll the state, at most once per tick unless ``force`` is True, and return it.
+    def poll_state(self, *, is_forced: bool = False) -> Mapping[str, object]:
+        """Poll the state, at most once per tick unless ``is_forced`` is True, and return it.
 
         After the loss of the driver host, the last state is returned.
         """
@@ -164,7 +164,7 @@ class HostConnection:
             self._reopen(self._opening)
         now = self.clock.now()
         fresh = _SLEEP_POLL_VALIDITY_S if self._asleep else _POLL_VALIDITY_S
-        if not self.is_lost and (force or not 0.0 <= now - self._at < fresh):
+        if not self.is_lost and (is_forced or not 0.0 <= now - self._at < fresh):
             try:
                 while not self._posted.empty():
                     self.send_request(self._posted.get())

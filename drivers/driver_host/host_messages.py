@@ -10,7 +10,7 @@ from typing import NamedTuple, get_args
 import numpy as np
 
 from core.faults import get_fault_code
-from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, Segments
+from core.ports import Cam, DriverError, Fault, FaultCode, FloatArray, MotionSegments
 
 _LENGTHS = struct.Struct("<II")  # Lengths of the head and of the numbers in bytes.
 MAX_MESSAGE_BYTES = 64_000_000  # Maximum size of a message in bytes.
@@ -71,17 +71,17 @@ def _head(text: bytes) -> Mapping[str, object]:
     return head
 
 
-def flatten_segments(segments: Segments | None) -> FloatArray:
+def flatten_segments(segments: MotionSegments | None) -> FloatArray:
     """Return the segments as one flat row in the order t, dt, p, v, a."""
     return NO_NUMBERS if segments is None else np.concatenate([part.ravel() for part in segments])
 
 
-def parse_segments(numbers: FloatArray, axes: int) -> Segments:
+def parse_segments(numbers: FloatArray, axis_count: int) -> MotionSegments:
     """Return the segments that one flat row contains.
 
     Raises DriverError for an invalid length or value.
     """
-    width = 2 + 3 * axes
+    width = 2 + 3 * axis_count
     count, left = divmod(len(numbers), width)
     if left or not count or not np.isfinite(numbers).all():
         raise DriverError(
@@ -89,14 +89,16 @@ def parse_segments(numbers: FloatArray, axes: int) -> Segments:
             "feeder-silent",
             reason="damaged",
         )
-    cuts = np.cumsum([count, count, count * axes, count * axes])
+    cuts = np.cumsum([count, count, count * axis_count, count * axis_count])
     t, dt, p, v, a = np.split(numbers, cuts)
-    return Segments(t, dt, p.reshape(count, axes), v.reshape(count, axes), a.reshape(count, axes))
+    return MotionSegments(
+        t, dt, p.reshape(count, axis_count), v.reshape(count, axis_count), a.reshape(count, axis_count)
+    )
 
 
 def encode_cam(cam: Cam) -> Message:
     """Return a request that makes the axes follow the spindle on a cam."""
-    path_numbers = flatten_segments(cam.way)
+    path_numbers = flatten_segments(cam.segments)
     head = {"do": "mesh", "zero": cam.start_revolutions, "sign": cam.sign, "way": len(path_numbers)}
     return Message(head, np.concatenate([path_numbers, flatten_segments(cam.following_segments)]))
 
@@ -123,7 +125,7 @@ def text(head: Mapping[str, object], key: str) -> str:
     return value if isinstance(value, str) else ""
 
 
-def decode_cam(message: Message, axes: int) -> Cam:
+def decode_cam(message: Message, axis_count: int) -> Cam:
     """Return the cam that a request contains.
 
     Raises DriverError if the cam is invalid.
@@ -133,8 +135,8 @@ def decode_cam(message: Message, axes: int) -> Cam:
     return Cam(
         number(message.head, "zero"),
         number(message.head, "sign"),
-        parse_segments(path_numbers, axes),
-        parse_segments(then, axes) if len(then) else None,
+        parse_segments(path_numbers, axis_count),
+        parse_segments(then, axis_count) if len(then) else None,
     )
 
 

@@ -14,7 +14,7 @@ from core.ports import (
     FloatArray,
     GearState,
     MachinePorts,
-    Segments,
+    MotionSegments,
     StationState,
     StopMode,
     TouchLatch,
@@ -32,7 +32,7 @@ from drivers.driver_host.host_messages import (
     read_fault,
 )
 from drivers.operator_station import PostedControls
-from drivers.wakeups import ProcessBell
+from drivers.wakeups import ProcessWakeup
 
 
 class _HostPort:
@@ -58,7 +58,7 @@ class HostAxes(_HostPort):
         """Return the end time of the setpoint queue in seconds."""
         return number(self._line.send_request(Message({"do": "horizon"}, NO_NUMBERS)).head, "value")
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
         Raises DriverError if the driver rejects the setpoints.
@@ -76,7 +76,7 @@ class HostAxes(_HostPort):
 
         A lost driver host is a fault of all axes.
         """
-        raw = self._line.poll_state(force=True).get("sample")
+        raw = self._line.poll_state(is_forced=True).get("sample")
         shown = raw if isinstance(raw, dict) else {}
         none = (0.0,) * len(self.axes)
         return AxisSample(
@@ -90,9 +90,9 @@ class HostAxes(_HostPort):
             fault=self._line.fault or read_fault(shown, "fault", "axis"),
         )
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the drives on or off."""
-        self._line.send_command("enable", on=on)
+        self._line.send_command("enable", on=is_on)
 
     def stop(self, mode: StopMode) -> None:
         """Stop the axes in the given stop mode, by means of the drives."""
@@ -125,18 +125,18 @@ class HostGear(_HostPort):
 
     def geared(self) -> GearState | None:
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
-        shown = self._line.poll_state(force=True).get("geared")
+        shown = self._line.poll_state(is_forced=True).get("geared")
         return None if shown is None or self._line.is_lost else GearState(*parse_floats(shown))
 
 
 class HostSpindle(_HostPort):
     """The ``core.ports.Spindle`` of the driver host."""
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``."""
         self._line.send_command("run", rpm=rpm)
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
         self._line.send_command("coast")
 
@@ -164,18 +164,18 @@ class HostSpindle(_HostPort):
 
 
 class HostWakeup(_HostPort):
-    """The ``core.ports.Wakeup`` of the driver host, which polls the drivers and sends wake-ups."""
+    """The ``core.ports.WakeupSignal`` of the driver host, which polls the drivers and sends wake-ups."""
 
-    def __init__(self, connection: HostConnection, wakeup_bell: ProcessBell) -> None:
+    def __init__(self, connection: HostConnection, wakeup_bell: ProcessWakeup) -> None:
         super().__init__(connection)
         self._bell = wakeup_bell
-        self.wake = wakeup_bell.ring
+        self.request_poll = wakeup_bell.wake
 
     def is_settled(self) -> bool:
         """Return whether the driver host sends a wake-up for each change."""
         return not self._line.is_lost
 
-    def wait(self, seconds: float) -> bool:
+    def wait_for_wakeup(self, seconds: float) -> bool:
         """Wait for a wake-up or the end of the driver host, and return whether either occurred."""
         try:
             self._line.enter_sleep()
@@ -209,9 +209,9 @@ class HostSamples(_HostPort):
 class HostSpindleCAxis(_HostPort):
     """The ``core.ports.SpindleCAxis`` of the driver host."""
 
-    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
+    def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Engage the spindle drive as the C axis, or release it."""
-        self._line.send_command("hold", on=enabled, orient=orient)
+        self._line.send_command("hold", on=is_enabled, orient=should_orient)
 
     def is_c_ready(self) -> bool:
         """Return whether the C axis may move."""
@@ -244,13 +244,13 @@ class HostIO(_HostPort):
         """Return all inputs by name."""
         return _flags(self._line.poll_state().get("inputs"))
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name."""
         return _flags(self._line.poll_state().get("outputs"))
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch one output on or off."""
-        self._line.send_command("write", name=name, on=on)
+        self._line.send_command("write", name=name, on=is_on)
 
     def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
@@ -308,7 +308,7 @@ class HostTripMonitor(_HostPort):
 
     def acknowledge(self, trip: DriverHostTrip) -> None:
         """Acknowledge a trip, so that the machine may continue."""
-        self._line.send_command("acknowledge", number=trip.number)
+        self._line.send_command("acknowledge", number=trip.trip_number)
 
 
 def create_host_ports(connection: HostConnection) -> MachinePorts:

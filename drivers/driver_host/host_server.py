@@ -48,8 +48,8 @@ def execute_command(ports: MachinePorts, head: Mapping[str, object]) -> None:
         "stop": lambda: ports.axes.stop(_how(text(head, "how"))),
         "home": lambda: ports.axes.home(text(head, "name")),
         "clear_fault": ports.axes.clear_fault,
-        "run": lambda: ports.spindle.run_at(number(head, "rpm")),
-        "coast": ports.spindle.coast,
+        "run": lambda: ports.spindle.set_speed(number(head, "rpm")),
+        "coast": ports.spindle.start_coasting,
         "hold": lambda: _require_part(ports.lock, *_NO_C_REASON).set_c_mode(on, head.get("orient") is True),
         "orient": lambda: _require_part(ports.orientation, *_UNORIENTED).orient_spindle(
             number(head, "angle"), int(number(head, "sense"))
@@ -306,13 +306,13 @@ class DriverHost:
         """
         orientation = self._ports.orientation
         spindle = spindle and not (orientation is not None and orientation.is_oriented())
-        before = dict(self._ports.io.outputs())
+        before = dict(self._ports.io.get_outputs())
         self._carefully(self._ports.io.switch_to_safe_state)
         if spindle:
-            self._carefully(lambda: self._ports.spindle.run_at(0.0))
-        after = self._ports.io.outputs()
+            self._carefully(lambda: self._ports.spindle.set_speed(0.0))
+        after = self._ports.io.get_outputs()
         off = [name for name, on in before.items() if on and not after.get(name)]
-        self._guard.record_trip(silence_s, off, spindle=spindle)
+        self._guard.record_trip(silence_s, off, is_spindle_stopped=spindle)
 
     def _hear(self) -> None:
         now = self._ports.clock.now()
@@ -326,7 +326,7 @@ class DriverHost:
     def _expire_outputs(self, silence_s: float) -> None:
         """Switch off outputs that the control does not renew, without waiting for the axes to stop."""
         for name, longest in self._refresh.items():
-            if silence_s > longest and self._ports.io.outputs().get(name):
+            if silence_s > longest and self._ports.io.get_outputs().get(name):
                 self._note(
                     Text(
                         "{output} was switched off: no messages from TurnDesk for {seconds} s",
@@ -400,7 +400,7 @@ class DriverHost:
             "angle": ports.spindle.read_angle(),
             **make_fault_entries("spindle", ports.spindle.read_fault(), "spindle"),
             "inputs": dict(ports.io.inputs()),
-            "outputs": dict(ports.io.outputs()),
+            "outputs": dict(ports.io.get_outputs()),
             "station": {name: getattr(station, name) for name in _STATION_FIELDS},
             "geared": ports.gear.geared() if ports.gear is not None else None,
             "held": ports.lock is not None and ports.lock.is_c_ready(),
@@ -435,7 +435,7 @@ class DriverHost:
 
     def _act(self, message: Message) -> Message:
         if text(message.head, "what") == "acknowledge":
-            self._guard.acknowledge(number(message.head, "number"))
+            self._guard.acknowledge_trip(number(message.head, "number"))
         else:
             execute_command(self._ports, message.head)
         return _value(0.0)

@@ -39,13 +39,13 @@ class TripGuard:
         if what in {"run", "coast", "orient", "release"}:
             self._turns = turns
 
-    def record_trip(self, silence_s: float, outputs: Sequence[str], *, spindle: bool) -> None:
+    def record_trip(self, silence_s: float, outputs: Sequence[str], *, is_spindle_stopped: bool) -> None:
         """Record that outputs and the spindle were switched off.
 
         No trip is recorded if none of them was on.
         """
-        turned = self._turns and spindle
-        self._turns = self._turns and not spindle
+        turned = self._turns and is_spindle_stopped
+        self._turns = self._turns and not is_spindle_stopped
         if turned or outputs:
             self._tripped(silence_s, turned, outputs)
 
@@ -58,12 +58,12 @@ class TripGuard:
         if self.active_trip is not None:
             self.active_trip = self.active_trip._replace(silence_s=max(silence_s, self.active_trip.silence_s))
 
-    def acknowledge(self, count: float) -> None:
+    def acknowledge_trip(self, trip_number: float) -> None:
         """Clear the trip with this number.
 
         A later trip remains active.
         """
-        if self.active_trip is not None and self.active_trip.number == count:
+        if self.active_trip is not None and self.active_trip.trip_number == trip_number:
             self.active_trip = None
 
     def _tripped(self, away: float, spindle: bool, outputs: Sequence[str]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from core.ports import AxisSample, DriverError, Segments, StopMode
+from core.ports import AxisSample, DriverError, MotionSegments, StopMode
 from drivers.grblhal import grblhal_codes, grblhal_scripts
 from drivers.grblhal.grblhal_blocks import GrblBlocks
 from drivers.grblhal.grblhal_controller import GrblController
@@ -38,7 +38,9 @@ class GrblAxes:
         self._blocks = blocks
         self._pump = run_cycle
         self.axes = tuple(axis.name for axis in controller.config.axes)
-        self._known = {axis.name: axis.is_absolute or not axis.is_wired for axis in controller.config.axes}
+        self._known = {
+            axis.name: axis.has_absolute_encoder or not axis.is_wired for axis in controller.config.axes
+        }
         self._wired = {axis.name for axis in controller.wired_axes}
         self._homing = ""
 
@@ -53,7 +55,7 @@ class GrblAxes:
         """Return the present time, because no setpoints are queued."""
         return self.now()
 
-    def splice(self, segments: Segments) -> None:  # noqa: ARG002  the port's
+    def splice(self, segments: MotionSegments) -> None:  # noqa: ARG002  the port's
         """Raise DriverError, because the controller accepts only blocks."""
         raise DriverError(
             "this controller plans its own motion; it accepts blocks, not setpoints", reason="blocks-only"
@@ -89,16 +91,16 @@ class GrblAxes:
             fault=c.fault,
         )
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Permit or block motion in the driver.
 
         Raises DriverError if motion is to be permitted while a fault is active.
         """
-        if on and self._c.fault:
+        if is_on and self._c.fault:
             raise DriverError(
                 "the controller stays locked: {fault}; press Reset first", "no-power", fault=self._c.fault
             )
-        self._blocks.is_motion_enabled = on
+        self._blocks.is_motion_enabled = is_on
 
     def stop(self, mode: StopMode) -> None:
         """Abort the motion and, unless ``mode`` is RAMP_HOLD, block further motion."""

@@ -30,7 +30,9 @@ class GrblBlocks:
 
     def __init__(self, controller: GrblController) -> None:
         self._c = controller
-        self.overrides = GrblOverrides(lambda data: controller.send_realtime(*data), controller.set_fault)
+        self.overrides = GrblOverrides(
+            lambda data: controller.send_realtime_bytes(*data), controller.set_fault
+        )
         self._jogs = GrblJogs(controller)
         self._holds = FeedHolds(controller)
         self.is_motion_enabled = False  # Motion is permitted; set by ``GrblAxes``.
@@ -75,13 +77,15 @@ class GrblBlocks:
             | ({"surface-speed"} if not own or self._c.has_variable_speed else set())
         )
 
-    def max_line_speed(self, dx: float, dz: float) -> float:
+    def get_max_line_speed(self, x_component: float, z_component: float) -> float:
         """Return the maximum speed in mm/s along a direction.
 
         The limit of each axis is the lower value of the machine file and the controller.
         """
         return self._directional_limit(
-            dx, dz, lambda axis: min(axis.vmax, self._c.get_max_axis_speed(axis.name) or axis.vmax)
+            x_component,
+            z_component,
+            lambda axis: min(axis.max_velocity, self._c.get_max_axis_speed(axis.name) or axis.max_velocity),
         )
 
     def prepare_css(self, max_rpm: float) -> None:
@@ -92,14 +96,14 @@ class GrblBlocks:
         self.max_css_rpm = max_rpm
 
     @property
-    def is_quiet(self) -> bool:
+    def is_at_standstill(self) -> bool:
         """Return whether the axes are at rest and nothing is pending.
 
         Lines that require a standstill can be sent in this state.
         """
         return self._settled and not self._c.is_busy
 
-    def submit_block(self, operation: BlockOperation) -> int | None:
+    def submit_block(self, block: BlockOperation) -> int | None:
         """Send one block and return its ticket, or None while the buffer of the controller is full.
 
         A thread is sent only after the reported overrides are 100 %, because a feed override would change
@@ -107,19 +111,23 @@ class GrblBlocks:
         """
         c = self._c
         self._demand_ready()
-        self.overrides.is_thread_active = isinstance(operation, ThreadOperation)
+        self.overrides.is_thread_active = isinstance(block, ThreadOperation)
         if self.overrides.is_thread_active and not self.overrides.are_confirmed(c.overrides):
             return None
         ticket = self._last + 1
         line = format_block(
-            operation, ticket, self._rapid_rate(operation), self.overrides.commanded[0] / 100.0, c.home_origin
+            block,
+            ticket,
+            self._rapid_rate(block),
+            self.overrides.commanded_percents[0] / 100.0,
+            c.home_origin,
         )
         if not c.line_sender.can_send(line):
             return None
         c.send_line(line, ticket)
-        self._last, self._settled, self._target = ticket, False, (operation.x, operation.z)
+        self._last, self._settled, self._target = ticket, False, (block.x, block.z)
         self.last_block_end = None
-        if isinstance(operation, ThreadOperation):
+        if isinstance(block, ThreadOperation):
             self._threads.add(ticket)
             c.waits_for_index = True
         return ticket
@@ -130,7 +138,7 @@ class GrblBlocks:
         The state is the result of the last report and of the lines that were sent after that report.
         """
         c = self._c
-        resting = self.is_quiet or c.is_lost or (c.fault != "" and self._is_motion_ended())
+        resting = self.is_at_standstill or c.is_lost or (c.fault != "" and self._is_motion_ended())
         return BlockState(
             self._done, self._active, resting, self._holds.is_holding, self.describe_start_refusal()
         )
@@ -153,7 +161,7 @@ class GrblBlocks:
 
     def abort_blocks(self) -> None:
         """Stop the motion and discard all tickets."""
-        self._holds.clear_request()
+        self._holds.clear_hold_request()
         if not self._c.is_lost and not (self._c.is_busy and self._c.script_purpose == _ABORT_PURPOSE):
             self._c.run_script(grblhal_scripts.abort_and_verify(self._c), _ABORT_PURPOSE)
 
@@ -173,12 +181,12 @@ class GrblBlocks:
         """
         if not self._jogs.is_active:
             self._demand_ready()
-        moves = self._jogs.start_or_renew(axis, velocity, lease_s, limits)
+        moves = self._jogs.start_or_renew_jog(axis, velocity, lease_s, limits)
         if moves:
             self._settled, self.last_block_end = False, None
         return moves
 
-    def step_to(self, axis: str, target: float, speed: float) -> None:
+    def move_by_step(self, axis: str, target: float, speed: float) -> None:
         """Jog the axis to ``target`` in one step.
 
         Raises DriverError if the controller is not ready.
@@ -194,8 +202,8 @@ class GrblBlocks:
         if self._jogs.is_active or not self._settled:
             self._jogs.clear_jog()
             self._settled = False
-            self._c.send_realtime(grblhal_codes.JOG_CANCEL)
-            if self._c.line_sender.is_quiet:
+            self._c.send_realtime_bytes(grblhal_codes.JOG_CANCEL)
+            if self._c.line_sender.is_idle:
                 self._c.request_report()
             else:
                 self._c.run_script(grblhal_scripts.finish_jog(self._c))
@@ -210,7 +218,7 @@ class GrblBlocks:
         c = self._c
         self._jogs.send_travel()
         steady = self._threads or c.is_busy or not c.is_ready
-        c.request_overrides(not self.overrides.are_confirmed(c.overrides) and not steady)
+        c.set_override_reports(not self.overrides.are_confirmed(c.overrides) and not steady)
         if not steady:
             self.overrides.send_differences(c.overrides, c.override_report_count, c.clock.now())
 
@@ -228,7 +236,7 @@ class GrblBlocks:
         at = self._c.position
         x, z = self._target or self.last_block_end or (at.get("X", 0.0), at.get("Z", 0.0))
         return self._directional_limit(
-            op.x - x, op.z - z, lambda axis: self._c.get_max_axis_speed(axis.name) or axis.vmax
+            op.x - x, op.z - z, lambda axis: self._c.get_max_axis_speed(axis.name) or axis.max_velocity
         )
 
     def _directional_limit(self, dx: float, dz: float, max_speed: Callable[[GrblAxis], float]) -> float:
@@ -261,7 +269,7 @@ class GrblBlocks:
     def _reported(self, report: StatusReport) -> None:
         c = self._c
         empty = report.free is None or report.free >= c.max_free_blocks
-        if report.state in {"Idle", "Alarm"} and c.line_sender.is_quiet and empty:
+        if report.state in {"Idle", "Alarm"} and c.line_sender.is_idle and empty:
             self._update_tickets(report)
         elif report.line is not None and report.line and self._last:
             self._active = self._last - (get_ticket_line_number(self._last) - report.line) % 9_000_000
@@ -278,7 +286,7 @@ class GrblBlocks:
         self._done, self._active, self._settled = self._last, 0, True
         self._threads.clear()
         self._c.waits_for_index = False
-        self._jogs.handle_rest()
+        self._jogs.handle_standstill()
 
     def _discard_tickets(self) -> None:
         """Discard all tickets after a stop, reset or alarm, so that the position is the reported position."""

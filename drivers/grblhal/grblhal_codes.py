@@ -18,7 +18,7 @@ RESET, STOP = 0x18, 0x19
 # To 100 %, then up and down by 10 and by 1.
 FEED, SPINDLE = tuple(range(0x90, 0x95)), tuple(range(0x99, 0x9E))
 RAPID_OVERRIDES = {100: 0x95, 50: 0x96, 25: 0x97}
-SPINDLE_PAUSE = 0x9E  # In a feed hold only: stops or restarts the spindle.
+SPINDLE_PAUSE_BYTE = 0x9E  # In a feed hold only: stops or restarts the spindle.
 
 OFF_CODES = ("M5", "M9")  # spindle and coolant
 # X is always a radius, so that no reset changes its meaning. Without G97, S could be a surface speed.
@@ -159,22 +159,22 @@ def get_ticket_line_number(ticket: int) -> int:
 def format_block(
     operation: BlockOperation,
     ticket: int,
-    rapid: float,
+    rapid_speed: float,
     feed_override: float,
-    origin: Mapping[str, float] | None = None,
+    home_position: Mapping[str, float] | None = None,
 ) -> str:
     """Return the G-code line of one block.
 
-    ``rapid`` is the speed of G0 on this path in mm/s, and ``feed_override`` is a fraction. A rapid that is
-    slower than G0 is sent as a feed, because the rapid override of the controller has only three steps. A
-    feed override above 1 does not make a rapid faster. ``origin`` is the home position in the coordinates
-    of the controller.
+    ``rapid_speed`` is the speed of G0 on this path in mm/s, and ``feed_override`` is a fraction. A rapid
+    that is slower than G0 is sent as a feed, because the rapid override of the controller has only three
+    steps. A feed override above 1 does not make a rapid faster. ``home_position`` is the home position in the
+    coordinates of the controller.
     """
     head = f"N{get_ticket_line_number(ticket)}"
-    home = origin or {}
+    home = home_position or {}
     to = f"X{number(operation.x + home.get('X', 0.0))}Z{number(operation.z + home.get('Z', 0.0))}"
     match operation:
-        case RapidOperation(rapid_rate=rate) if _EQUAL_RAPID_RATIO * rate >= rapid:
+        case RapidOperation(rapid_rate=rate) if _EQUAL_RAPID_RATIO * rate >= rapid_speed:
             return f"{head}G0{to}"
         case RapidOperation(rapid_rate=rate):
             return f"{head}G1{to}{_feed(rate / max(feed_override, 1.0))}"
@@ -186,9 +186,9 @@ def format_block(
             return f"{head}{_format_arc(operation)}{to}{_format_center(operation)}{_feed(operation.feed)}"
 
 
-def format_jog(letter: str, target: float, speed: float) -> str:
+def format_jog(axis_letter: str, target: float, speed: float) -> str:
     """Return the line of a jog to an absolute position in machine coordinates."""
-    return f"$J=G53G21G90{letter}{number(target)}{_feed(speed)}"
+    return f"$J=G53G21G90{axis_letter}{number(target)}{_feed(speed)}"
 
 
 def _format_arc(op: ArcOperation) -> str:
@@ -200,20 +200,22 @@ def _format_arc(op: ArcOperation) -> str:
     """
     if _is_point(op):
         return "G1"
-    return "G3" if op.clockwise else "G2"
+    return "G3" if op.is_clockwise else "G2"
 
 
 def _is_point(op: ArcOperation) -> bool:
     """Return whether the two ends of an arc almost coincide and the arc is shorter than half a circle."""
-    if math.hypot(op.x - op.x0, op.z - op.z0) >= _MIN_ARC_MM:
+    if math.hypot(op.x - op.start_x, op.z - op.start_z) >= _MIN_ARC_MM:
         return False
-    turned = (op.z0 - op.cz) * (op.x - op.cx) - (op.x0 - op.cx) * (op.z - op.cz)  # sign as from Z+ to X+
-    return turned > 0.0 if op.clockwise else turned < 0.0
+    turned = (op.start_z - op.center_z) * (op.x - op.center_x) - (op.start_x - op.center_x) * (
+        op.z - op.center_z
+    )  # sign as from Z+ to X+
+    return turned > 0.0 if op.is_clockwise else turned < 0.0
 
 
 def _format_center(op: ArcOperation) -> str:
     """Return the I and K words of an arc, relative to its start; I is a radius in mode G7 too."""
-    return "" if _is_point(op) else f"I{number(op.cx - op.x0)}K{number(op.cz - op.z0)}"
+    return "" if _is_point(op) else f"I{number(op.center_x - op.start_x)}K{number(op.center_z - op.start_z)}"
 
 
 def _thread_pitch(op: ThreadOperation) -> float:
@@ -222,8 +224,8 @@ def _thread_pitch(op: ThreadOperation) -> float:
     ``stepper.c`` of grblHAL compares the spindle angle times K with the length of the block, so K of a
     tapered thread must be larger than its lead.
     """
-    along = abs(op.z - op.z0)
-    return op.lead * math.hypot(op.x - op.x0, along) / along if along else op.lead
+    along = abs(op.z - op.start_z)
+    return op.lead_mm * math.hypot(op.x - op.start_x, along) / along if along else op.lead_mm
 
 
 def _feed(speed: float) -> str:

@@ -17,9 +17,9 @@ class GrblAxis:
     """
 
     name: str
-    vmax: float
-    amax: float
-    is_absolute: bool
+    max_velocity: float
+    max_acceleration: float
+    has_absolute_encoder: bool
     is_wired: bool
     home_position_mm: float | None = None
 
@@ -59,7 +59,7 @@ class GrblConfig:
 
     table: GrblhalTable
     axes: tuple[GrblAxis, ...]
-    rpm_max: float
+    max_rpm: float
     outputs: Mapping[str, GrblOutput]
     inputs: Mapping[str, GrblInput]
     has_own_spindle: bool = True

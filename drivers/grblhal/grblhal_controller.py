@@ -1,6 +1,6 @@
 """Communication with one grblHAL controller: lines, report requests and timeouts.
 
-``GrblController.update`` must be called at least once per tick of the executor and never waits.
+``GrblController.run_cycle`` must be called at least once per tick of the executor and never waits.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _MAX_LISTEN_SLICE_S = (
 class GrblController(ReportedState):
     """Connection to one grblHAL controller, including its pending lines and its reported state."""
 
-    def __init__(self, config: GrblConfig, wire: GrblTransport, clock: Clock) -> None:
+    def __init__(self, config: GrblConfig, transport: GrblTransport, clock: Clock) -> None:
         super().__init__(config, clock)
         self.line_sender = LineSender(self._write)
         self.reset_count = 0  # Number of reported resets.
@@ -73,7 +73,7 @@ class GrblController(ReportedState):
         self.listened_s = 0.0  # Seconds during which the driver was reading; the base of all timeouts.
         self.last_reply_s = 0.0
         self._garbage: deque[float] = deque()
-        self._wire = wire
+        self._wire = transport
         self._inbox = b""
         self._next_question = self._questioned_at = 0.0  # The second time is on the clock of ``listened_s``.
         self.fast_polling_until = 0.0  # End of the time with the shortest request interval.
@@ -92,7 +92,7 @@ class GrblController(ReportedState):
     def send_line(self, line: str, ticket: int = 0) -> SentLine:
         """Queue a line for the controller, and return its entry.
 
-        A later call of ``update`` completes the entry.
+        A later call of ``run_cycle`` completes the entry.
         """
         return self.line_sender.send_line(line, self.listened_s, ticket)
 
@@ -111,7 +111,7 @@ class GrblController(ReportedState):
         """Treat the next startup message of the controller as the result of a reset by the driver."""
         self.is_reset_expected = True
 
-    def request_overrides(self, enabled: bool) -> None:
+    def set_override_reports(self, enabled: bool) -> None:
         """Select whether plain reports, which contain the overrides, are requested.
 
         A full report always contains the offsets, and then the controller omits the overrides.
@@ -123,7 +123,7 @@ class GrblController(ReportedState):
 
         A full report does not delay a plain report that is needed for the overrides.
         """
-        self.send_realtime(grblhal_codes.FULL if full else grblhal_codes.STATUS)
+        self.send_realtime_bytes(grblhal_codes.FULL if full else grblhal_codes.STATUS)
         now = self.clock.now()
         while (
             self.request_times
@@ -142,21 +142,23 @@ class GrblController(ReportedState):
     def request_modes(self) -> None:
         """Request the parser state with a real-time byte; the reply is stored in ``reported_modes``."""
         self.reported_modes, self._asks_modes = "", True
-        self.send_realtime(grblhal_codes.TELL_MODES)
+        self.send_realtime_bytes(grblhal_codes.TELL_MODES)
 
-    def reconnect(self, opening: ConnectionAttempt[GrblTransport], script: Callable[[], Script]) -> None:
+    def reconnect(
+        self, connection_attempt: ConnectionAttempt[GrblTransport], script: Callable[[], Script]
+    ) -> None:
         """Start to reopen the connection, and run a script when it is open.
 
         If the connection cannot be opened, the reason becomes the fault.
         """
         self.fault, self.is_ready = "", False
-        self._opening, self._then = opening, script
+        self._opening, self._then = connection_attempt, script
 
     def close(self) -> None:
         """Close the connection to the controller."""
         self._wire.close()
 
-    def update(self) -> None:
+    def run_cycle(self) -> None:
         """Read replies, continue the script, send lines and check timeouts.
 
         This method never waits and never raises an exception.
@@ -169,14 +171,14 @@ class GrblController(ReportedState):
             self._listen()
             self._read()
             self._advance()
-            self.line_sender.send_waiting(self.listened_s)
+            self.line_sender.send_waiting_lines(self.listened_s)
             self._ask()
             self._check_timeouts()
         except TransportLostError as error:
             self._gone(error)
 
     def halt_motion(self) -> None:
-        """Stop the motion if ``update`` is no longer called; any thread may call this method.
+        """Stop the motion if ``run_cycle`` is no longer called; any thread may call this method.
 
         The first call sends a jog cancel and a feed hold. The next call, when the axes are at rest, resets
         the controller, which also stops spindle and coolant. The bytes bypass all buffers.
@@ -206,7 +208,7 @@ class GrblController(ReportedState):
             return "the controller's modal state is being verified"
         return ""
 
-    def send_realtime(self, *codes_: int) -> None:
+    def send_realtime_bytes(self, *codes_: int) -> None:
         """Send real-time bytes, which bypass all buffers."""
         self._write(bytes(codes_))
 
@@ -220,9 +222,11 @@ class GrblController(ReportedState):
         self.is_ready = False
         self.line_sender.waiting_lines.clear()
         if not self.is_lost and self.report is not None and self.report.moves and self.alarm_number == 0:
-            self.send_realtime(grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD)
+            self.send_realtime_bytes(
+                grblhal_codes.JOG_CANCEL if self.report.state == "Jog" else grblhal_codes.HOLD
+            )
 
-    def discard_pending(self) -> None:
+    def discard_pending_lines(self) -> None:
         """Discard all pending lines and tickets."""
         self.line_sender.discard_lines()
         self.waits_for_index = False
@@ -255,7 +259,7 @@ class GrblController(ReportedState):
             number in grblhal_codes.ABRUPT_STOP_ALARMS and self._may_move()
         )
         self.is_position_reliable = self.is_position_reliable and not lost
-        self.discard_pending()
+        self.discard_pending_lines()
         if number != grblhal_codes.HOMING_REQUIRED_ALARM:
             self.set_fault(grblhal_codes.describe_alarm(number), grblhal_codes.get_alarm_code(number))
         self.is_ready = False
@@ -278,7 +282,7 @@ class GrblController(ReportedState):
         moving = self.report is not None and self.report.moves
         if self.line_sender.has_stale_replies or (self.is_busy and self.identity is None):
             return
-        if moving or not self.line_sender.is_quiet or len(self._garbage) >= _GARBAGE:
+        if moving or not self.line_sender.is_idle or len(self._garbage) >= _GARBAGE:
             self.set_fault(
                 "interference on the line to the controller: {line} is not a valid response",
                 "controller-silent",
@@ -306,15 +310,15 @@ class GrblController(ReportedState):
         ask = self.line_sender.handle_reply(error)
         if ask is None:
             self.handle_invalid_line("ok" if not error else f"error:{error}")
-        elif error == grblhal_codes.LOCKED_ERROR and ask.line.startswith("M66"):
+        elif error == grblhal_codes.LOCKED_ERROR and ask.text.startswith("M66"):
             return  # A request for an input; the next report shows the reason for the lock.
         elif error and first and not self.is_busy:
             # The error is sticky: later lines get the same error and are not executed.
-            self.set_fault(grblhal_codes.describe_error(error, ask.line), "controller-refuses")
+            self.set_fault(grblhal_codes.describe_error(error, ask.text), "controller-refuses")
 
     def _restarted(self) -> None:
         self.reset_count += 1
-        self.discard_pending()
+        self.discard_pending_lines()
         self.is_diameter_mode = self.overrides = None
         if not self.is_reset_expected and self.identity is not None:
             self.set_fault("the controller was reset and has lost its pending commands", "controller-reset")
@@ -399,7 +403,7 @@ class GrblController(ReportedState):
         self.request_times.clear()
         self.report_due_since_s = None
         self._garbage.clear()
-        self.discard_pending()
+        self.discard_pending_lines()
         assert self._then is not None
         self.run_script(self._then(), "reconnect")
 
@@ -412,7 +416,7 @@ class GrblController(ReportedState):
             "controller-lost",
             error=error,
         )
-        self.discard_pending()
+        self.discard_pending_lines()
 
     def _listen(self) -> None:
         now = self.clock.now()
@@ -429,7 +433,7 @@ class GrblController(ReportedState):
 
     def _advance(self) -> None:
         """Continue the script; if the script fails, the reason becomes the fault."""
-        why = self.script_runner.advance(self.listened_s)
+        why = self.script_runner.advance_script(self.listened_s)
         self.is_reset_expected = self.is_reset_expected and self.is_busy
         if why:
             if self.identity is None:
@@ -441,7 +445,7 @@ class GrblController(ReportedState):
             return _ASKING
         if self.clock.now() < self.fast_polling_until:
             return _FAST_INTERVAL_S
-        resting = self.report is not None and self.report.state == "Idle" and self.line_sender.is_quiet
+        resting = self.report is not None and self.report.state == "Idle" and self.line_sender.is_idle
         return _RESTING if resting and not self._sees_overrides else _RUNNING
 
     def _ask(self) -> None:
@@ -450,7 +454,7 @@ class GrblController(ReportedState):
             self.request_report(full=True)
         elif self.clock.now() >= self._next_question and self._can_request():
             resting = self.report is None or self.report.state in {"Idle", "Alarm"}
-            self.request_report(full=resting and self.line_sender.is_quiet and not self._sees_overrides)
+            self.request_report(full=resting and self.line_sender.is_idle and not self._sees_overrides)
 
     def _can_request(self) -> bool:
         """Return whether a report can be requested now.
@@ -478,11 +482,11 @@ class GrblController(ReportedState):
             return
         first = self.line_sender.unacknowledged_lines[0]
         patience = (
-            _INDEX_TIMEOUT_S if self.waits_for_index else _REPLY_TIMEOUT_S + self.get_max_wait(first.line)
+            _INDEX_TIMEOUT_S if self.waits_for_index else _REPLY_TIMEOUT_S + self.get_max_wait(first.text)
         )
         if self.listened_s - max(first.sent_time_s, self.last_reply_s) > patience:
             self.set_fault(
                 "no response to {line}; there may be interference on the line",
                 "controller-silent",
-                line=f"{first.line!r}",
+                line=f"{first.text!r}",
             )

@@ -26,23 +26,23 @@ _CLOSE_TIMEOUT_S = 4.0
 class GrblMachine:
     """Connected and verified grblHAL controller with its ports.
 
-    The constructor raises DriverError if the controller does not respond or is not suitable. ``wire`` and
-    ``idle`` are for tests, in which the clock does not advance automatically.
+    The constructor raises DriverError if the controller does not respond or is not suitable. ``transport``
+    and ``advance_time`` are for tests, in which the clock does not advance automatically.
     """
 
     def __init__(
         self,
         config: GrblConfig,
         clock: Clock,
-        wire: GrblTransport | None = None,
-        idle: Callable[[], None] = lambda: None,
+        transport: GrblTransport | None = None,
+        advance_time: Callable[[], None] = lambda: None,
     ) -> None:
         self._clock = clock
-        self._idle = idle
-        self._wire = wire
+        self._idle = advance_time
+        self._wire = transport
         self._trips = 0
         self.controller = GrblController(
-            config, wire or open_transport(config.table.port, config.table.baud), clock
+            config, transport or open_transport(config.table.port, config.table.baud), clock
         )
         self.block_controller = GrblBlocks(self.controller)
         self.spindle = GrblSpindle(self.controller, self.block_controller)
@@ -50,7 +50,7 @@ class GrblMachine:
         self.controller_inputs = GrblInputs(self.controller, self.block_controller)
         self.io = GrblIO(self.controller, self.block_controller, self.controller_inputs)
         self.axes = GrblAxes(self.controller, self.block_controller, self.run_cycle, self._reopen)
-        self.block_controller.list_terminals = self.io.list_available_terminals
+        self.block_controller.list_terminals = self.io.list_usable_terminals
         self.touch_input = (
             GrblProbe(self.controller, self.axes, self.controller_inputs)
             if PROBE_INPUT in config.inputs
@@ -82,11 +82,11 @@ class GrblMachine:
 
     def run_cycle(self) -> None:
         """Run one cycle of the controller, blocks, spindle and terminals, without waiting."""
-        self.controller.update()
+        self.controller.run_cycle()
         self.block_controller.send_pending()
         self.spindle.send_commands()
-        self.io.send_changes()
-        self.controller_inputs.request_next()
+        self.io.send_output_changes()
+        self.controller_inputs.request_next_input()
         if self.touch_input is not None:
             self.touch_input.check_touch()
 
@@ -117,7 +117,7 @@ class GrblMachine:
 
     def acknowledge(self, trip: DriverHostTrip) -> None:
         """Clear a trip after the control has handled it."""
-        if trip.number == self._trips:
+        if trip.trip_number == self._trips:
             self._trips, self.controller.active_at_silence = self._trips + 1, None
 
     def _reopen(self) -> ConnectionAttempt[GrblTransport]:
@@ -157,31 +157,31 @@ class GrblMachine:
         warnings: list[str] = []
         for axis in c.wired_axes:
             speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
-            if speed and not 0.99 * axis.vmax <= speed <= 1.01 * axis.vmax:
+            if speed and not 0.99 * axis.max_velocity <= speed <= 1.01 * axis.max_velocity:
                 warnings.append(
                     Message(
                         "{axis}: the controller allows {speed} mm/min, but the machine file specifies {vmax} "
                         "mm/min",
                         axis=axis.name,
                         speed=f"{60 * speed:.0f}",
-                        vmax=f"{60 * axis.vmax:.0f}",
+                        vmax=f"{60 * axis.max_velocity:.0f}",
                     )
                 )
-            if 0.0 < accel < 0.99 * axis.amax:
+            if 0.0 < accel < 0.99 * axis.max_acceleration:
                 warnings.append(
                     Message(
                         "{axis}: the controller decelerates at {accel} mm/s² instead of {amax} mm/s²",
                         axis=axis.name,
                         accel=f"{accel:.0f}",
-                        amax=f"{axis.amax:.0f}",
+                        amax=f"{axis.max_acceleration:.0f}",
                     )
                 )
-        if c.config.has_own_spindle and 0.0 < self.spindle.max_controller_rpm < c.config.rpm_max:
+        if c.config.has_own_spindle and 0.0 < self.spindle.max_controller_rpm < c.config.max_rpm:
             warnings.append(
                 Message(
                     "spindle: $30 allows {highest} rpm, but the machine file specifies {rpm_max} rpm",
                     highest=f"{self.spindle.max_controller_rpm:g}",
-                    rpm_max=f"{c.config.rpm_max:g}",
+                    rpm_max=f"{c.config.max_rpm:g}",
                 )
             )
         return warnings
@@ -193,7 +193,7 @@ class GrblMachine:
         names = [
             axis.name
             for axis in self.controller.wired_axes
-            if not axis.is_absolute and axis.home_position_mm is None
+            if not axis.has_absolute_encoder and axis.home_position_mm is None
         ]
         if not names:
             return []
@@ -209,13 +209,13 @@ class GrblMachine:
     def _warnings(self) -> list[str]:
         config = self.controller.config
         outputs = {
-            f"{name} ({each.terminal})": self.io.describe_missing(name)
+            f"{name} ({each.terminal})": self.io.describe_missing_output(name)
             for name, each in config.outputs.items()
         }
         warnings = _group_texts(outputs, "output {names}: {reason}", "outputs {names}: {reason}")
         inputs = {
             f"{name} ({config.inputs[name].terminal})": why
-            for name, why in self.controller_inputs.list_missing().items()
+            for name, why in self.controller_inputs.list_missing_inputs().items()
         }
         warnings += _group_texts(inputs, "input {names}: {reason}", "inputs {names}: {reason}")
         warnings += self._list_differences() + self._list_homing_warnings()

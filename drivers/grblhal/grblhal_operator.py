@@ -76,9 +76,9 @@ class GrblOverrides:
     If they differ, override steps are sent.
     """
 
-    def __init__(self, write: Callable[[bytes], None], fail: Callable[[str, FaultCode], None]) -> None:
+    def __init__(self, write: Callable[[bytes], None], set_fault: Callable[[str, FaultCode], None]) -> None:
         self._write = write
-        self._fail = fail
+        self._fail = set_fault
         self._asked = [100, 100, 100]
         self._sent_at, self._seen = -1.0, 0
         self._since: float | None = None  # Start of the time without a change toward the commanded values.
@@ -86,21 +86,21 @@ class GrblOverrides:
         self.is_thread_active = False  # A thread is active and requires 100 %.
 
     @property
-    def commanded(self) -> list[int]:
+    def commanded_percents(self) -> list[int]:
         """Return the commanded feed, rapid and spindle overrides in percent."""
         return [100, self._asked[1], 100] if self.is_thread_active else self._asked
 
-    def set_feed_and_rapid(self, feed: float, rapid: float) -> None:
+    def set_feed_and_rapid(self, feed_fraction: float, rapid_fraction: float) -> None:
         """Set the feed and rapid overrides as fractions above 0."""
-        self._asked[:2] = limit_override_percent(feed), round_rapid_override(rapid)
+        self._asked[:2] = limit_override_percent(feed_fraction), round_rapid_override(rapid_fraction)
 
-    def set_spindle(self, percent: int) -> None:
+    def set_spindle_percent(self, percent: int) -> None:
         """Set the spindle override as a percentage of the last S word."""
         self._asked[2] = percent
 
     def are_confirmed(self, reported: tuple[int, ...] | None) -> bool:
         """Return whether the reported overrides are equal to the commanded overrides."""
-        return reported is not None and list(reported[:3]) == self.commanded
+        return reported is not None and list(reported[:3]) == self.commanded_percents
 
     def send_differences(self, reported: tuple[int, ...] | None, report_count: int, now: float) -> None:
         """Send override steps for the differences to a report that is newer than the last steps.
@@ -122,7 +122,7 @@ class GrblOverrides:
                 Message(
                     "the controller does not accept an override: {commanded} was commanded, but "
                     "{reported} is reported",
-                    commanded=self.commanded,
+                    commanded=self.commanded_percents,
                     reported=list(reported),
                 ),
                 "controller-refuses",
@@ -132,7 +132,7 @@ class GrblOverrides:
         self._write(self._steps(reported))
 
     def _steps(self, reported: tuple[int, ...]) -> bytes:
-        feed, rapid, spindle = self.commanded
+        feed, rapid, spindle = self.commanded_percents
         data = encode_override_steps(feed, reported[0])
         data += bytes([grblhal_codes.RAPID_OVERRIDES[rapid]]) if reported[1] != rapid else b""
         return data + (
@@ -174,7 +174,7 @@ class FeedHolds:
         self._asked, self._ours = False, True
         self._send_resume()
 
-    def clear_request(self) -> None:
+    def clear_hold_request(self) -> None:
         """Clear the request for a feed hold, because a final stop does not need a feed hold."""
         self._asked = self._ours = False
 
@@ -191,7 +191,7 @@ class FeedHolds:
 
     def _say(self) -> None:
         self._again = self._c.report_count + _MAX_STALE_REPORTS
-        self._c.send_realtime(grblhal_codes.HOLD)
+        self._c.send_realtime_bytes(grblhal_codes.HOLD)
         self._c.request_report()
 
     def _send_resume(self) -> None:
@@ -209,7 +209,7 @@ class FeedHolds:
         ):
             self._ours = False
             self._released = self._c.report_count + _MAX_STALE_REPORTS
-            self._c.send_realtime(grblhal_codes.START)
+            self._c.send_realtime_bytes(grblhal_codes.START)
             self._c.request_report()
 
 
@@ -236,14 +236,14 @@ class GrblJogs:
         self._wanted = 0.0
         self._ask: SentLine | None = None
 
-    def start_or_renew(
-        self, axis: str, velocity: float, lease: float, limits: tuple[float, float] | None
+    def start_or_renew_jog(
+        self, axis: str, velocity: float, lease_s: float, limits: tuple[float, float] | None
     ) -> bool:
         """Start or renew a jog, and return False if the axis is at the end of its travel."""
         now = self._c.clock.now()
         if not self.is_active or axis != self._axis or velocity != self._velocity:
             self._begin(axis, velocity, now)
-        target = self._from + velocity * (now - self._since + lease)
+        target = self._from + velocity * (now - self._since + lease_s)
         if limits is not None:
             target = min(max(target, limits[0]), limits[1])
         if (target - self._from) * math.copysign(1.0, velocity) < _MIN_JOG_MM:
@@ -270,7 +270,7 @@ class GrblJogs:
         target = self._wanted + self._c.home_origin.get(self._axis, 0.0)
         self._ask = self._c.send_line(format_jog(self._axis, target, abs(self._velocity)))
 
-    def handle_rest(self) -> None:
+    def handle_standstill(self) -> None:
         """End the jog after a report shows that the controller is at rest."""
         if self._ask is None or self._ask.is_done:
             self.clear_jog()

@@ -127,15 +127,15 @@ _CONTROL_INPUTS = "RHSDLTEOFMQ"
 class ControllerIdentity(NamedTuple):
     """Identity of a controller, with its axis letters in the order of the reports.
 
-    ``planner_block_count`` is the number of blocks that the planner can store. ``buffer_size`` is the size
-    of the line buffer in bytes.
+    ``planner_block_count`` is the number of blocks that the planner can store. ``buffer_byte_count`` is the
+    size of the line buffer in bytes.
     """
 
     version: str
     planner_block_count: int
-    buffer_size: int
+    buffer_byte_count: int
     axis_letters: str
-    options: frozenset[str]
+    option_names: frozenset[str]
     input_count: int  # auxiliary digital inputs
     output_count: int
     build_letters: str = ""  # Build options: V variable spindle, M mist.
@@ -156,7 +156,7 @@ class ControllerIdentity(NamedTuple):
     @property
     def is_lathe_mode(self) -> bool:
         """Return whether the controller reports lathe mode."""
-        return any(option.startswith("LATHE") for option in self.options)
+        return any(option.startswith("LATHE") for option in self.option_names)
 
 
 def parse_identity(lines: Iterable[str]) -> ControllerIdentity:

@@ -36,7 +36,7 @@ def request_full_report(controller: GrblController, timeout_s: float = REPLY_TIM
     yield lambda: controller.full_report_count > before, timeout_s, NO_REPORTS_TEXT
 
 
-def synchronize(controller: GrblController) -> Script:
+def synchronize_controller(controller: GrblController) -> Script:
     """Synchronize with the controller.
 
     The script clears a partial line and a stored error, and waits for the reply to ``$G``. From this reply
@@ -44,12 +44,12 @@ def synchronize(controller: GrblController) -> Script:
     """
     # The controller reads these lines before ``$G``.
     slow = max(
-        (controller.get_max_wait(ask.line) for ask in controller.line_sender.unacknowledged_lines),
+        (controller.get_max_wait(ask.text) for ask in controller.line_sender.unacknowledged_lines),
         default=0.0,
     )
     for _ in range(_TRIES):
         controller.line_sender.discard_lines()
-        controller.send_realtime(ord("\n"))
+        controller.send_realtime_bytes(ord("\n"))
         ask, by = controller.send_line("$G"), controller.clock.now() + REPLY_TIMEOUT_S / _TRIES + slow
         yield _by(controller, ask, by), REPLY_TIMEOUT_S + slow, ""
         if ask.is_done:
@@ -81,7 +81,7 @@ def query_line(
     )
     if ask.error_code:
         raise ScriptError(grblhal_codes.describe_error(ask.error_code, line))
-    return ask.lines
+    return ask.received_lines
 
 
 def send_modes(controller: GrblController) -> Script:
@@ -178,21 +178,21 @@ def stop(controller: GrblController, *, in_thread_pass: bool = False) -> Script:
     if controller.state == "Alarm":
         return
     if not (in_thread_pass and controller.clock.now() - controller.last_report_s > _NO_REPORT_S):
-        yield from soft_reset(controller)
+        yield from reset_controller(controller)
         return
     before, reports = controller.reset_count, controller.report_count
     controller.expect_driver_reset()
-    controller.send_realtime(grblhal_codes.STOP)
+    controller.send_realtime_bytes(grblhal_codes.STOP)
     yield (
         lambda: controller.reset_count > before or controller.report_count > reports,
         _INDEX,
         NO_REPORTS_TEXT,
     )
     if controller.state != "Alarm" and controller.reset_count == before:
-        yield from soft_reset(controller)
+        yield from reset_controller(controller)
 
 
-def soft_reset(controller: GrblController) -> Script:
+def reset_controller(controller: GrblController) -> Script:
     """Perform a soft reset and wait for the startup message of the controller.
 
     If reports arrive instead, the controller has ignored the reset and the script fails.
@@ -203,7 +203,7 @@ def soft_reset(controller: GrblController) -> Script:
         return controller.report_count > reports and controller.last_report_s > began + _STALE_REPORT_S
 
     controller.expect_driver_reset()
-    controller.send_realtime(grblhal_codes.RESET)
+    controller.send_realtime_bytes(grblhal_codes.RESET)
     yield lambda: controller.reset_count > before or answers(), _BANNER, _NO_RESET
     yield lambda: controller.reset_count > before, 0.0, _NO_RESET
 
@@ -212,7 +212,7 @@ def _brake(c: GrblController) -> Generator[ScriptStep, None, None]:
     """Brake until the axes are at rest, the controller is silent, or the time has passed."""
     after, began = c.report_count + 1, c.clock.now()  # One earlier report may still arrive.
     by = began + _stopping_time(c)
-    c.send_realtime(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
+    c.send_realtime_bytes(grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD)
 
     def rests() -> bool:
         return c.report_count > after and c.report is not None and not c.report.moves
@@ -225,7 +225,7 @@ def _stopping_time(c: GrblController) -> float:
 
     If the controller has reported its settings, they are used in addition to the machine file.
     """
-    ramps = [axis.vmax / axis.amax for axis in c.wired_axes]
+    ramps = [axis.max_velocity / axis.max_acceleration for axis in c.wired_axes]
     for axis in c.wired_axes:
         speed, accel = c.get_max_axis_speed(axis.name), c.read_axis_setting(120, axis.name)
         if speed and accel:
@@ -312,11 +312,11 @@ def check_restart(controller: GrblController) -> Script:
 def _set_up(c: GrblController) -> Script:
     if c.report is not None and c.report.state not in {"Idle", "Alarm"}:
         yield from stop(c)
-    yield from synchronize(c)
+    yield from synchronize_controller(c)
     identity = parse_identity((yield from query_line(c, "$I")))
     require_hardware(c, identity)
     c.identity = identity
-    c.line_sender.set_buffer_size(c.identity.buffer_size)
+    c.line_sender.set_buffer_size(c.identity.buffer_byte_count)
     number = _present_alarm(c)
     if number not in grblhal_codes.CRITICAL_ALARMS:
         yield from write_settings(c)
@@ -357,12 +357,12 @@ def verify_modes(controller: GrblController) -> Script:
 
     Raises ScriptError if the check fails.
     """
-    yield from synchronize(controller)
+    yield from synchronize_controller(controller)
     yield from send_modes(controller)
     yield from request_full_report(controller)
     if any(abs(offset) > 1e-9 for offset in controller.work_offset):
         yield from query_line(
-            controller, "G10L2P1" + "".join(f"{letter}0" for letter in controller.axis_letters)
+            controller, "G10L2P1" + "".join(f"{letter}0" for letter in controller.reported_axis_letters)
         )
         yield from query_line(controller, "G92.1")
         yield from query_line(controller, "G49")
@@ -389,9 +389,11 @@ def abort_and_verify(controller: GrblController) -> Script:
     The position is preserved if this is possible.
     """
     waits = controller.waits_for_index
-    controller.discard_pending()
+    controller.discard_pending_lines()
     if controller.alarm_number:
-        yield from soft_reset(controller)  # An alarm stops only the axes; a reset stops spindle and coolant.
+        yield from reset_controller(
+            controller
+        )  # An alarm stops only the axes; a reset stops spindle and coolant.
         return
     if _present_alarm(controller):
         return
@@ -406,7 +408,7 @@ def recover_from_alarm(controller: GrblController) -> Script:
 
     The planner is empty afterward.
     """
-    controller.discard_pending()
+    controller.discard_pending_lines()
     unheard = controller.is_silent
     yield from request_full_report(controller)
     if unheard:
@@ -417,7 +419,7 @@ def recover_from_alarm(controller: GrblController) -> Script:
         )
     if controller.report is not None and controller.report.moves:
         yield from stop(controller)
-    yield from soft_reset(controller)
+    yield from reset_controller(controller)
     yield from request_full_report(controller)
     if _is_door_open(controller):
         raise ScriptError(
@@ -426,26 +428,28 @@ def recover_from_alarm(controller: GrblController) -> Script:
     number = _present_alarm(controller)
     if number == grblhal_codes.HOMING_REQUIRED_ALARM:
         return
-    yield from synchronize(controller)
+    yield from synchronize_controller(controller)
     if number:
         yield from query_line(controller, "$X")
     yield from write_settings(controller)
     yield from verify_modes(controller)
 
 
-def home_axis(controller: GrblController, letter: str) -> Script:
+def home_axis(controller: GrblController, axis_letter: str) -> Script:
     """Home one axis on its switch, or set the home position at the present position."""
-    axis = next(axis for axis in controller.config.axes if axis.name == letter)
-    yield from synchronize(controller)
+    axis = next(axis for axis in controller.config.axes if axis.name == axis_letter)
+    yield from synchronize_controller(controller)
     if axis.home_position_mm is not None:
         yield from request_full_report(controller)
-        controller.home_origin[letter] = (
-            controller.position[letter] + controller.home_origin.get(letter, 0.0) - axis.home_position_mm
+        controller.home_origin[axis_letter] = (
+            controller.position[axis_letter]
+            + controller.home_origin.get(axis_letter, 0.0)
+            - axis.home_position_mm
         )
     elif not (
-        axis.is_absolute and not controller.homing_setting
+        axis.has_absolute_encoder and not controller.homing_setting
     ):  # Otherwise the operator confirms the position.
-        yield from _look_for_switch(controller, letter)
+        yield from _look_for_switch(controller, axis_letter)
     yield from request_full_report(controller)
     # With "homing on startup required", the controller stays locked until all axes are homed.
     controller.alarm_number = _present_alarm(controller)

@@ -32,13 +32,15 @@ def parse_settings(lines: list[str]) -> dict[int, str]:
     return {int(n): value for n, value in pairs}
 
 
-def is_same_setting(present: str | None, required: float | str) -> bool:
+def is_same_setting(present_value: str | None, required_value: float | str) -> bool:
     """Return whether a setting is equal to the required value, rounded to the reported decimals."""
-    if present is None or isinstance(required, str):
-        return present == required
-    decimals = len(present.partition(".")[2])
+    if present_value is None or isinstance(required_value, str):
+        return present_value == required_value
+    decimals = len(present_value.partition(".")[2])
     try:
-        return math.isclose(float(present), required, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals)
+        return math.isclose(
+            float(present_value), required_value, rel_tol=1e-6, abs_tol=0.5001 * 10.0**-decimals
+        )
     except ValueError:
         return False
 

@@ -98,7 +98,7 @@ class GrblSpindle:
         self._word: SentLine | None = None  # Last M3 or M4.
         self._unlike_since: float | None = None  # Start of a difference between reported and expected speed.
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Turn the spindle at ``rpm``, signed; 0 stops the spindle.
 
         The speed is limited to the maximum of the machine. Raises DriverError if the controller does not
@@ -107,7 +107,7 @@ class GrblSpindle:
         """
         if rpm:
             require_spindle_ready(self._blocks.describe_start_refusal())
-        rpm = math.copysign(min(abs(rpm), self._c.config.rpm_max), rpm)
+        rpm = math.copysign(min(abs(rpm), self._c.config.max_rpm), rpm)
         highest = self.max_controller_rpm
         if highest and abs(rpm) > 1.001 * highest:
             raise DriverError(
@@ -119,9 +119,9 @@ class GrblSpindle:
         self._wanted = rpm
         self.send_commands()
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Stop the spindle with M5, because the controller has no other stop."""
-        self.run_at(0.0)
+        self.set_speed(0.0)
 
     @property
     def max_controller_rpm(self) -> float:
@@ -165,12 +165,12 @@ class GrblSpindle:
         elif self._wanted == 0.0:
             self._stop()
         elif (
-            self._blocks.is_quiet
+            self._blocks.is_at_standstill
             and self._blocks.is_listening
             and (not self._runs or self._base_rpm != self._said)
         ):
             self._start()
-        elif self._runs and not (self._blocks.is_quiet and not self._blocks.max_css_rpm):
+        elif self._runs and not (self._blocks.is_at_standstill and not self._blocks.max_css_rpm):
             self._follow_by_override(self._said)
         self._check_clipping()
         if c.config.has_own_spindle:
@@ -207,7 +207,7 @@ class GrblSpindle:
             if not self._blocks.overrides.are_confirmed(self._c.overrides):
                 return
         else:
-            self._blocks.overrides.set_spindle(100)
+            self._blocks.overrides.set_spindle_percent(100)
         self._runs, self._said = True, base
         self._word = self._c.send_line(f"M{3 if base > 0.0 else 4}S{number(abs(base))}")
 
@@ -243,7 +243,7 @@ class GrblSpindle:
         """Set the spindle override that results in the requested speed if the S word is ``base``."""
         if self._wanted * base > 0.0:
             share = round(100.0 * self._wanted / base)
-            self._blocks.overrides.set_spindle(min(max(share, LEAST), MOST))
+            self._blocks.overrides.set_spindle_percent(min(max(share, LEAST), MOST))
 
     def _stop(self) -> None:
         if not self._runs or self._abort_start_wait():
@@ -274,10 +274,10 @@ class GrblSpindle:
             return
         if self._paused_at is None and stops:
             self._paused_at = self._c.clock.now()
-            self._c.send_realtime(grblhal_codes.SPINDLE_PAUSE)
+            self._c.send_realtime_bytes(grblhal_codes.SPINDLE_PAUSE_BYTE)
         elif self._paused_at is not None and self._runs and self._wanted * self._said > 0.0:
             self._paused_at = None
-            self._c.send_realtime(grblhal_codes.SPINDLE_PAUSE)
+            self._c.send_realtime_bytes(grblhal_codes.SPINDLE_PAUSE_BYTE)
         elif (
             self._paused_at is not None
             and self._c.clock.now() - self._paused_at > _OBEY_TIME_S

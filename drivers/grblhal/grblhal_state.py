@@ -25,7 +25,7 @@ _VARIABLE = "V"  # A letter of the build options.
 _HOMING, _HOMED = 22, 1  # Number of the setting, and its bit that enables homing.
 
 TOLERANCE, SPINDLE_ON, SPINDLE_OFF, COOLANT_ON = 340, 394, 539, 673
-LEGACY_SPINDLE_ON = 392  # Firmware before 2025 uses this setting instead of $394.
+LEGACY_SPINDLE_ON_SETTING = 392  # Firmware before 2025 uses this setting instead of $394.
 MAX_FIRMWARE_WAIT_S = 60.0  # Seconds; the firmware's limit without a delay.
 _SPINDLE = {3: SPINDLE_ON, 4: SPINDLE_ON, 5: SPINDLE_OFF}
 _COOLANT = frozenset((7, 8))
@@ -46,7 +46,7 @@ def _wait(function: int, settings: Mapping[int, str]) -> float:
     if function not in _SPINDLE:
         return 0.0
     number = _SPINDLE[function]
-    delay = _value(settings, number if number in settings else LEGACY_SPINDLE_ON)
+    delay = _value(settings, number if number in settings else LEGACY_SPINDLE_ON_SETTING)
     return delay if _value(settings, TOLERANCE) <= 0.0 or delay > 0.0 else MAX_FIRMWARE_WAIT_S
 
 
@@ -123,12 +123,12 @@ class ReportedState:
             before, now = self.position.get(axis.name), places.get(axis.name)
             if before is None or now is None:
                 continue
-            if abs(now - before) > 1.5 * axis.vmax * passed + _TRAVEL_TOLERANCE_MM:
+            if abs(now - before) > 1.5 * axis.max_velocity * passed + _TRAVEL_TOLERANCE_MM:
                 return False
         return True
 
     @property
-    def axis_letters(self) -> str:
+    def reported_axis_letters(self) -> str:
         """Return the axis letters in the order of the controller's reports and settings."""
         return self.identity.axis_letters if self.identity is not None else "XYZ"
 
@@ -151,7 +151,7 @@ class ReportedState:
 
         The setting is in the group of axis settings that starts at number ``group_start``.
         """
-        index = self.axis_letters.find(letter)
+        index = self.reported_axis_letters.find(letter)
         return float(self.settings.get(group_start + index, "0")) if index >= 0 else 0.0
 
     def get_max_axis_speed(self, letter: str) -> float:
@@ -181,7 +181,7 @@ class ReportedState:
 
         Returns None if homing is disabled in the controller, or if its state is unknown.
         """
-        index = self.axis_letters.find(letter)
+        index = self.reported_axis_letters.find(letter)
         if not self.homing_setting & _HOMED or self.homed_flags is None or index < 0:
             return None
         if len(self.homed_flags) > 1:
@@ -189,7 +189,7 @@ class ReportedState:
         return bool(self.homed_flags[0])
 
     def _places(self, report: StatusReport) -> dict[str, float]:
-        raw = zip(self.axis_letters, report.position or (), strict=False)
+        raw = zip(self.reported_axis_letters, report.position or (), strict=False)
         return {letter: place - self.home_origin.get(letter, 0.0) for letter, place in raw}
 
     def _confirms_jump(self, report: StatusReport, first_report: StatusReport) -> bool:
@@ -202,6 +202,6 @@ class ReportedState:
         return all(
             new is None
             or old is None
-            or abs(new - old) <= _CONFIRMATION_TIME_S * axis.vmax + _TRAVEL_TOLERANCE_MM
+            or abs(new - old) <= _CONFIRMATION_TIME_S * axis.max_velocity + _TRAVEL_TOLERANCE_MM
             for axis, new, old in near
         )

@@ -159,7 +159,7 @@ DRIVER = DriverDeclaration(
             ),
         ),
     ),
-    backend="grblhal",
+    backend_name="grblhal",
     spindle="grblhal",
-    count_rate=3e5,
+    max_count_rate=3e5,
 )

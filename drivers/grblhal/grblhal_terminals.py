@@ -51,7 +51,7 @@ class GrblInputs:
                 states[name] = (letter in report.pins) != wired.active_low
         return states
 
-    def list_missing(self) -> dict[str, str]:
+    def list_missing_inputs(self) -> dict[str, str]:
         """Return the names of the inputs that the controller does not have, and the reason for each."""
         have = self._c.identity.input_count if self._c.identity is not None else 0
         missing: dict[str, str] = {}
@@ -69,16 +69,18 @@ class GrblInputs:
                 )
         return missing
 
-    def request_next(self) -> None:
+    def request_next_input(self) -> None:
         """Request the next auxiliary input, if the machine is at standstill and no request is pending."""
         c, now = self._c, self._c.clock.now()
         if self._asked is not None:
             self._take(*self._asked)
-        elif self._order and now >= self._next and self._blocks.is_quiet and self._blocks.is_listening:
+        elif (
+            self._order and now >= self._next and self._blocks.is_at_standstill and self._blocks.is_listening
+        ):
             name = self._order.pop(0)
             self._order.append(name)
             port = self._port(name)
-            if name not in self.list_missing() and port is not None:
+            if name not in self.list_missing_inputs() and port is not None:
                 self._next = now + _REQUEST_INTERVAL_S / len(self._order)
                 self._asked = name, c.send_line(f"M66P{port}L0")
 
@@ -124,14 +126,14 @@ class GrblIO:
         """Return the states of the inputs by name."""
         return self._inputs.read_states()
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return the states of the outputs by name, without outputs that the controller does not have.
 
         A coolant output has the reported state, starting 1 s after its last command. An auxiliary output
         has the commanded state, because the controller does not report it.
         """
         accessory_report = self._c.reported_accessories
-        shown = {name: on for name, on in self._wanted.items() if not self.describe_missing(name)}
+        shown = {name: on for name, on in self._wanted.items() if not self.describe_missing_output(name)}
         for name, output in self._c.config.outputs.items():
             letter = ACCESSORY_LETTERS.get(output.terminal)
             said_at = self._said_at.get(name)
@@ -141,15 +143,15 @@ class GrblIO:
                 shown[name] = letter in accessory_report[1]
         return shown
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch an output.
 
         Raises DriverError if the machine file does not define the output, or if an output that the
         controller does not have is to be switched on.
         """
         find_output(name, self._wanted)
-        why = self.describe_missing(name)
-        if on and why:
+        why = self.describe_missing_output(name)
+        if is_on and why:
             terminal = self._c.config.outputs[name].terminal
             raise DriverError(
                 "output {name} ({terminal}) cannot be switched: {why}",
@@ -158,9 +160,9 @@ class GrblIO:
                 terminal=terminal,
                 why=why,
             )
-        if self.outputs().get(name, on) is not on:
-            self._sent[name] = not on  # The actual state differs, so the change must be sent again.
-        self._wanted[name] = on
+        if self.get_outputs().get(name, is_on) is not is_on:
+            self._sent[name] = not is_on  # The actual state differs, so the change must be sent again.
+        self._wanted[name] = is_on
         if not why:
             self._tell(name)
 
@@ -170,7 +172,7 @@ class GrblIO:
             if output.safe_state is not None and self._wanted[name] != output.safe_state:
                 self.write(name, output.safe_state)
 
-    def describe_missing(self, name: str) -> str:
+    def describe_missing_output(self, name: str) -> str:
         """Return the reason why the controller does not have an output.
 
         The text is empty if the controller has the output.
@@ -191,15 +193,17 @@ class GrblIO:
             "the terminal does not exist; the controller has {count} auxiliary outputs", count=have
         )
 
-    def list_available_terminals(self) -> frozenset[str]:
+    def list_usable_terminals(self) -> frozenset[str]:
         """Return the inputs and outputs that a program may use.
 
         Their names are those of ``machine_requirements``.
         """
         outputs = {
-            Message("output {name}", name=name) for name in self._wanted if not self.describe_missing(name)
+            Message("output {name}", name=name)
+            for name in self._wanted
+            if not self.describe_missing_output(name)
         }
-        there = {name for name in self._c.config.inputs if name not in self._inputs.list_missing()}
+        there = {name for name in self._c.config.inputs if name not in self._inputs.list_missing_inputs()}
         names = there | {self._c.config.inputs[name].terminal for name in there}
         return frozenset(outputs | {Message("input {name}", name=name) for name in names})
 
@@ -215,7 +219,7 @@ class GrblIO:
                 self._sent[name] = False
                 self._said_at[name] = self._c.clock.now()
 
-    def send_changes(self) -> None:
+    def send_output_changes(self) -> None:
         """Send the output changes that could not be sent earlier.
 
         Changes are delayed while the controller is locked, jogging or in feed hold.

@@ -184,8 +184,8 @@ class SentLine:
     ``error_code`` is 0 if the reply is ``ok``.
     """
 
-    line: str
-    lines: list[str] = field(default_factory=list)
+    text: str
+    received_lines: list[str] = field(default_factory=list)
     is_done: bool = False
     error_code: int = 0
     sent_time_s: float = 0.0
@@ -194,7 +194,7 @@ class SentLine:
     @property
     def size_bytes(self) -> int:
         """Return the number of bytes of the line, including the line end."""
-        return len(self.line) + 1
+        return len(self.text) + 1
 
 
 class LineSender:
@@ -212,7 +212,7 @@ class LineSender:
         self.free_bytes = buffer_bytes - _RESERVE
 
     @property
-    def is_quiet(self) -> bool:
+    def is_idle(self) -> bool:
         """Return whether all lines have been sent and acknowledged."""
         return not self.waiting_lines and not self.unacknowledged_lines
 
@@ -220,16 +220,16 @@ class LineSender:
         """Return whether a line could be sent immediately."""
         return not self.waiting_lines and self._used() + len(line) + 1 <= self.free_bytes
 
-    def send_line(self, line: str, now: float, ticket: int = 0) -> SentLine:
+    def send_line(self, line: str, now_s: float, ticket: int = 0) -> SentLine:
         """Send a line, or queue the line until it fits into the buffer of the controller."""
         assert line.isascii(), line
         assert len(line) < _MAX_LINE_BYTES, line
-        ask = SentLine(line, sent_time_s=now, ticket=ticket)
+        ask = SentLine(line, sent_time_s=now_s, ticket=ticket)
         self.waiting_lines.append(ask)
-        self.send_waiting(now)
+        self.send_waiting_lines(now_s)
         return ask
 
-    def send_waiting(self, now: float) -> None:
+    def send_waiting_lines(self, now: float) -> None:
         """Send the queued lines that now fit into the buffer of the controller."""
         while self.waiting_lines and (
             not self.unacknowledged_lines
@@ -238,23 +238,23 @@ class LineSender:
             ask = self.waiting_lines.popleft()
             ask.sent_time_s = now
             self.unacknowledged_lines.append(ask)
-            self._write(ask.line.encode("ascii") + b"\n")
+            self._write(ask.text.encode("ascii") + b"\n")
 
-    def handle_reply(self, error: int) -> SentLine | None:
+    def handle_reply(self, error_code: int) -> SentLine | None:
         """Assign a reply to its line and return the line, or None if no line is pending.
 
-        ``error`` is the error code of the reply, or 0 for ``ok``.
+        ``error_code`` is the error code of the reply, or 0 for ``ok``.
         """
         if not self.unacknowledged_lines:
             return None
         ask = self.unacknowledged_lines.popleft()
-        ask.is_done, ask.error_code = True, error
+        ask.is_done, ask.error_code = True, error_code
         return ask
 
     def add_message(self, line: str) -> None:
         """Add a received message to the line that the controller will acknowledge next."""
         if self.unacknowledged_lines:
-            self.unacknowledged_lines[0].lines.append(line)
+            self.unacknowledged_lines[0].received_lines.append(line)
 
     def discard_lines(self) -> None:
         """Discard all lines, and ignore replies until the reply to ``$G`` arrives."""
@@ -281,7 +281,7 @@ class ScriptError(DriverError):
 
 
 class ScriptRunner:
-    """Runner of one script at a time, which advances when its owner calls ``advance``."""
+    """Runner of one script at a time, which advances when its owner calls ``advance_script``."""
 
     def __init__(self) -> None:
         self.purpose = ""  # Purpose of the present script.
@@ -295,11 +295,11 @@ class ScriptRunner:
         """Return whether a script is running."""
         return self._script is not None
 
-    def start_script(self, script: Script, purpose: str, now: float) -> None:
+    def start_script(self, script: Script, purpose: str, now_s: float) -> None:
         """Start a script, and cancel the script that is running."""
         self.cancel_script()
         self._script, self.purpose = script, purpose
-        self._step, self._until = (lambda: True, 0.0, ""), now
+        self._step, self._until = (lambda: True, 0.0, ""), now_s
 
     def cancel_script(self) -> None:
         """Cancel the script; if a step of the script is being executed, the script ends after this step."""
@@ -307,7 +307,7 @@ class ScriptRunner:
             self._script.close()
         self._script = None
 
-    def advance(self, now: float) -> str:
+    def advance_script(self, now: float) -> str:
         """Advance the script as far as possible, and return the reason if it fails, or an empty text."""
         while self._script is not None:
             until, _, why = self._step

@@ -6,7 +6,16 @@ import math
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from core.ports import AxisSample, Cam, DriverError, Fault, GearState, Segments, StopMode, is_queue_finished
+from core.ports import (
+    AxisSample,
+    Cam,
+    DriverError,
+    Fault,
+    GearState,
+    MotionSegments,
+    StopMode,
+    is_queue_finished,
+)
 from drivers.hal.bridge.packets import number
 from drivers.hal.bridge.packets import parse_pieces as pieces_told
 from drivers.hal.hal_config import HalConfig
@@ -33,20 +42,22 @@ _NAN = float("nan")
 class HalQueue(GearedQueue):
     """A geared setpoint queue for which the bridge decides when a cam has ended."""
 
-    def follow_spindle(self, t: float, turns: float) -> AxisMotion | None:
+    def play_spindle_sample(self, time_s: float, revolutions: float) -> AxisMotion | None:
         """Return the setpoint for one sample of the spindle, or None without an active cam."""
-        return None if self._gearing is None else self._gearing.play_setpoint(t, t, turns)
+        return (
+            None if self._gearing is None else self._gearing.calculate_setpoint(time_s, time_s, revolutions)
+        )
 
-    def end_cam(self, t: float) -> None:
+    def end_cam(self, time_s: float) -> None:
         """End the cam at time ``t``, when the tail that continues by time has started."""
         if self._gearing is not None:
-            self._leave_gearing(t, self._gearing)
+            self._leave_gearing(time_s, self._gearing)
 
-    def replace_by_braking(self, t: float, pieces: list[MotionPiece]) -> None:
+    def replace_by_braking(self, time_s: float, pieces: list[MotionPiece]) -> None:
         """Replace the queue by a deceleration that the bridge has performed."""
         if self._gearing is not None:
             self.reset_to(pieces[0].positions)
-        self.replace_from(t, pieces)
+        self.replace_pieces_from(time_s, pieces)
 
 
 class HalAxes:
@@ -75,7 +86,7 @@ class HalAxes:
         self.index_rev = 0.0  # Revolutions at the spindle's index in HAL's count.
         probe = config.probe_input
         self.touch_input = (
-            HalTouch(config.table.period, active_low=probe.active_low) if probe is not None else None
+            HalTouch(config.hal_table.period, active_low=probe.is_active_low) if probe is not None else None
         )
         # An axis that is used as the spindle and retains its count. None: C is engaged or does not exist.
         self._lent = next((n for n, axis in enumerate(config.axes) if axis.is_spindle), None)
@@ -89,7 +100,7 @@ class HalAxes:
         self._still = self._actual
         self._brakings = 0.0
         self._samples: Callable[..., None] = _discard_sample
-        self._marks = [n for n, axis in enumerate(config.axes) if axis.switch]
+        self._marks = [n for n, axis in enumerate(config.axes) if axis.switch_key]
         self._turned: deque[tuple[float, float]] = deque()
 
     # --- data from the bridge -----------------------------------------------------------------------------
@@ -123,7 +134,7 @@ class HalAxes:
         self._actual = self._to_machine_position(row[1 + axes : 1 + 2 * axes], t)
         if turning:
             self.spindle_sample = t, row[1 + 2 * axes]
-            self.queue.follow_spindle(t, row[1 + 2 * axes] - self.index_rev)
+            self.queue.play_spindle_sample(t, row[1 + 2 * axes] - self.index_rev)
         if telling:
             self.spindle_rev_per_s = row[1 + 2 * axes + turning]
         elif turning:
@@ -146,7 +157,7 @@ class HalAxes:
             60.0 * self.spindle_rev_per_s,
             row[1 + 2 * axes] - self.index_rev if turning else _NAN,
             _NAN,
-            self.queue.queue_end(t) - t,
+            self.queue.get_end_time(t) - t,
         )
 
     def _estimate_speed(self, t: float, turns: float) -> None:
@@ -163,7 +174,7 @@ class HalAxes:
 
         An axis without pins is at its queued position.
         """
-        place = list(self.queue.commanded_state_at(t)[0])
+        place = list(self.queue.get_commanded_state(t)[0])
         for value, index in zip(raw, self._driven, strict=True):
             if index != self._lent:
                 place[index] = value - self.home_positions[index]
@@ -184,7 +195,7 @@ class HalAxes:
             self._handle_power_loss()
         self._process_bridge_state()
         self._home_on()
-        self.queue.discard_before(self._now() - _HISTORY_S)
+        self.queue.discard_pieces_before(self._now() - _HISTORY_S)
 
     def _process_bridge_state(self) -> None:
         """Update the queue after the bridge has ended a cam or has braked."""
@@ -221,13 +232,13 @@ class HalAxes:
 
     def horizon(self) -> float:
         """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
-        return self.queue.queue_end(self._now())
+        return self.queue.get_end_time(self._now())
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at ``time_s``."""
-        return self.queue.commanded_state_at(time_s)
+        return self.queue.get_commanded_state(time_s)
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
         Raises DriverError if the setpoints are invalid or exceed axis limits.
@@ -235,7 +246,7 @@ class HalAxes:
         self._need_power()
         require_no_homing(self.active_homing.name if self.active_homing is not None else "")
         self._check(segments)
-        self.queue.splice(segments, self._now())
+        self.queue.splice_segments(segments, self._now())
         self._send("splice", convert_segments(segments, len(self.axes)))
 
     def mesh(self, cam: Cam) -> None:
@@ -247,10 +258,12 @@ class HalAxes:
                 "thread-no-encoder",
             )
         t, turns = self.spindle_sample[0], self.spindle_sample[1] - self.index_rev
-        self._check(cam.way._replace(v=cam.way.v * abs(self.spindle_rev_per_s) / 1.1))
+        self._check(
+            cam.segments._replace(velocities=cam.segments.velocities * abs(self.spindle_rev_per_s) / 1.1)
+        )
         phase = SpindlePhaseFilter(t, turns, self.spindle_rev_per_s)
         self.queue.engage_cam(cam, phase, self._now())
-        path = convert_segments(cam.way, len(self.axes))
+        path = convert_segments(cam.segments, len(self.axes))
         then = (
             convert_segments(cam.following_segments, len(self.axes))
             if cam.following_segments is not None
@@ -268,7 +281,7 @@ class HalAxes:
         """Return the state of the axes according to HAL's last sample."""
         t, actual, powered = self._t, self._actual, self._powered
         demand = self._command if powered and self.active_homing is None else actual
-        velocity = self.queue.commanded_state_at(t)[1]
+        velocity = self.queue.get_commanded_state(t)[1]
         return AxisSample(
             t=t,
             demand=demand,
@@ -283,12 +296,12 @@ class HalAxes:
             fault=self.fault,
         )
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the power on or off, and wait until it has changed.
 
         Raises DriverError if the E-stop chain does not close.
         """
-        if not on:
+        if not is_on:
             self._forget()
             if not self._link.failure:
                 self._link.send_command("off")
@@ -357,7 +370,9 @@ class HalAxes:
 
     # --- for C on the spindle drive ------------------------------------------------------------------------
 
-    def transfer_c(self, axis_index: int | None, hal_position: float = 0.0, count: float = 0.0) -> None:
+    def transfer_c(
+        self, axis_index: int | None, hal_position: float = 0.0, control_position: float = 0.0
+    ) -> None:
         """Release the axis ``axis_index`` to the spindle, or engage C if ``axis_index`` is None.
 
         The count does not change when C is released. When C is engaged, ``hal_position`` is its position in
@@ -365,12 +380,12 @@ class HalAxes:
         """
         held, self._lent = self._lent, axis_index
         # HAL continues to play this setpoint, independent of the feedback.
-        place = list(self.queue.commanded_state_at(self._now())[0])
+        place = list(self.queue.get_commanded_state(self._now())[0])
         if held is not None and axis_index is None:
-            self.home_positions[held] = hal_position - count
-            place[held] = count
+            self.home_positions[held] = hal_position - control_position
+            place[held] = control_position
             self._actual, self._still, self._command = (
-                tuple([count if n == held else p for n, p in enumerate(each)])
+                tuple([control_position if n == held else p for n, p in enumerate(each)])
                 for each in (self._actual, self._actual, self._command)
             )
         self.queue.reset_to(place)
@@ -396,15 +411,15 @@ class HalAxes:
         """
         self._link.send_command("homing", axis=axis, on=ignored)
 
-    def splice_homing(self, segments: Segments) -> None:
+    def splice_homing(self, segments: MotionSegments) -> None:
         """Splice the setpoints of a homing move into the queue.
 
         Raises DriverError if the bridge does not accept them.
         """
-        self.queue.splice(segments, self._now())
+        self.queue.splice_segments(segments, self._now())
         self._send("splice", convert_segments(segments, len(self.axes)))
 
-    def brake(self) -> None:
+    def brake_axes(self) -> None:
         """Brake all axes to rest as soon as possible."""
         self._link.send_command("brake")
 
@@ -412,7 +427,7 @@ class HalAxes:
         """Return the position of an axis as HAL counts it."""
         return self._actual[index] + self.home_positions[index]
 
-    def set_home(self, index: int, hal_position: float) -> None:
+    def set_home_position(self, index: int, hal_position: float) -> None:
         """Set the home position of an axis to ``hal_position``, as HAL counts it."""
         leap = self.home_positions[index] - hal_position
         self.home_positions[index] = hal_position
@@ -421,7 +436,7 @@ class HalAxes:
             tuple([p + leap if n == index else p for n, p in enumerate(each)])
             for each in (self._actual, self._still, self._command)
         )
-        place = list(self.queue.commanded_state_at(self._now())[0])
+        place = list(self.queue.get_commanded_state(self._now())[0])
         place[index] += leap
         self.queue.reset_to(place)
 
@@ -442,7 +457,7 @@ class HalAxes:
     def _need_power(self) -> None:
         require_power(self.fault, self._powered)
 
-    def _check(self, segments: Segments) -> None:
+    def _check(self, segments: MotionSegments) -> None:
         check_limits(segments, self.config.axes, self._homed, self._actual)
 
     def _send(self, what: str, pieces: Sequence[MotionPiece], **values: object) -> None:
@@ -459,7 +474,7 @@ class HalAxes:
 
     def _from_hal(self, piece: MotionPiece) -> MotionPiece:
         p, v, a = (
-            list(self.queue.commanded_state_at(piece.start_time_s)[0]),
+            list(self.queue.get_commanded_state(piece.start_time_s)[0]),
             [0.0] * len(self.axes),
             [0.0] * len(self.axes),
         )
@@ -476,7 +491,7 @@ class HalAxes:
         if homing is None:
             return
         try:
-            homing.advance(self._now())
+            homing.continue_homing(self._now())
         except DriverError as error:
             self.fault = self.fault or error.fault
             self.stop(StopMode.RAMP_OFF)
@@ -487,7 +502,9 @@ class HalAxes:
     @property
     def is_at_rest(self) -> bool:
         """Return whether the queue is empty and no axis moves."""
-        return is_queue_finished(self.queue.queue_end(self._now()), self._now()) and not self._is_axis_rolling
+        return (
+            is_queue_finished(self.queue.get_end_time(self._now()), self._now()) and not self._is_axis_rolling
+        )
 
 
 def _discard_sample(*_figures: float) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from core.ports import PROBE_INPUT
-from drivers.hal.hal_table import HOMING_METHOD_PINS, HalAxisPins, HalSpindlePins, HalTable
+from drivers.hal.hal_table import REQUIRED_PINS_BY_HOMING_METHOD, HalAxisPins, HalSpindlePins, HalTable
 from drivers.setpoint_queue import AxisProperties
 
 
@@ -22,10 +22,10 @@ class HalAxis(AxisProperties):
     is_spindle: bool = False  # C uses the spindle drive.
 
     @property
-    def switch(self) -> str:
+    def switch_key(self) -> str:
         """Return the key of the switch pin that homing searches for, or an empty text."""
         needs = (
-            HOMING_METHOD_PINS.get(self.home_method, ())
+            REQUIRED_PINS_BY_HOMING_METHOD.get(self.home_method, ())
             if not self.absolute and self.pins is not None
             else ()
         )
@@ -40,9 +40,9 @@ class HalSpindleConfig:
     """
 
     pins: HalSpindlePins
-    rpm_max: float
-    accel: float
-    decel: float
+    max_rpm: float
+    acceleration_rpm_s: float
+    deceleration_rpm_s: float
     has_encoder: bool
     is_driven_by_hal: bool = True
 
@@ -65,7 +65,7 @@ class HalInput:
     """An input with its pin."""
 
     pin: str
-    active_low: bool = False
+    is_active_low: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class HalConfig:
     Times are in seconds, and ``hal_file`` is the path of the HAL file.
     """
 
-    table: HalTable
+    hal_table: HalTable
     hal_file: Path
     commit_time_s: float
     axes: tuple[HalAxis, ...]

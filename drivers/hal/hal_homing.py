@@ -10,11 +10,11 @@ import math
 from enum import Enum
 from typing import Protocol
 
-from core.ports import DriverError, Segments, TouchLatch, is_queue_finished
+from core.ports import DriverError, MotionSegments, TouchLatch, is_queue_finished
 from drivers.hal.hal_config import HalAxis
-from drivers.hal.hal_table import HOMING_METHOD_PINS, PRESENT_POSITION_METHODS
+from drivers.hal.hal_table import PRESENT_POSITION_METHODS, REQUIRED_PINS_BY_HOMING_METHOD
 from drivers.port_checks import FirstTouchInput
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 
 _SEARCH_DOWN_METHODS = frozenset((1, 17, 5, 21, 33))  # Methods that search in the negative direction.
 _INDEX_ONLY_METHODS = frozenset((33, 34))
@@ -53,14 +53,14 @@ class HomingAxes(Protocol):
         """Return a number of the bridge by the name of its pin, or 0 for an unknown pin."""
         ...
 
-    def splice_homing(self, segments: Segments) -> None:
+    def splice_homing(self, segments: MotionSegments) -> None:
         """Splice the setpoints of a homing move into the queue.
 
         Raises DriverError if the bridge does not accept them.
         """
         ...
 
-    def brake(self) -> None:
+    def brake_axes(self) -> None:
         """Brake all axes to rest as soon as possible."""
         ...
 
@@ -79,7 +79,7 @@ class HomingAxes(Protocol):
         """Return the position of an axis as HAL counts it."""
         ...
 
-    def set_home(self, index: int, hal_position: float) -> None:
+    def set_home_position(self, index: int, hal_position: float) -> None:
         """Set the home position of an axis to ``hal_position``, as HAL counts it."""
         ...
 
@@ -100,8 +100,8 @@ class _Step(Enum):
 class HalHoming:
     """The homing of one axis.
 
-    Call ``advance`` once per tick and ``add_sample`` for each sample, until ``is_done``. ``advance`` raises
-    DriverError if homing fails.
+    Call ``continue_homing`` once per tick and ``add_sample`` for each sample, until ``is_done``.
+    ``continue_homing`` raises DriverError if homing fails.
     """
 
     def __init__(self, axis: HalAxis, index: int, axes: HomingAxes) -> None:
@@ -109,8 +109,8 @@ class HalHoming:
         self._axis, self.axis_index, self._slides = axis, index, axes
         method = axis.home_method
         self._way = -1.0 if method in _SEARCH_DOWN_METHODS else 1.0
-        self._switch = axis.switch
-        self._to_index = "index_enable" in HOMING_METHOD_PINS.get(method, ())
+        self._switch = axis.switch_key
+        self._to_index = "index_enable" in REQUIRED_PINS_BY_HOMING_METHOD.get(method, ())
         self._slow = axis.home_latch_speed or axis.home_speed / _SLOW_FACTOR
         self._step = _Step.START
         self._since = 0.0
@@ -123,16 +123,16 @@ class HalHoming:
         """Return whether home has been found and the axis is at rest."""
         return self._step is _Step.DONE
 
-    def add_sample(self, hal_position: float, switch_on: bool) -> None:
+    def add_sample(self, hal_position: float, is_switch_on: bool) -> None:
         """Add a sample of the position and the switch.
 
         The home position is where the switch turns off.
         """
-        if self._step is _Step.LEAVE and self._on and not switch_on and self._mark is None:
+        if self._step is _Step.LEAVE and self._on and not is_switch_on and self._mark is None:
             self._mark = hal_position
-        self._on = switch_on
+        self._on = is_switch_on
 
-    def advance(self, now: float) -> None:
+    def continue_homing(self, now: float) -> None:
         """Continue the homing with its next step, if the present step is complete."""
         rests = is_queue_finished(self._slides.horizon(), now)
         acts = {
@@ -164,7 +164,7 @@ class HalHoming:
 
     def _search(self, now: float, rests: bool) -> None:
         if self._on:
-            self._slides.brake()
+            self._slides.brake_axes()
             self._enter(_Step.STOP, now)
         elif rests and now > self._since + _STOP_TIME_S:
             raise self._failed("no home switch was found within the axis travel", "no-switch")
@@ -183,7 +183,7 @@ class HalHoming:
             self._slides.request_index(f"{self.name}.index", True)
             self._enter(_Step.INDEX, now)
         elif self._mark is not None:
-            self._slides.brake()
+            self._slides.brake_axes()
             self._enter(_Step.FINISH, now)
         elif rests and now > self._since + _STOP_TIME_S:
             raise self._failed("the homing switch does not turn off", "stays-on")
@@ -199,7 +199,7 @@ class HalHoming:
         """
         if now > self._since + 0.1 and not self._slides.read_bit(f"{self.name}.index"):
             self._mark = self._slides.read_number(f"{self.name}.index-at")
-            self._slides.brake()
+            self._slides.brake_axes()
             self._enter(_Step.FINISH, now)
         elif rests and now > self._since + _STOP_TIME_S:
             self._slides.request_index(f"{self.name}.index", False)
@@ -209,7 +209,7 @@ class HalHoming:
         if rests and now > self._since + _STOP_TIME_S:
             assert self._mark is not None
             self._slides.ignore_limit_switch(self.name, False)
-            self._slides.set_home(self.axis_index, self._mark + self._axis.home_offset)
+            self._slides.set_home_position(self.axis_index, self._mark + self._axis.home_offset)
             place, _ = self._slides.demand_at(now)
             if self._axis.home_method in PRESENT_POSITION_METHODS or place[self.axis_index] == 0.0:
                 self._enter(_Step.DONE, now)
@@ -227,7 +227,7 @@ class HalHoming:
         place, _ = self._slides.demand_at(now)
         begins = now + self._slides.commit + 0.005
         to = place[self.axis_index] + direction * length
-        segments = plan_straight_move(
+        segments = plan_axis_move(
             begins, place, self.axis_index, target=to, speed=speed, accel=self._axis.amax
         )
         self._slides.splice_homing(segments)
@@ -252,7 +252,7 @@ class HalTouch(FirstTouchInput):
         super().__init__()
         self._period, self._low = period, active_low
 
-    def add_sample(self, t: float, position: tuple[float, ...], input_on: bool) -> None:
+    def add_sample(self, time_s: float, position: tuple[float, ...], is_input_on: bool) -> None:
         """Add the input and the axis positions of one period of the servo thread."""
-        if self._is_first_touch(input_on is not self._low):
-            self._kept = TouchLatch(t, position, self._period)
+        if self._is_first_touch(is_input_on is not self._low):
+            self._kept = TouchLatch(time_s, position, self._period)

@@ -97,7 +97,7 @@ class HalLink:
             return
         self._silent, self._looked = self.report_age_s, self._clock.now()
         try:
-            for head, numbers in self._link.receive():
+            for head, numbers in self._link.receive_packets():
                 self.last_report = head
                 self._reports += 1
                 self._silent = 0.0
@@ -225,7 +225,7 @@ class HalLink:
                 self.failure or "the HAL bridge is not connected", reason="" if self.failure else "no-bridge"
             )
         try:
-            self._link.send(data)
+            self._link.send_packet(data)
         except DriverError as error:
             if error.code != "hal-silent":
                 self.failure = error.fault

@@ -39,9 +39,9 @@ class HalTerminals:
         reported_states = self._link.last_report.get("in")
         raw = reported_states if isinstance(reported_states, list) else [False] * len(self._config.inputs)
         wired = zip(self._config.inputs.items(), raw, strict=True)
-        return {name: on is not each.active_low for (name, each), on in wired}
+        return {name: on is not each.is_active_low for (name, each), on in wired}
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name with the states of their HAL pins."""
         reported_states = self._link.last_report.get("is")
         real = reported_states if isinstance(reported_states, list) else [False] * len(self._config.outputs)
@@ -53,18 +53,18 @@ class HalTerminals:
                 found[name] = on
         return found
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch one output. Raises DriverError if the bridge is silent or the E-stop chain is open."""
         output = find_output(name, self._config.outputs)
-        require_output_allowed(name, on, self._link.failure_reason)
+        require_output_allowed(name, is_on, self._link.failure_reason)
         chained = output.safe_state is not None and not output.is_lamp
-        if chained and on is not output.safe_state and self._link.last_report.get("ok") is not True:
+        if chained and is_on is not output.safe_state and self._link.last_report.get("ok") is not True:
             raise DriverError(
                 "output {name} does not change because the E-stop chain is open; press Reset",
                 "output",
                 name=name,
             )
-        self._say(name, on)
+        self._say(name, is_on)
 
     def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
@@ -134,9 +134,9 @@ class HalMachine:
         turned = config.spindle.is_driven_by_hal and bool(config.spindle.pins.orient)
         self.orientation = HalOrientation(self.axes, self.spindle, self.bridge_link) if turned else None
         self.axes.fault_clearers.append(self.spindle.spindle_index.clear_fault)
-        self.axes.reconnect_handlers.append(self.spindle.spindle_index.discard)
+        self.axes.reconnect_handlers.append(self.spindle.spindle_index.discard_index)
         self.io = HalTerminals(config, self.bridge_link, clock.now)
-        self.samples = HalSamples(self.axes, config.table.period)
+        self.samples = HalSamples(self.axes, config.hal_table.period)
         try:
             self.bridge_link.connect()
         except DriverError:

@@ -14,7 +14,7 @@ from core.message import Message
 from core.ports import DriverError
 from drivers.hal.hal_config import HalAxis, HalConfig
 
-TURNDESK_MARK = "#turndesk"
+TURNDESK_COMMENT = "#turndesk"
 BRIDGE_COMPONENT = "turndesk"  # Name of the bridge's component.
 FLOAT, BIT, COUNT = "float", "bit", "s32"
 _STREAM_NAMES = ("a", "b")
@@ -72,9 +72,9 @@ class HalSection:
         self.module_instances.setdefault(component, []).append(name)
         self.function_calls.append(name)
         for pin, signal in pins.items():
-            self.connect(signal, f"{name}.{pin.rstrip('_').replace('_', '-')}")
+            self.connect_pins(signal, f"{name}.{pin.rstrip('_').replace('_', '-')}")
 
-    def connect(self, signal: str, *pins: str) -> None:
+    def connect_pins(self, signal: str, *pins: str) -> None:
         """Connect pins to one of TurnDesk's signals."""
         self.nets.setdefault(signal, []).extend(pins)
 
@@ -82,22 +82,22 @@ class HalSection:
         """Add a pin of the bridge, connect it to a signal, and return its name."""
         self.bridge_pins.append(BridgePin(name, hal_type, direction))
         if signal:
-            self.connect(signal, f"{BRIDGE_COMPONENT}.{name}")
+            self.connect_pins(signal, f"{BRIDGE_COMPONENT}.{name}")
         return f"{BRIDGE_COMPONENT}.{name}"
 
     def add_sample_column(self, kind: str, signal: str) -> None:
         """Add a column to the samples."""
-        self.connect(signal, f"sampler.0.pin.{len(self.sample_columns)}")
+        self.connect_pins(signal, f"sampler.0.pin.{len(self.sample_columns)}")
         self.sample_columns += {FLOAT: "f", BIT: "b", COUNT: "s"}[kind]
 
-    def connect_machine_output(self, path: str, pin: str, kind: str, *ours: str) -> None:
+    def connect_machine_output(self, key: str, pin: str, hal_type: str, *ours: str) -> None:
         """Connect an output of the machine to TurnDesk's signals."""
-        self.machine_links.append(MachineLink(path, pin, kind, False, ours))
+        self.machine_links.append(MachineLink(key, pin, hal_type, False, ours))
 
-    def connect_machine_input(self, path: str, pin: str, kind: str, turndesk_signal: str) -> None:
+    def connect_machine_input(self, key: str, pin: str, hal_type: str, turndesk_signal: str) -> None:
         """Connect an input of the machine to TurnDesk's signal, unless the pin name is empty."""
         if pin:
-            self.machine_links.append(MachineLink(path, pin, kind, True, (turndesk_signal,)))
+            self.machine_links.append(MachineLink(key, pin, hal_type, True, (turndesk_signal,)))
 
 
 def build_section(config: HalConfig) -> HalSection:
@@ -112,7 +112,7 @@ def build_section(config: HalConfig) -> HalSection:
         _slide(border, axis)
     _spindle(border, config)
     for axis in config.driven_axes:
-        if switch := axis.switch:
+        if switch := axis.switch_key:
             border.add_sample_column(BIT, f"td-{axis.name}-{switch}")
     _terminals(border, config)
     if config.probe_input is not None:
@@ -122,7 +122,7 @@ def build_section(config: HalConfig) -> HalSection:
     return border
 
 
-def count_columns(config: HalConfig) -> int:
+def count_stream_columns(config: HalConfig) -> int:
     """Return the number of columns of one stream.
 
     The columns are the row number and, for each axis, the position and the travel per revolution.
@@ -135,8 +135,8 @@ def count_columns(config: HalConfig) -> int:
 
 
 def _streams(border: HalSection, config: HalConfig) -> None:
-    count = count_columns(config)
-    depth = round(4.0 * config.table.ahead / config.table.period)
+    count = count_stream_columns(config)
+    depth = round(4.0 * config.hal_table.ahead / config.hal_table.period)
     border.loadrt_lines.append(f"loadrt streamer depth={depth},{depth} cfg={'f' * count},{'f' * count}")
     border.add_bridge_pin("switch-at", FLOAT, "out", "td-switch-at")
     border.add_bridge_pin("play-b", BIT, "out", "td-play-b")
@@ -149,14 +149,14 @@ def _streams(border: HalSection, config: HalConfig) -> None:
     border.add_component("flipflop", "td.which", set="td-to-b", reset="td-to-a", out="td-plays-b")
     border.add_component("not", "td.plays-a", in_="td-plays-b", out="td-plays-a")
     for number, which in enumerate(_STREAM_NAMES):
-        border.connect(f"td-plays-{which}", f"streamer.{number}.enable")
+        border.connect_pins(f"td-plays-{which}", f"streamer.{number}.enable")
         border.function_calls.append(f"streamer.{number}")
     names = ["td-row"]
     names += [f"td-{axis.name}-{what}" for axis in config.driven_axes for what in ("at", "lead")]
     for index, name in enumerate(names):
         a, b = (f"td-{which}-{index}" for which in _STREAM_NAMES)
-        border.connect(a, f"streamer.0.pin.{index}")
-        border.connect(b, f"streamer.1.pin.{index}")
+        border.connect_pins(a, f"streamer.0.pin.{index}")
+        border.connect_pins(b, f"streamer.1.pin.{index}")
         border.add_component("mux2", f"td.column-{index}", in0=a, in1=b, sel="td-plays-b", out=name)
     border.add_sample_column(FLOAT, "td-row")
 
@@ -174,10 +174,10 @@ def _chain(border: HalSection, config: HalConfig) -> None:
     border.add_bridge_pin("powered", BIT, "in", "td-power")
     border.loadrt_lines.append("loadrt watchdog num_inputs=1")
     border.function_calls += ["watchdog.set-timeouts", "watchdog.process"]
-    border.connect("td-heartbeat", "watchdog.input-0")
-    border.connect("td-watch", "watchdog.enable-in")
-    border.connect("td-alive", "watchdog.ok-out")
-    border.pin_values.append(("watchdog.timeout-0", config.table.watchdog))
+    border.connect_pins("td-heartbeat", "watchdog.input-0")
+    border.connect_pins("td-watch", "watchdog.enable-in")
+    border.connect_pins("td-alive", "watchdog.ok-out")
+    border.pin_values.append(("watchdog.timeout-0", config.hal_table.watchdog))
     _add_estop(border, config)
     border.add_component(
         "and2", "td.whole", in0=_reached_signal(border, config), in1="td-alive", out="td-whole"
@@ -196,11 +196,11 @@ def _chain(border: HalSection, config: HalConfig) -> None:
         border.pin_values.append(("td.patience.on-delay", _watchdog_delay(config)))
         pins["fault_in"] = "td-fault"
     border.add_component("estop_latch", "td.chain", **pins)
-    border.connect("td-charge", "td.chain.watchdog")
-    border.connect_machine_input("hal.charge_pump", config.table.charge_pump, BIT, "td-charge")
+    border.connect_pins("td-charge", "td.chain.watchdog")
+    border.connect_machine_input("hal.charge_pump", config.hal_table.charge_pump, BIT, "td-charge")
     border.add_component("and2", "td.power", in0="td-ok", in1="td-enable", out="td-power")
     border.add_component("not", "td.no-power", in_="td-power", out="td-no-power")
-    border.connect_machine_input("hal.machine_on", config.table.machine_on, BIT, "td-power")
+    border.connect_machine_input("hal.machine_on", config.hal_table.machine_on, BIT, "td-power")
 
 
 def _watchdog_delay(config: HalConfig) -> float:
@@ -214,7 +214,7 @@ def _add_estop(border: HalSection, config: HalConfig) -> None:
     raw = "td-in-estop"
     border.add_bridge_pin("in.estop", BIT, "in", raw)
     border.connect_machine_output("io.in.estop", wired.pin, BIT, raw)
-    if wired.active_low:
+    if wired.is_active_low:
         border.add_component("and2", "td.estop", in0=raw, in1=raw, out="td-estop-ok")
     else:
         border.add_component("not", "td.estop", in_=raw, out="td-estop-ok")
@@ -225,10 +225,10 @@ def _reached_signal(border: HalSection, config: HalConfig) -> str:
 
     An E-stop input that is frozen counts as pressed.
     """
-    if not config.table.link_fault:
+    if not config.hal_table.link_fault:
         return "td-estop-ok"
     border.add_bridge_pin("link-fault", BIT, "in", "td-link-fault")
-    border.connect_machine_output("hal.link_fault", config.table.link_fault, BIT, "td-link-fault")
+    border.connect_machine_output("hal.link_fault", config.hal_table.link_fault, BIT, "td-link-fault")
     border.add_component("not", "td.linked", in_="td-link-fault", out="td-linked")
     border.add_component("and2", "td.reached", in0="td-estop-ok", in1="td-linked", out="td-reached")
     return "td-reached"
@@ -399,27 +399,36 @@ def _terminals(border: HalSection, config: HalConfig) -> None:
 # --- Output as text.
 
 
-def insert_section(machine_text: str, section: HalSection, thread: str, source: str) -> str:
+def insert_section(machine_text: str, section: HalSection, thread_name: str, source_name: str) -> str:
     """Return the machine's HAL file with TurnDesk's section inserted.
 
     A component can be loaded only once. If both parts use a component, their instances are loaded together
-    at the first load line. ``source`` is the name of the file. Raises DriverError if the line ``#turndesk``
-    is missing.
+    at the first load line. ``source_name`` is the name of the file. Raises DriverError if the line
+    ``#turndesk`` is missing.
     """
     lines = machine_text.splitlines()
-    place = next((n for n, line in enumerate(lines) if line.strip().lower().startswith(TURNDESK_MARK)), None)
+    place = next(
+        (n for n, line in enumerate(lines) if line.strip().lower().startswith(TURNDESK_COMMENT)), None
+    )
     if place is None:
         raise DriverError(
             "{source}: the line {mark} is missing; put it after the addf commands that read from the "
             "machine and before the addf commands that drive the machine",
-            source=source,
-            mark=TURNDESK_MARK,
+            source=source_name,
+            mark=TURNDESK_COMMENT,
         )
     modules = {component: list(names) for component, names in section.module_instances.items()}
     before = [_merge_instances(line, modules) for line in lines[:place]]
     after = [_comment_out_load(line, modules) for line in lines[place + 1 :]]
     return "\n".join(
-        (*before, f"# --- {TURNDESK_MARK}", *_section_lines(section, thread, modules), "# ---", *after, "")
+        (
+            *before,
+            f"# --- {TURNDESK_COMMENT}",
+            *_section_lines(section, thread_name, modules),
+            "# ---",
+            *after,
+            "",
+        )
     )
 
 

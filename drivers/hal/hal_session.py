@@ -40,7 +40,7 @@ from drivers.hal.hal_section import (
     BRIDGE_COMPONENT,
     HalSection,
     build_section,
-    count_columns,
+    count_stream_columns,
     insert_section,
     list_bridge_nets,
 )
@@ -153,14 +153,14 @@ class BridgeLink(Protocol):
 
     warnings: tuple[str, ...]
 
-    def send(self, data: bytes) -> None:
+    def send_packet(self, data: bytes) -> None:
         """Send a packet.
 
         Raises DriverError if the bridge does not accept the packet.
         """
         ...
 
-    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield the received packets. Raises DriverError if the bridge has ended."""
         ...
 
@@ -190,8 +190,8 @@ def create_bridge_config(config: HalConfig) -> BridgeConfig:
             BridgeAxis(axis.name, axis.amax, axis.following_window, axis.following_time, axis.is_spindle)
             for axis in config.driven_axes
         ),
-        period=config.table.period,
-        ahead=config.table.ahead,
+        period=config.hal_table.period,
+        ahead=config.hal_table.ahead,
         outputs={name: output.safe_state for name, output in config.outputs.items()},
         lamps=tuple(name for name, output in config.outputs.items() if output.is_lamp),
         inputs=tuple(config.inputs),
@@ -200,7 +200,7 @@ def create_bridge_config(config: HalConfig) -> BridgeConfig:
         spindle=tuple(name.removeprefix("spindle.") for name in written if name.startswith("spindle.")),
         turns=bool(config.spindle.pins.position),
         speed=bool(config.spindle.pins.velocity),
-        marks=sum(bool(axis.switch) for axis in config.driven_axes) + (config.probe_input is not None),
+        marks=sum(bool(axis.switch_key) for axis in config.driven_axes) + (config.probe_input is not None),
         figures=tuple(pin.name for pin in read if pin.hal_type != BIT),
     )
 
@@ -260,7 +260,7 @@ class HalSession:
             ) from error
         folder, session = (
             self._folder,
-            insert_section(machine, border, config.table.thread, str(config.hal_file)),
+            insert_section(machine, border, config.hal_table.thread, str(config.hal_file)),
         )
         (folder / "bridge.json").write_text(
             json.dumps(_bridge_settings(config, border, folder, fd, zero, only_check=check_only)),
@@ -269,7 +269,7 @@ class HalSession:
         # The bridge holds a lock while it runs, because waitusr of HAL does not detect a crash. After a
         # crash, HAL continues for a while: the setpoints are played, and the limits brake.
         ramp = max((axis.vmax / axis.amax for axis in config.driven_axes), default=0.0)
-        left = _CRASH_DELAY_S + config.table.ahead + config.table.watchdog + ramp
+        left = _CRASH_DELAY_S + config.hal_table.ahead + config.hal_table.watchdog + ramp
         linger = f'[ -e "{folder / _ENDED_FILE}" ] || sleep {left:.2f}\n'
         (folder / "linger.sh").write_text(linger, encoding="utf-8")
         (folder / "clear.sh").write_text(CLEAR_STREAMS_SCRIPT, encoding="utf-8")
@@ -359,7 +359,7 @@ class HalSession:
 
     # --- the link -----------------------------------------------------------------------------------------
 
-    def send(self, data: bytes) -> None:
+    def send_packet(self, data: bytes) -> None:
         """Send one packet. Raises DriverError if the bridge has ended or accepts no data."""
         assert self._socket is not None
         try:
@@ -371,7 +371,7 @@ class HalSession:
                 "the HAL bridge has ended ({cause})", "hal-bridge", cause=error.strerror
             ) from error
 
-    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield all received packets. Raises DriverError if the bridge has ended."""
         assert self._socket is not None
         while True:
@@ -458,7 +458,7 @@ def _bridge_settings(
         "nets": str(folder / "nets.hal"),
         "alive": str(folder / _ALIVE_FILE),
         "ended": str(folder / _ENDED_FILE),
-        "columns": "f" * count_columns(config),
+        "columns": "f" * count_stream_columns(config),
         "sampled": section.sample_columns,
         "bridge": asdict(create_bridge_config(config)),
     }

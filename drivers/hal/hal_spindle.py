@@ -1,7 +1,7 @@
 """The spindle on HAL: speed, index, orientation, and C on the spindle drive.
 
-An angle is sent to the pins of LinuxCNC's component ``orient``. The HAL file alone defines how the spindle
-turns to this angle and when ``is_oriented`` turns on.
+An angle is sent to the pins of LinuxCNC's component ``should_orient``. The HAL file alone defines how the
+spindle turns to this angle and when ``is_oriented`` turns on.
 
 The drive changes to position mode at standstill. ``hal.spindle.position_mode`` requests C, and
 ``in_position_mode`` reports C if the machine file names this pin. While C is released, its count does not
@@ -20,10 +20,12 @@ from drivers.hal.hal_axes import HalAxes
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_link import HalLink
 from drivers.port_checks import require_free_drive, require_spindle_ready
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 
 _MODES = {0: 0, 1: 1, -1: 2}
-_ANGLE_SETTLING_S = 0.05  # Seconds from the rise of ``orient`` until ``is_oriented`` refers to the new angle.
+_ANGLE_SETTLING_S = (
+    0.05  # Seconds from the rise of ``should_orient`` until ``is_oriented`` refers to the new angle.
+)
 _STANDSTILL_RPM = 2.0  # rpm
 
 
@@ -96,14 +98,14 @@ class HalSpindle:
             self.commanded_rpm = 0.0
         self.spindle_index.update()
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
         Raises DriverError with a fault or an open chain if the speed is not 0.
         """
         if rpm:
             self.require_ready()
-        limit = self._config.rpm_max
+        limit = self._config.max_rpm
         self.commanded_rpm = min(max(rpm, -limit), limit)
         if not self._link.failure:
             self._link.send_command("spindle", rpm=self.commanded_rpm, on=bool(self.commanded_rpm))
@@ -116,12 +118,12 @@ class HalSpindle:
                 "the spindle stays off because the E-stop chain is open; press Reset", "spindle-off"
             )
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Command speed 0 and switch off the spindle.
 
         The drive determines how the spindle stops.
         """
-        self.run_at(0.0)
+        self.set_speed(0.0)
 
     def speed(self) -> float:
         """Return the measured speed in rpm, with its sign, or 0 while the drive is used as C.
@@ -129,9 +131,9 @@ class HalSpindle:
         Without position or velocity feedback, the result is the commanded speed as soon as the spindle is
         at speed.
         """
-        return 0.0 if self.is_used_as_c else self.encoder_rpm()
+        return 0.0 if self.is_used_as_c else self.get_encoder_rpm()
 
-    def encoder_rpm(self) -> float:
+    def get_encoder_rpm(self) -> float:
         """Return the measured speed in rpm, with its sign, even while the drive is used as C."""
         pins = self._config.pins
         if pins.position or pins.velocity:
@@ -165,7 +167,7 @@ class HalSpindle:
 
 def _is_turning(spindle: HalSpindle) -> bool:
     """Return whether the spindle is commanded to turn, or turns according to its measured speed."""
-    return bool(spindle.commanded_rpm) or abs(spindle.encoder_rpm()) >= _STANDSTILL_RPM
+    return bool(spindle.commanded_rpm) or abs(spindle.get_encoder_rpm()) >= _STANDSTILL_RPM
 
 
 # --- Index: requested with the first revolution of a session, so that a thread can be resumed.
@@ -185,9 +187,9 @@ class SpindleIndex:
 
     def __init__(self, axes: HalAxes, link: HalLink, *, wired: bool) -> None:
         self._axes, self._link, self._wired = axes, link, wired
-        self.discard()
+        self.discard_index()
 
-    def discard(self) -> None:
+    def discard_index(self) -> None:
         """Discard the index position, because HAL has been loaded again."""
         self.is_known = not self._wired
         self.failure: Fault | str = ""
@@ -199,7 +201,7 @@ class SpindleIndex:
     def clear_fault(self) -> None:
         """Clear a fault, so that the index is requested again."""
         if self.failure:
-            self.discard()
+            self.discard_index()
 
     def update(self) -> None:
         """Request the index when the spindle turns, and evaluate its position.
@@ -275,20 +277,20 @@ class HalSpindleCAxis:
 
     # --- the port -----------------------------------------------------------------------------------------
 
-    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
+    def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
         """Engage the spindle drive as C, or release it.
 
         Raises DriverError if C cannot be engaged now.
         """
-        if not enabled:
+        if not is_enabled:
             self._let_go()
             return
         if self.step is not HalSpindleCStep.SPINDLE_MODE:
             return
         require_free_drive(self._axes.sample().enabled, _is_turning(self._spindle))
-        self._orient = orient
-        if orient and not self._spindle.spindle_index.is_known:
-            self._spindle.run_at(_SEARCH)
+        self._orient = should_orient
+        if should_orient and not self._spindle.spindle_index.is_known:
+            self._spindle.set_speed(_SEARCH)
             self._enter(HalSpindleCStep.FIND_INDEX)
         else:
             self._change()
@@ -317,13 +319,13 @@ class HalSpindleCAxis:
 
     def _search(self) -> None:
         if self._spindle.spindle_index.is_known:
-            self._spindle.run_at(0.0)
+            self._spindle.set_speed(0.0)
             self._enter(HalSpindleCStep.STOP)
         elif self._late(_INDEX):
             self._fail("no spindle index pulse was detected")
 
     def _brake(self) -> None:
-        if abs(self._spindle.encoder_rpm()) < _STANDSTILL_RPM:
+        if abs(self._spindle.get_encoder_rpm()) < _STANDSTILL_RPM:
             self._change()
         elif self._late(_INDEX):
             self._fail("the spindle does not stop")
@@ -351,7 +353,7 @@ class HalSpindleCAxis:
         place, _ = self._axes.demand_at(now)
         speed, begins = _SLOW * axis_config.vmax, now + self._axes.commit + 0.005
         self._axes.splice_homing(
-            plan_straight_move(begins, place, self._axis, target=count, speed=speed, accel=axis_config.amax)
+            plan_axis_move(begins, place, self._axis, target=count, speed=speed, accel=axis_config.amax)
         )
         self._enter(HalSpindleCStep.TURN_TO_POSITION)
 
@@ -369,7 +371,7 @@ class HalSpindleCAxis:
         if self.step is HalSpindleCStep.SPINDLE_MODE:
             return
         if self.step in {HalSpindleCStep.FIND_INDEX, HalSpindleCStep.STOP} and not self._link.failure:
-            self._spindle.run_at(0.0)
+            self._spindle.set_speed(0.0)
         self._axes.transfer_c(self._axis)
         if not self._link.failure:
             self._link.send_command("c", on=False)

@@ -29,7 +29,7 @@ _PIN = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.\-]*")
 _MAX_COLUMNS = 20  # Maximum columns of a HAL stream, one of which is the row number.
 PRESENT_POSITION_METHODS = frozenset((35, 37))  # Methods of CiA 402 that use the present position as home.
 # Axis pins that a homing method of CiA 402 needs, by its number.
-HOMING_METHOD_PINS: Mapping[int, tuple[str, ...]] = {
+REQUIRED_PINS_BY_HOMING_METHOD: Mapping[int, tuple[str, ...]] = {
     1: ("limit_low", "index_enable"),
     2: ("limit_high", "index_enable"),
     17: ("limit_low",),
@@ -372,8 +372,8 @@ def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
         if not values.has_values(path):
             continue
         method = values.read_integer(path)
-        if method not in HOMING_METHOD_PINS:
-            known = ", ".join(str(each) for each in sorted(HOMING_METHOD_PINS))
+        if method not in REQUIRED_PINS_BY_HOMING_METHOD:
+            known = ", ".join(str(each) for each in sorted(REQUIRED_PINS_BY_HOMING_METHOD))
             yield FileFinding(
                 path,
                 str(method),
@@ -403,7 +403,7 @@ def _check_homing(file: MachineFileReading) -> Iterator[FileFinding]:
                 other=other,
             )
             yield FileFinding(offset, "", expected)
-        for key in HOMING_METHOD_PINS[method]:
+        for key in REQUIRED_PINS_BY_HOMING_METHOD[method]:
             if values.has_values(f"{pins}.{key}") and not values.text(f"{pins}.{key}"):
                 yield FileFinding(
                     f"{pins}.{key}",
@@ -450,7 +450,7 @@ DRIVER = DriverDeclaration(
             ),
         ),
     ),
-    backend="hal",
+    backend_name="hal",
     spindle="hal",
     can_orient_spindle=True,
     normalize_terminal=_read_pin,

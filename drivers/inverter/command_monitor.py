@@ -21,7 +21,7 @@ def add_estop_request(reason: str) -> str:
 class CommandMonitor:
     """A monitor that checks whether an inverter follows its commands.
 
-    ``note_command`` records a command, and ``check_poll`` checks a poll. On a slow line, a poll is as old
+    ``record_command`` records a command, and ``check_poll`` checks a poll. On a slow line, a poll is as old
     as its exchange is long. The permitted second therefore starts after the exchange, and a decreasing
     speed is compared with the first poll after the command. ``setpoint_step_hz`` is the resolution of the
     reported setpoint in Hz.
@@ -34,7 +34,7 @@ class CommandMonitor:
         self._unseen = False  # No poll has been completed since the command.
         self._asked = 0.0
 
-    def note_command(self, now: float, commanded_hz: float, last_state: InverterState | None) -> None:
+    def record_command(self, time_s: float, commanded_hz: float, last_state: InverterState | None) -> None:
         """Record a command in Hz, with its sign.
 
         A new setpoint in the same direction does not restart the time limit.
@@ -48,9 +48,9 @@ class CommandMonitor:
             self._unseen = True
         self._asked = commanded_hz
         if self._since is None:
-            self._since = now
+            self._since = time_s
 
-    def check_poll(self, now: float, state: InverterState, exchange_s: float = 0.0) -> str:
+    def check_poll(self, time_s: float, state: InverterState, exchange_s: float = 0.0) -> str:
         """Return the reason why the inverter has not followed its command for too long.
 
         The permitted time is one second plus ``exchange_s``, the duration of one exchange in seconds. The
@@ -65,8 +65,8 @@ class CommandMonitor:
             self._since = None
             return ""
         if self._since is None:
-            self._since = now
-        return wrong if now - self._since > RESPONSE_TIME_S + exchange_s else ""
+            self._since = time_s
+        return wrong if time_s - self._since > RESPONSE_TIME_S + exchange_s else ""
 
     def _wrong(self, look: InverterState) -> str:
         why = (
@@ -157,20 +157,20 @@ class SpeedComparison:
         self._even_since = 0.0
         self._off_since: float | None = None
 
-    def compare_speeds(self, measured_rpm: float, reported_rpm: float, now: float) -> str:
+    def compare_speeds(self, measured_rpm: float, reported_rpm: float, time_s: float) -> str:
         """Return a fault if the speeds have differed for 1 s, or an empty text.
 
         Both speeds are in rpm, with their signs. They are compared only at a constant inverter output other
         than 0.
         """
         if abs(reported_rpm - self._given) > _EVEN_RPM + _EVEN * abs(reported_rpm):
-            self._given, self._even_since = reported_rpm, now
+            self._given, self._even_since = reported_rpm, time_s
         off = abs(measured_rpm - reported_rpm) > _SLACK_RPM + self._fraction * abs(reported_rpm)
-        if reported_rpm == 0.0 or not off or now - self._even_since < _SETTLING_TIME_S:
+        if reported_rpm == 0.0 or not off or time_s - self._even_since < _SETTLING_TIME_S:
             self._off_since = None
             return ""
-        self._off_since = now if self._off_since is None else self._off_since
-        if now - self._off_since < _DEVIATION_TIME_S:
+        self._off_since = time_s if self._off_since is None else self._off_since
+        if time_s - self._off_since < _DEVIATION_TIME_S:
             return ""
         return Fault(
             "the encoder measures {measured} rpm, but the inverter output corresponds to {given} "

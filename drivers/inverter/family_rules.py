@@ -127,6 +127,6 @@ def _unread(
 def _code(table: RegisterTable) -> Iterator[FileFinding]:
     if not _CODE_FORMAT_PATTERN.fullmatch(table.fault_code.shown):
         yield _finding("report.fault_code.shown", "expected text with one {code}, {code:02d} or {code:04X}")
-    if "fault" not in table.states and not table.code_is_polled:
+    if "fault" not in table.states and not table.is_fault_code_polled:
         text = "a fault code that is not in any read needs report.fault; add the fault state or the read"
         yield _finding("report.fault_code", text)

@@ -295,7 +295,7 @@ class RegisterTable:
     faults: Mapping[int, str]
 
     @property
-    def code_is_polled(self) -> bool:
+    def is_fault_code_polled(self) -> bool:
         """Return whether a poll contains the fault code.
 
         Otherwise, the code is read only after a trip.

@@ -77,7 +77,7 @@ class HuanyangInverter:
         self._word = _RUN_BACK if hz < 0.0 else _RUN
         self._control()
 
-    def poll_steps(self) -> Iterator[InverterState | None]:
+    def iter_poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter request by request.
 
         The iterator yields None between requests and the state at the end. The bits of the state are: 0 run

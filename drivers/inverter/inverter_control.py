@@ -253,16 +253,16 @@ class InverterControl:
         if want == self._told and not turns and not missing:
             return
         if want == 0.0 or missing:
-            self._obedience.note_command(self._clock.now(), 0.0, look)
+            self._obedience.record_command(self._clock.now(), 0.0, look)
             self._stop_now()
         if want != 0.0:
-            self._obedience.note_command(self._clock.now(), want, look)
+            self._obedience.record_command(self._clock.now(), want, look)
             self._told = None  # From the first frame on, a stop must be sent and has priority.
             self._familiar.command_hz(want)
         self._told, self._answered = want, self._clock.now()
 
     def _look(self) -> None:
-        for look in self._familiar.poll_steps():
+        for look in self._familiar.iter_poll_steps():
             self._answered = self._clock.now()
             if look is not None:
                 self._judge(look)

@@ -68,7 +68,7 @@ class InverterFamily(Protocol):
         """
         ...
 
-    def poll_steps(self) -> Iterator[InverterState | None]:
+    def iter_poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter, yielding None between requests and the state at the end.
 
         Raises RequestWithheldError if a stop is pending.

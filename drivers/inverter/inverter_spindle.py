@@ -66,7 +66,7 @@ class InverterSpindle:
         self._revive = restart_thread
         self._unmeasured = ""  # Reason for an invalid measurement, latched until ``clear_fault``.
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
         If the speed is not 0, raises DriverError in E-stop, with a fault, or before a stopped inverter has
@@ -87,7 +87,7 @@ class InverterSpindle:
         limit = self._config.rpm_max
         self._attendant.commanded_hz = min(max(rpm, -limit), limit) * self._config.hz_per_rpm
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Stop the spindle by the inverter's ramp.
 
         Coasting is possible only through the STO input of the inverter.
@@ -264,6 +264,6 @@ def _create_family(
 ) -> InverterFamily:
     """Create the inverter of the given family on an open line."""
     if table.registers is None:
-        return HuanyangInverter(table, wire, clock, config.unit, config.line_settings.character_s)
-    line = ModbusMaster(wire, clock, config.unit, config.line_settings.character_s)
+        return HuanyangInverter(table, wire, clock, config.unit, config.line_settings.character_time_s)
+    line = ModbusMaster(wire, clock, config.unit, config.line_settings.character_time_s)
     return RegisterInverter(table, table.registers, line, clock)

@@ -79,7 +79,7 @@ class InverterTable:
         """Return the settings of the serial line, which has eight data bits."""
         from drivers.serial_line import LineSettings  # noqa: PLC0415  few machines have one
 
-        return LineSettings(self.port, self.baud, parity=self.parity, stop=self.stop)
+        return LineSettings(self.port, self.baud, parity=self.parity, stop_bits=self.stop)
 
 
 def _check_family(file: MachineFileReading) -> Iterator[FileFinding]:

@@ -17,7 +17,7 @@ EXCEPTION_BIT = 0x80
 _MIN_FRAME_BYTES = 5
 
 
-def crc16(data: bytes) -> int:
+def calculate_crc16(data: bytes) -> int:
     """Return the CRC-16 of Modbus.
 
     The reflected polynomial is x¹⁶+x¹⁵+x²+1 (A001), and the initial value is FFFF.
@@ -32,12 +32,14 @@ def crc16(data: bytes) -> int:
 
 def append_crc(body: bytes) -> bytes:
     """Return a frame that consists of ``body`` and its CRC."""
-    return body + struct.pack("<H", crc16(body))
+    return body + struct.pack("<H", calculate_crc16(body))
 
 
 def has_valid_crc(frame: bytes) -> bool:
     """Return whether the CRC at the end of a frame is correct."""
-    return len(frame) >= _MIN_FRAME_BYTES - 1 and crc16(frame[:-2]) == int.from_bytes(frame[-2:], "little")
+    return len(frame) >= _MIN_FRAME_BYTES - 1 and calculate_crc16(frame[:-2]) == int.from_bytes(
+        frame[-2:], "little"
+    )
 
 
 def encode_read(function: int, address: int, count: int) -> bytes:
@@ -159,25 +161,30 @@ class ModbusMaster:
         return [bool(int.from_bytes(packed, "little") >> number & 1) for number in range(count)]
 
     def write_coil(
-        self, address: int, on: bool, max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
+        self, address: int, on: bool, max_tries: int = MAX_TRIES, *, is_canceled_by_stop: bool = False
     ) -> None:
         """Write one coil (05)."""
-        self._send_write(encode_write_coil(address, on), max_tries, yields_to_stop)
+        self._send_write(encode_write_coil(address, on), max_tries, is_canceled_by_stop)
 
     def write_register(
-        self, address: int, value: int, max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
+        self, address: int, value: int, max_tries: int = MAX_TRIES, *, is_canceled_by_stop: bool = False
     ) -> None:
         """Write one register (06).
 
         With ``max_tries`` = 1, the command is not repeated.
         """
-        self._send_write(encode_write_register(address, value), max_tries, yields_to_stop)
+        self._send_write(encode_write_register(address, value), max_tries, is_canceled_by_stop)
 
     def write_registers(
-        self, address: int, values: Sequence[int], max_tries: int = MAX_TRIES, *, yields_to_stop: bool = False
+        self,
+        address: int,
+        values: Sequence[int],
+        max_tries: int = MAX_TRIES,
+        *,
+        is_canceled_by_stop: bool = False,
     ) -> None:
         """Write several registers (10 hex)."""
-        self._send_write(encode_write_registers(address, values), max_tries, yields_to_stop)
+        self._send_write(encode_write_registers(address, values), max_tries, is_canceled_by_stop)
 
     def _send_read(self, pdu: bytes, size: int) -> bytes:
         """Send a read request, and return its response.

@@ -65,7 +65,7 @@ class RegisterInverter:
         frequency = self._registers.frequency
         words = frequency.encode_hz(hz)
         if len(words) > 1:
-            self._line.write_registers(frequency.register, words, yields_to_stop=True)
+            self._line.write_registers(frequency.register, words, is_canceled_by_stop=True)
         else:
             self._write(frequency.register, words[0], gives_way=True)
         writes = self._registers.commands["reverse" if hz < 0.0 else "forward"]
@@ -76,7 +76,7 @@ class RegisterInverter:
             self._send(each, gives_way=True)
         self._said = writes
 
-    def poll_steps(self) -> Iterator[InverterState | None]:
+    def iter_poll_steps(self) -> Iterator[InverterState | None]:
         """Poll the inverter read request by read request.
 
         The iterator yields None between requests and the state at the end.
@@ -111,13 +111,13 @@ class RegisterInverter:
         if each.coil == ABSENT_REGISTER:
             self._write(each.register, each.value, tries, gives_way=gives_way)
         else:
-            self._line.write_coil(each.coil, each.on, tries, yields_to_stop=gives_way)
+            self._line.write_coil(each.coil, each.on, tries, is_canceled_by_stop=gives_way)
 
     def _write(self, register: int, value: int, tries: int = MAX_TRIES, *, gives_way: bool = False) -> None:
         if self._table.line.write_multiple:
-            self._line.write_registers(register, (value,), tries, yields_to_stop=gives_way)
+            self._line.write_registers(register, (value,), tries, is_canceled_by_stop=gives_way)
         else:
-            self._line.write_register(register, value, tries, yields_to_stop=gives_way)
+            self._line.write_register(register, value, tries, is_canceled_by_stop=gives_way)
 
     def _look(self, words: Mapping[int, int], coils: Mapping[int, bool]) -> InverterState:
         table = self._registers
@@ -139,7 +139,7 @@ class RegisterInverter:
         """
         table = self._registers
         register = table.fault_code.register
-        code = words[register] if table.code_is_polled else self._line.read_registers(register)[0]
+        code = words[register] if table.is_fault_code_polled else self._line.read_registers(register)[0]
         code &= table.fault_code.mask
         if code == 0 and "fault" not in table.states:
             return ""

@@ -13,7 +13,7 @@ from core.ports import (
     FloatArray,
     GearState,
     MachinePorts,
-    Segments,
+    MotionSegments,
     StationState,
     StopMode,
     TouchLatch,
@@ -52,20 +52,20 @@ class SimAxes(_PlantPort):
     def horizon(self) -> float:
         """Return the end time of the setpoint queue in seconds, or the present time if the queue is empty."""
         with self._plant.lock:
-            return self._plant.queue.queue_end(self._plant.clock.now())
+            return self._plant.setpoint_queue.get_end_time(self._plant.clock.now())
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
         Raises DriverError if the setpoints are invalid or the drives cannot follow them.
         """
-        self._plant.splice(segments)
+        self._plant.splice_segments(segments)
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued positions and velocities at ``time_s``."""
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.queue.commanded_state_at(time_s)
+            return self._plant.setpoint_queue.get_commanded_state(time_s)
 
     def sample(self) -> AxisSample:
         """Return the state of the axes at the last time step of the model."""
@@ -73,7 +73,7 @@ class SimAxes(_PlantPort):
         with plant.lock:
             plant.advance()
             actual = tuple([servo.reading for servo in plant.servos])
-            demand, velocity = plant.queue.commanded_state_at(plant.model_time_s)
+            demand, velocity = plant.setpoint_queue.get_commanded_state(plant.model_time_s)
             if not plant.enabled:
                 demand = actual
             return AxisSample(
@@ -87,12 +87,12 @@ class SimAxes(_PlantPort):
                 fault=plant.fault,
             )
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the drives on or off.
 
         Raises DriverError when switching on in E-stop or with a fault. Switching off is always possible.
         """
-        self._plant.set_power(on)
+        self._plant.set_power(is_on)
 
     def stop(self, mode: StopMode) -> None:
         """Stop the axes by the ramps of the drives."""
@@ -123,7 +123,7 @@ class SimGear(_PlantPort):
         """Return the position of the axes on the cam, or None if they do not follow the spindle."""
         with self._plant.lock:
             self._plant.advance()
-            return self._plant.queue.read_gear_state()
+            return self._plant.setpoint_queue.read_gear_state()
 
 
 class SimSamples(_PlantPort):
@@ -148,7 +148,7 @@ class SimSamples(_PlantPort):
 class SimSpindlePort(_PlantPort):
     """The ``core.ports.Spindle`` of the simulated machine."""
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Run the spindle at the signed speed ``rpm``; 0 stops it.
 
         If the speed is not 0, raises DriverError in E-stop or with an inverter fault.
@@ -160,10 +160,10 @@ class SimSpindlePort(_PlantPort):
                 _require_spindle(plant)
             plant.spindle.command_speed(now, rpm)
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Remove the torque, so that the spindle coasts to a stop."""
         with self._plant.lock:
-            self._plant.spindle.command_speed(self._plant.advance(), 0.0, coast=True)
+            self._plant.spindle.command_speed(self._plant.advance(), 0.0, should_coast=True)
 
     def speed(self) -> float:
         """Return the measured speed in rpm, with its sign."""
@@ -228,15 +228,15 @@ class SimIO(_PlantPort):
         with self._plant.lock:
             return self._plant.terminals.read_inputs(self._plant.advance())
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return all outputs by name, as last written."""
         with self._plant.lock:
-            return dict(self._plant.terminals.outputs)
+            return dict(self._plant.terminals.output_states)
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch one output. Raises DriverError for an unknown name."""
         with self._plant.lock:
-            self._plant.terminals.write(name, on, self._plant.advance())
+            self._plant.terminals.write(name, is_on, self._plant.advance())
 
     def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
@@ -299,6 +299,6 @@ def build_simulation(config: SimConfig, clock: Clock) -> Simulation:
         touch=SimTouch(plant) if config.setter is not None else None,
     )
     machine = PlantControls(plant)
-    if config.faults:
-        plant.apply_due_faults = FaultSchedule(machine, config.faults).apply_due
+    if config.planned_faults:
+        plant.apply_due_faults = FaultSchedule(machine, config.planned_faults).apply_due_actions
     return Simulation(ports, machine)

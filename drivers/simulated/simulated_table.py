@@ -176,8 +176,8 @@ DRIVER = DriverDeclaration(
             ),
         ),
     ),
-    backend="sim",
+    backend_name="sim",
     spindle="sim",
     can_orient_spindle=True,
-    count_rate=1e6,
+    max_count_rate=1e6,
 )

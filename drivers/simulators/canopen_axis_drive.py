@@ -45,12 +45,12 @@ class PowerStateMachine:
     ``is_sto_active`` is the state of the hardware input STO (safe torque off).
     """
 
-    def __init__(self, powered_up: Callable[[], None]) -> None:
+    def __init__(self, handle_power_up: Callable[[], None]) -> None:
         self.state = DriveState.SWITCH_ON_DISABLED
         self.last_control_word = 0  # control word
         self.is_sto_active = False
         self.refuses_power = False  # A drive that does not switch on, for tests.
-        self._powered_up = powered_up
+        self._powered_up = handle_power_up
 
     @property
     def is_powered(self) -> bool:
@@ -76,7 +76,7 @@ class PowerStateMachine:
         elif not word & 0x02:
             self.switch_off()
         elif not word & 0x04:
-            self.quick_stop()
+            self.start_quick_stop()
         elif self.state in {
             DriveState.SWITCH_ON_DISABLED,
             DriveState.READY_TO_SWITCH_ON,
@@ -85,7 +85,7 @@ class PowerStateMachine:
         }:
             self._step(word)
 
-    def quick_stop(self) -> None:
+    def start_quick_stop(self) -> None:
         """Brake if the motor has power; otherwise switch the drive off."""
         if self.state is DriveState.OPERATION_ENABLED:
             self.state = DriveState.QUICK_STOP_ACTIVE
@@ -97,7 +97,7 @@ class PowerStateMachine:
         if self.state not in {DriveState.FAULT, DriveState.FAULT_REACTION_ACTIVE}:
             self.state = DriveState.SWITCH_ON_DISABLED
 
-    def trip(self) -> None:
+    def enter_fault(self) -> None:
         """Enter the fault state; if the motor has power, brake first."""
         self.state = DriveState.FAULT_REACTION_ACTIVE if self.is_powered else DriveState.FAULT
 
@@ -122,14 +122,14 @@ class PowerStateMachine:
             self._powered_up()
 
 
-QUEUE_RECORDS = 64  # records
+MAX_QUEUED_RECORD_COUNT = 64  # records
 EMCY_UNDERFLOW, EMCY_OVERFLOW, EMCY_FOLLOWING = 0xFF0C, 0xFF0D, 0x8611
 _SUPPORTED_MODES = 0x01 | 0x20 | 0x40 | 0x80  # PP, HM, IP, CSP in 0x6502
 _HOME_SETTLE = 0.1  # s
 
 
 class AxisDrive:
-    """Simulated axis drive; ``step`` must be called for each millisecond of the plant."""
+    """Simulated axis drive; ``advance`` must be called for each millisecond of the plant."""
 
     def __init__(
         self,
@@ -147,11 +147,13 @@ class AxisDrive:
         self._left = 0.0  # Seconds to the target in a mode with one target per SYNC.
         self._next = 0  # count of the next segment
         self.power_states = PowerStateMachine(self._hold_position)
-        self.mode = 0
-        self.target = 0
+        self.operation_mode = 0
+        self.target_counts = 0
         self.setpoint_position, self.setpoint_velocity = servo.p, 0.0  # demand, mm
-        self.queue: deque[tuple[int, int, int]] = deque()
-        self.min_queue_records = QUEUE_RECORDS  # Fewest records that remained in the queue, for tests.
+        self.record_queue: deque[tuple[int, int, int]] = deque()
+        self.min_queued_record_count = (
+            MAX_QUEUED_RECORD_COUNT  # Fewest records that remained in the queue, for tests.
+        )
         self.is_playing = False
         self.is_homed = False
         self._now: tuple[int, int, int] = (0, 0, 0)
@@ -165,8 +167,8 @@ class AxisDrive:
         self._readers: dict[int, Callable[[], int]] = {
             od.DEVICE_TYPE: lambda: 0x00020192,
             od.SUPPORTED: lambda: _SUPPORTED_MODES,
-            od.STATUS: self.status_word,
-            od.MODE_SHOWN: lambda: self.mode,
+            od.STATUS: self.get_status_word,
+            od.MODE_SHOWN: lambda: self.operation_mode,
             od.POSITION: lambda: round(servo.reading / servo.axis.count),
             od.ACTUAL_TORQUE: lambda: round(10.0 * servo.load),
             od.FOLLOWING: self._following_error,
@@ -200,13 +202,13 @@ class AxisDrive:
         if index == od.CONTROL:
             self._control(value)
         elif index == od.MODE and not self.is_playing and not self._homing:
-            self.mode = value
+            self.operation_mode = value
         elif index in {od.TARGET, od.IP_RECORD}:
-            self.target, self._left = value, self._setpoint_period()
-        elif self.profile.queue is not None and index == self.profile.queue.object_index:
+            self.target_counts, self._left = value, self._setpoint_period()
+        elif self.profile.record_queue is not None and index == self.profile.record_queue.object_index:
             self._push(value)
         elif index == od.BUFFER and subindex == 6 and value == 0:
-            self.queue.clear()
+            self.record_queue.clear()
 
     def handle_host_loss(self) -> None:
         """React to the loss of the host as the abort connection option defines.
@@ -214,27 +216,27 @@ class AxisDrive:
         The options 1 and 2 cause a fault, and option 3 causes a quick stop.
         """
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
-            self.power_states.quick_stop()
+            self.power_states.start_quick_stop()
         elif self.values.get((od.ABORT_OPTION, 0), 0) in {1, 2}:
-            self.power_states.trip()
+            self.power_states.enter_fault()
 
     def reset(self) -> None:
         """Clear the volatile values, and the reference of an incremental encoder, as a restart does."""
         self.power_states.switch_off()
-        self.mode, self.is_playing, self._homing, self._going = 0, False, False, False
+        self.operation_mode, self.is_playing, self._homing, self._going = 0, False, False, False
         self.is_interpolating = False
-        self.queue.clear()
+        self.record_queue.clear()
         self.values.clear()
         self.servo_axis.handle_power_loss()
 
-    def status_word(self) -> int:
+    def get_status_word(self) -> int:
         """Return the status word (object 6041h)."""
         word = self.power_states.status_word
         if (
             self.is_playing
             or self.is_interpolating
-            or (self._pending and self.mode == PP)
-            or (self.is_homed and self.mode == HM)
+            or (self._pending and self.operation_mode == PP)
+            or (self.is_homed and self.operation_mode == HM)
         ):
             word |= BIT_12
         if not self.is_playing and not self._homing and not self._going and self.setpoint_velocity == 0.0:
@@ -254,9 +256,9 @@ class AxisDrive:
         busy = self.power_states.is_braking or self.is_playing or self._homing or self._going
         if busy or servo.p != self.setpoint_position or not servo.sound:
             return False
-        return not self._steps_to_target or self.setpoint_position == self.target * servo.axis.count
+        return not self._steps_to_target or self.setpoint_position == self.target_counts * servo.axis.count
 
-    def step(self, seconds: float) -> None:
+    def advance(self, seconds: float) -> None:
         """Advance the drive and its axis by ``seconds``."""
         if not self.power_states.is_powered:
             self.is_playing = self._homing = self._going = self.is_interpolating = False
@@ -270,7 +272,7 @@ class AxisDrive:
         elif self._homing:
             self._search_home(seconds)
         elif self._going:
-            self._move_toward(self.target * self.servo_axis.axis.count, seconds)
+            self._move_toward(self.target_counts * self.servo_axis.axis.count, seconds)
         elif self._steps_to_target:
             self._step_to_target(seconds)
         if self.servo_axis.follow_setpoint(self.setpoint_position, self.setpoint_velocity, seconds):
@@ -284,16 +286,16 @@ class AxisDrive:
         rising = word & NEW and not before & NEW
         if self.power_states.state is not DriveState.OPERATION_ENABLED:
             return
-        self.is_interpolating = self.mode == IP and self._is_cyclic() and bool(word & NEW)
-        if self.mode == IP:
-            if rising and not self.is_playing and self.queue:
-                self._now, self._in, self.is_playing = self.queue.popleft(), 0.0, True
-        elif self.mode == HM:
+        self.is_interpolating = self.operation_mode == IP and self._is_cyclic() and bool(word & NEW)
+        if self.operation_mode == IP:
+            if rising and not self.is_playing and self.record_queue:
+                self._now, self._in, self.is_playing = self.record_queue.popleft(), 0.0, True
+        elif self.operation_mode == HM:
             if rising:
                 self._homing, self.is_homed, self._settled = True, False, 0.0
             elif not word & NEW:
                 self._homing, self.setpoint_velocity = False, 0.0
-        elif self.mode == PP:
+        elif self.operation_mode == PP:
             if rising:
                 self._going = True
             self._pending = bool(word & NEW)
@@ -308,17 +310,17 @@ class AxisDrive:
 
     @property
     def _steps_to_target(self) -> bool:
-        return self.mode == CSP or self.is_interpolating
+        return self.operation_mode == CSP or self.is_interpolating
 
     def _step_to_target(self, dt: float) -> None:
         """Move linearly to the target within one setpoint period, and then stay at the target."""
-        goal, before = self.target * self.servo_axis.axis.count, self.setpoint_position
+        goal, before = self.target_counts * self.servo_axis.axis.count, self.setpoint_position
         self.setpoint_position += (goal - self.setpoint_position) * min(dt / max(self._left, dt), 1.0)
         self._left = max(self._left - dt, 0.0)
         self.setpoint_velocity = (self.setpoint_position - before) / dt
 
     def _push(self, value: int) -> None:
-        data, queue = value.to_bytes(8, "little"), self.profile.queue
+        data, queue = value.to_bytes(8, "little"), self.profile.record_queue
         if queue is None or queue.record_format is RecordFormat.EPOS2:
             self._queue(unpack_epos2_record(data))
         elif data[0] & 0x80:
@@ -333,15 +335,15 @@ class AxisDrive:
     def _execute_command(self, code: int) -> None:
         """Apply a command code to the queue of a Copley drive."""
         if code == 0x80:
-            self.queue.clear()
+            self.record_queue.clear()
         elif code == 0x83:
             self._next = 0
 
     def _queue(self, record: tuple[int, int, int]) -> None:
-        if len(self.queue) >= QUEUE_RECORDS:
+        if len(self.record_queue) >= MAX_QUEUED_RECORD_COUNT:
             self._fail(EMCY_OVERFLOW)
         else:
-            self.queue.append(record)
+            self.record_queue.append(record)
 
     def _play(self, dt: float) -> None:
         count = self.servo_axis.axis.count
@@ -354,18 +356,21 @@ class AxisDrive:
                     0.0,
                 )
                 return
-            if not self.queue:
+            if not self.record_queue:
                 self._fail(EMCY_UNDERFLOW)
                 return
             self._in -= 0.001 * self._now[0]
-            self._now = self.queue.popleft()
-        self.min_queue_records = min(self.min_queue_records, len(self.queue))
-        if not self.queue:
+            self._now = self.record_queue.popleft()
+        self.min_queued_record_count = min(self.min_queued_record_count, len(self.record_queue))
+        if not self.record_queue:
             self._fail(EMCY_UNDERFLOW)
             return
         ms, v0, p0 = self._now
-        _, v1, p1 = self.queue[0]
-        copley = self.profile.queue is not None and self.profile.queue.record_format is RecordFormat.COPLEY
+        _, v1, p1 = self.record_queue[0]
+        copley = (
+            self.profile.record_queue is not None
+            and self.profile.record_queue.record_format is RecordFormat.COPLEY
+        )
         unit = 1.0 if copley else self.velocity_scale
         before = self.setpoint_position
         self.setpoint_position = count * interpolate_hermite(
@@ -420,10 +425,10 @@ class AxisDrive:
     def _hold_position(self) -> None:
         """Set the setpoint to the present position and clear the queue after power-up."""
         self.setpoint_position, self.setpoint_velocity = self.servo_axis.reading, 0.0
-        self.queue.clear()
+        self.record_queue.clear()
 
     def _fail(self, code: int) -> None:
-        self.power_states.trip()
+        self.power_states.enter_fault()
         self.is_playing = False
-        self.queue.clear()
+        self.record_queue.clear()
         self.send_emergency(code)

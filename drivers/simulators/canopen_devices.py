@@ -47,7 +47,7 @@ class SimulatedIoModule:
             pot.terminal.subindex: (of, pot) for of, pot in config.pots.items() if pot.terminal.node == name
         }
         for output, model in config.outputs.items():
-            if plant.terminals.outputs.get(output):
+            if plant.terminals.output_states.get(output):
                 self.output_bytes[model.terminal.subindex - 1] |= 1 << model.terminal.bit
 
     def read(self, index: int, subindex: int) -> int | None:
@@ -95,7 +95,7 @@ class SimulatedIoModule:
             where = output.terminal
             on = bool(value >> where.bit & 1)
             board = self._plant.terminals
-            if where.node == self._name and where.subindex == sub and board.outputs.get(name) is not on:
+            if where.node == self._name and where.subindex == sub and board.output_states.get(name) is not on:
                 board.write(name, on, now)
 
     def _inputs(self, sub: int) -> int:
@@ -128,7 +128,7 @@ class SimulatedIoModule:
 # --- A CiA 406 encoder on the simulated spindle, or at the second encoder input of a drive.
 
 
-ENCODER_TURNS = 4096  # Number of revolutions after which the position wraps.
+ENCODER_REVOLUTION_COUNT = 4096  # Number of revolutions after which the position wraps.
 
 
 class SimulatedEncoder:
@@ -137,11 +137,11 @@ class SimulatedEncoder:
     ``stuck`` is the position of the encoder while its coupling is detached, otherwise None.
     """
 
-    def __init__(self, plant: SimulatedPlant, counts: int) -> None:
+    def __init__(self, plant: SimulatedPlant, counts_per_rev: int) -> None:
         self._plant = plant
-        self.counts = counts  # Per revolution, signed.
-        self.turns = ENCODER_TURNS
-        self.steps = abs(counts)  # The resolution that the encoder reports.
+        self.counts = counts_per_rev  # Per revolution, signed.
+        self.turns = ENCODER_REVOLUTION_COUNT
+        self.steps = abs(counts_per_rev)  # The resolution that the encoder reports.
         self.stuck: int | None = None
         self.values: dict[tuple[int, int], int] = {}
         self._readers: dict[int, Callable[[], int]] = {
@@ -216,9 +216,9 @@ class CanopenPlant(SimulatedPlant):
         if self.spindle_drive is not None:
             self.spindle_drive.advance(self._at)
         for drive in self.axis_drives.values():
-            drive.step(step)
+            drive.advance(step)
         if self.spindle.faults.belt_slip_fraction:
-            self.spindle.set_cutting(self._at, cutting=self.is_cutting())
+            self.spindle.set_cutting(self._at, is_cutting=self.is_cutting())
 
     def _are_drives_idle(self) -> bool:
         """Return whether all drives stay unchanged until a frame arrives or the operator acts."""
@@ -231,7 +231,7 @@ class CanopenPlant(SimulatedPlant):
     def trip_drives(self, fault: str) -> None:
         """Trip the drive whose name is before the colon in ``fault``, and send its EMCY frame."""
         name = fault.partition(":")[0]
-        self.axis_drives[name].power_states.trip()
+        self.axis_drives[name].power_states.enter_fault()
         self.axis_drives[name].send_emergency(0x4210)
 
     def press_estop(self) -> None:
@@ -241,11 +241,11 @@ class CanopenPlant(SimulatedPlant):
             self.station_panel.estop = True
             for drive in self.axis_drives.values():
                 drive.power_states.is_sto_active = True
-                drive.power_states.quick_stop()
+                drive.power_states.start_quick_stop()
             if self.spindle_drive is not None:
                 self.spindle_drive.power_states.is_sto_active = True
                 self.spindle_drive.power_states.switch_off()
-            self.spindle.cut_power(now)
+            self.spindle.remove_power(now)
 
 
 class CanopenDevices:
@@ -256,8 +256,8 @@ class CanopenDevices:
         self.clock = clock
         self.plant = CanopenPlant(sim, clock)
         self.machine = PlantControls(self.plant)
-        if sim.faults:
-            self.plant.apply_due_faults = FaultSchedule(self.machine, sim.faults).apply_due
+        if sim.planned_faults:
+            self.plant.apply_due_faults = FaultSchedule(self.machine, sim.planned_faults).apply_due_actions
         self.network = DeviceNetwork(open_interface(config.bus))
         self.nodes: dict[str, DeviceNode] = {}
         self.encoder: SimulatedEncoder | None = None
@@ -288,18 +288,18 @@ class CanopenDevices:
             if not self.is_cable_disconnected and not message.is_error_frame:
                 self._deliver(message.arbitration_id, bytes(message.data))
         for node in self.nodes.values():
-            node.update(now)
+            node.run_cycle(now)
 
     def _deliver(self, can_id: int, data: bytes) -> None:
         for node in self.nodes.values():
             if can_id in node.accepted_ids:
                 node.handle_frame(can_id, data)
 
-    def cable(self, *, disconnected: bool) -> None:
+    def cable(self, *, is_disconnected: bool) -> None:
         """Disconnect or reconnect the bus cable in both directions."""
-        self.is_cable_disconnected = disconnected
+        self.is_cable_disconnected = is_disconnected
         for node in self.nodes.values():
-            node.is_silent = disconnected
+            node.is_silent = is_disconnected
 
     def close(self) -> None:
         """Close the connection to the bus."""

@@ -171,7 +171,7 @@ class DeviceNode:
         elif self.state == _OPERATIONAL:
             self._process_data(can_id, data, communication)
 
-    def update(self, now: float) -> None:
+    def run_cycle(self, now: float) -> None:
         """Send the heartbeat when it is due, and check the heartbeat and the setpoints of the host."""
         self.time_s = now
         communication = self._get_communication()
@@ -209,10 +209,10 @@ class DeviceNode:
             self.send_emergency(0x8250)
             self.device.handle_host_loss()
 
-    def send_emergency(self, code: int, register: int = 1) -> None:
+    def send_emergency(self, code: int, error_register: int = 1) -> None:
         """Send an EMCY frame, unless the node is silent."""
         if not self.is_silent:
-            self.network.send_message(0x80 + self.node_id, struct.pack("<HB5x", code, register))
+            self.network.send_message(0x80 + self.node_id, struct.pack("<HB5x", code, error_register))
 
     def _command(self, code: int) -> None:
         if code in _STATES:

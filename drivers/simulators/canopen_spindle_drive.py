@@ -40,18 +40,18 @@ class SpindleServo(SimulatedServo):
         """Set the axis position to the angle of the motor after the spindle has turned."""
         self.p, self.v = self.place, 0.0
 
-    def set_switch_position(self, method: int) -> None:
+    def set_switch_position(self, homing_method: int) -> None:
         """Set the home position: the next index for an index method, otherwise the present position."""
         ahead = (math.floor(self._motor.revolutions + 1e-9) + 1) * _DEGREES_PER_REV - self._zero
-        self.switch = ahead if method in _INDEX else self.p
+        self.switch = ahead if homing_method in _INDEX else self.p
 
-    def follow_setpoint(self, p: float, v: float, _dt: float) -> bool:
+    def follow_setpoint(self, position: float, velocity: float, _dt: float) -> bool:
         """Move the spindle exactly to position ``p`` with velocity ``v``, and return False.
 
         The simulated spindle never trips because of a following error.
         """
-        self.p, self.v = p, v
-        self._motor.revolutions = (p + self._zero) / _DEGREES_PER_REV
+        self.p, self.v = position, velocity
+        self._motor.revolutions = (position + self._zero) / _DEGREES_PER_REV
         return False
 
     def roll(self, _dt: float) -> None:
@@ -69,7 +69,7 @@ class SimulatedSpindleDrive:
     def __init__(
         self,
         motor: SpindleMotor,
-        counts: int,
+        counts_per_rev: int,
         send_emergency: Callable[[int], None],
         axis: SimAxis | None = None,
         profile: DriveProfile = CIA402_PROFILE,
@@ -78,13 +78,13 @@ class SimulatedSpindleDrive:
         self.send_emergency = send_emergency
         self.can_position = axis is not None
         made = axis or SimAxis("C", 1.0, 1.0, 1.0, 1.0, 1.0)
-        made = replace(made, count=_DEGREES_PER_REV / max(counts, 1))
+        made = replace(made, count=_DEGREES_PER_REV / max(counts_per_rev, 1))
         self.spindle_servo = SpindleServo(made, motor)
-        self.axis_drive = AxisDrive(self.spindle_servo, send_emergency, profile, counts)
+        self.axis_drive = AxisDrive(self.spindle_servo, send_emergency, profile, counts_per_rev)
         self.power_states = self.axis_drive.power_states
-        self.mode = 0
-        self.target = 0
-        self._counts = counts
+        self.operation_mode = 0
+        self.target_rpm = 0
+        self._counts = counts_per_rev
         self._ordered: int | None = None
         self.last_step_s = 0.0  # time of the last step, s
         self.values: dict[tuple[int, int], int] = {}
@@ -92,11 +92,11 @@ class SimulatedSpindleDrive:
             od.DEVICE_TYPE: lambda: 0x00020192,
             od.SUPPORTED: lambda: 0x64 if self.can_position else 0x04,
             od.STATUS: lambda: (
-                self.axis_drive.status_word()
+                self.axis_drive.get_status_word()
                 if self.is_axis_mode
                 else self.power_states.status_word | self._reached()
             ),
-            od.MODE_SHOWN: lambda: self.mode,
+            od.MODE_SHOWN: lambda: self.operation_mode,
             od.VELOCITY: lambda: round(self.spindle_servo.v / 6.0 if self.is_axis_mode else self.motor.speed),
             od.ACTUAL_TORQUE: lambda: 0 if self.is_axis_mode else round(10.0 * self.motor.load_percent),
             od.POSITION: self._position,
@@ -105,7 +105,7 @@ class SimulatedSpindleDrive:
     @property
     def is_axis_mode(self) -> bool:
         """Return whether the drive is in interpolated position mode or homing mode."""
-        return self.mode in {IP, HM}
+        return self.operation_mode in {IP, HM}
 
     def read(self, index: int, _sub: int) -> int | None:
         """Return the value of an object that the drive calculates.
@@ -120,7 +120,7 @@ class SimulatedSpindleDrive:
         return (round(counted) + 2**31) % 2**32 - 2**31
 
     def _reached(self) -> int:
-        return REACHED if abs(self.motor.speed - self.target) < 10 else 0
+        return REACHED if abs(self.motor.speed - self.target_rpm) < 10 else 0
 
     def write(self, index: int, subindex: int, value: int) -> None:
         """Apply a value that the host has written to an object."""
@@ -128,11 +128,11 @@ class SimulatedSpindleDrive:
         if index == od.MODE:
             self._change_mode(value)
         elif index == od.TARGET_SPEED:
-            self.target = value
+            self.target_rpm = value
         elif index != od.CONTROL:
             self.axis_drive.write(index, subindex, value)
         elif self.is_axis_mode:
-            if self.mode == HM and value & NEW and not self.power_states.last_control_word & NEW:
+            if self.operation_mode == HM and value & NEW and not self.power_states.last_control_word & NEW:
                 self.spindle_servo.offset = (
                     self.values.get((od.HOME_OFFSET, 0), 0) * _DEGREES_PER_REV / self._counts
                 )
@@ -146,9 +146,9 @@ class SimulatedSpindleDrive:
 
         The spindle must be at standstill, and the drive must not be executing positions.
         """
-        if mode == self.mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
+        if mode == self.operation_mode or abs(self.motor.speed) > 1.0 or self.axis_drive.is_playing:
             return
-        self.mode = mode
+        self.operation_mode = mode
         self.axis_drive.write(od.MODE, 0, mode)
         if self.is_axis_mode:
             self.spindle_servo.adopt_motor_angle()
@@ -157,12 +157,12 @@ class SimulatedSpindleDrive:
     def handle_host_loss(self) -> None:
         """Make a quick stop after the loss of the host, if the abort connection option is 3."""
         if self.values.get((od.ABORT_OPTION, 0), 0) == 3:
-            self.power_states.quick_stop()
+            self.power_states.start_quick_stop()
 
     def reset(self) -> None:
         """Switch the power off, and clear the mode, the target and all stored values."""
         self.axis_drive.reset()
-        self.mode = self.target = 0
+        self.operation_mode = self.target_rpm = 0
         self.values.clear()
 
     @property
@@ -181,18 +181,20 @@ class SimulatedSpindleDrive:
         """
         dt, self.last_step_s = now - self.last_step_s, now
         if self.motor.faults.fault_text and self.power_states.state is not DriveState.FAULT:
-            self.power_states.trip()
+            self.power_states.enter_fault()
             self.send_emergency(EMCY_FAULT)
         if self.is_axis_mode:
-            self.axis_drive.step(dt)
+            self.axis_drive.advance(dt)
             self._ordered = None
             return
         wanted = (
-            self.target if self.power_states.state is DriveState.OPERATION_ENABLED and self.mode == PV else 0
+            self.target_rpm
+            if self.power_states.state is DriveState.OPERATION_ENABLED and self.operation_mode == PV
+            else 0
         )
         if not self.power_states.is_powered:
             if self._ordered is not None:
-                self.motor.cut_power(now)
+                self.motor.remove_power(now)
                 self._ordered = None
         elif wanted != self._ordered:
             self.motor.command_speed(now, float(wanted))

@@ -55,7 +55,7 @@ def _stop_motion(m: GrblFirmware) -> None:
         m.restart(False)
         return
     m.abrupt_stop_count += m.motion.is_moving
-    m.stop_everything()
+    m.stop_all_functions()
     m.receive_buffer.clear()
     m.program.modes = ModalState()
     if m.alarm_number not in {11, 12}:
@@ -76,7 +76,7 @@ def _go_on(m: GrblFirmware) -> None:
 def _override(m: GrblFirmware, byte: int) -> None:
     if m.behavior.stubborn:
         return
-    m.report_generator.overrides_due = True
+    m.report_generator.are_overrides_due = True
     if byte == 0x90:
         m.feed_percent = 100
     elif byte in _OVERRIDE_STEPS:
@@ -106,8 +106,8 @@ _INDEX_TIMEOUT_S = 5.0  # Seconds that a thread waits for the index.
 
 def step_firmware(firmware: GrblFirmware) -> None:
     """Advance the controller by one step of ``STEP_S`` seconds."""
-    if firmware.homing_end is not None:
-        _home(firmware, *firmware.homing_end)
+    if firmware.homing_end_and_axes is not None:
+        _home(firmware, *firmware.homing_end_and_axes)
         return
     if firmware.alarm_number:
         return
@@ -135,7 +135,7 @@ def step_firmware(firmware: GrblFirmware) -> None:
 
 def _home(m: GrblFirmware, until: float, axes: int) -> None:
     if m.time_s >= until:
-        m.homing_end, m.homed_axes = None, m.homed_axes | axes
+        m.homing_end_and_axes, m.homed_axes = None, m.homed_axes | axes
         m.alarm_number = 11 if int(m.registers[22]) & 4 and m.homed_axes & 5 != 5 else 0
         m.send_text("[MSG:]\r\n")
         m.acknowledge_line()
@@ -177,9 +177,9 @@ class ReportGenerator:
 
     reports_until_offsets: int = 0
     reports_until_overrides: int = 0
-    offsets_due: bool = False
-    overrides_due: bool = False
-    accessories_due: bool = False
+    are_offsets_due: bool = False
+    are_overrides_due: bool = False
+    are_accessories_due: bool = False
 
     def format_report(self, firmware: GrblFirmware, *, full: bool) -> str:
         """Return the text of one report without its line end."""
@@ -189,24 +189,24 @@ class ReportGenerator:
         text = (
             f"<{firmware.format_state(full)}{_motion(firmware)}{_extras(firmware, offsets, overrides, full)}>"
         )
-        self.accessories_due = False
+        self.are_accessories_due = False
         return text
 
     def _overrides(self, full: bool, busy: bool) -> bool:
-        is_due = full or self.overrides_due or self.reports_until_overrides == 0
+        is_due = full or self.are_overrides_due or self.reports_until_overrides == 0
         self.reports_until_overrides = (
             (_OVERRIDES_BUSY if busy else _OVERRIDES_IDLE) - 1 if is_due else self.reports_until_overrides - 1
         )
-        self.overrides_due = False
+        self.are_overrides_due = False
         return is_due
 
     def _offsets(self, full: bool, overrides: bool, busy: bool) -> bool:
-        wanted = full or self.offsets_due or self.reports_until_offsets == 0
+        wanted = full or self.are_offsets_due or self.reports_until_offsets == 0
         self.reports_until_offsets = (
             (_OFFSETS_BUSY if busy else _OFFSETS_IDLE) - 1 if wanted else self.reports_until_offsets - 1
         )
-        self.offsets_due = wanted and overrides and not full
-        return wanted and not self.offsets_due
+        self.are_offsets_due = wanted and overrides and not full
+        return wanted and not self.are_offsets_due
 
 
 def _round_to_step(position: float, steps: float) -> float:
@@ -220,9 +220,9 @@ def _motion(m: GrblFirmware) -> str:
         _round_to_step(place, m.registers[number])
         for place, number in zip(m.motion.position, (100, 102), strict=True)
     )
-    text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.motion.free_blocks},{m.receive_buffer_free}"
-    if m.motion.block_queue and m.motion.block_queue[0].number:
-        text += f"|Ln:{m.motion.block_queue[0].number}"
+    text = f"|MPos:{x * scale:.3f},0.000,{z:.3f}|Bf:{m.motion.free_block_count},{m.free_receive_byte_count}"
+    if m.motion.block_queue and m.motion.block_queue[0].line_number:
+        text += f"|Ln:{m.motion.block_queue[0].line_number}"
     text += f"|FS:{60.0 * m.motion.speed:.0f},{abs(m.commanded_rpm):.0f}"
     if m.behavior.encoder:
         text += f",{abs(m.spindle.speed):.0f}"
@@ -235,7 +235,7 @@ def _extras(m: GrblFirmware, offsets: bool, overrides: bool, full: bool) -> str:
     text += f"|Ov:{m.feed_percent},{m.rapid_percent},{m.spindle_percent}" if overrides else ""
     accessories = "" if not m.commanded_rpm else "S" if m.commanded_rpm > 0.0 else "C"
     accessories += "F" * m.output_states.get("flood", False) + "M" * m.output_states.get("mist", False)
-    has_accessories = full or m.report_generator.accessories_due or (overrides and accessories)
+    has_accessories = full or m.report_generator.are_accessories_due or (overrides and accessories)
     text += f"|A:{accessories}" if has_accessories else ""
     if not full:
         return text
@@ -287,7 +287,7 @@ class GrblFirmware:
         self.is_canceling_jog = False  # A jog is being canceled.
         self.index_wait_start_s: float | None = None
         self.index_target_rev = 0
-        self.homing_end: tuple[float, int] | None = None  # End time and axes.
+        self.homing_end_and_axes: tuple[float, int] | None = None  # End time and axes.
         self.report_generator = ReportGenerator()
         self.program = LineInterpreter(self)
         self._wire = bytearray()  # Bytes not yet read from the socket.
@@ -332,7 +332,11 @@ class GrblFirmware:
         """
         if "E" in self.active_pins:
             return
-        moved = self.motion.is_moving or self.homing_end is not None or self.index_wait_start_s is not None
+        moved = (
+            self.motion.is_moving
+            or self.homing_end_and_axes is not None
+            or self.index_wait_start_s is not None
+        )
         self.restart(moved)
 
     def power_cycle(self) -> None:
@@ -348,13 +352,17 @@ class GrblFirmware:
     @property
     def _is_idle(self) -> bool:
         """Return whether only the spindle can change until the host sends bytes."""
-        busy = self.motion.block_queue or self.homing_end is not None or not self.program.is_line_complete
+        busy = (
+            self.motion.block_queue
+            or self.homing_end_and_axes is not None
+            or not self.program.is_line_complete
+        )
         return not (busy or self.receive_buffer or self._wire)
 
     def _take_in(self) -> None:
         while (
             self._wire
-            and self.receive_buffer_free > _MIN_FREE_BYTES
+            and self.free_receive_byte_count > _MIN_FREE_BYTES
             and not (self.is_waiting_for_index and self.behavior.mute)
         ):
             if self.time_s < self._next_byte:
@@ -369,7 +377,7 @@ class GrblFirmware:
     def restart(self, position_lost: bool) -> None:
         """Restart the controller; with ``position_lost``, raise alarm 3 because the position is lost."""
         self.abrupt_stop_count += self.motion.is_moving
-        self.stop_everything()
+        self.stop_all_functions()
         self.is_reset_required = False
         self.program.modes = ModalState()
         self.receive_buffer.clear()
@@ -382,21 +390,21 @@ class GrblFirmware:
         if self.alarm_number:
             self.send_text("[MSG:'$H'|'$X' to unlock]\r\n")
 
-    def stop_everything(self) -> None:
+    def stop_all_functions(self) -> None:
         """Stop motion, spindle, coolant and program immediately."""
         self.motion.discard_blocks()
-        self.program.discard()
+        self.program.discard_lines()
         self.is_in_hold = self.is_canceling_jog = self.is_jogging = self.motion.is_in_hold = (
             self.is_spindle_paused
         ) = False
-        self.index_wait_start_s = self.homing_end = None
+        self.index_wait_start_s = self.homing_end_and_axes = None
         self.command_spindle(0.0)
         self.output_states.update(flood=False, mist=False)
 
     # --- state: alarms, holds, spindle and pending lines ------------------------------------------------
 
     @property
-    def receive_buffer_free(self) -> int:
+    def free_receive_byte_count(self) -> int:
         """Return the number of free bytes in the receive buffer."""
         return _BUFFER_SIZE - len(self.receive_buffer)
 
@@ -405,7 +413,7 @@ class GrblFirmware:
         """Return the state with the name that status reports use."""
         if self.alarm_number:
             return f"Alarm:{self.alarm_number}"
-        if self.homing_end is not None:
+        if self.homing_end_and_axes is not None:
             return "Home"
         if self.is_door_open:
             return "Door:2" if self.motion.is_moving else "Door:1"
@@ -432,7 +440,7 @@ class GrblFirmware:
     def is_reading(self) -> bool:
         """Return whether the controller reads lines at present."""
         held = (self.is_in_hold or self.is_door_open) and not self.alarm_number
-        return not (self.is_waiting_for_index or self.homing_end is not None or held)
+        return not (self.is_waiting_for_index or self.homing_end_and_axes is not None or held)
 
     @property
     def commanded_rpm(self) -> float:
@@ -453,9 +461,9 @@ class GrblFirmware:
             self.receive_buffer.clear()
         self.send_text(f"ALARM:{number}\r\n")
 
-    def start_homing(self, axes: int) -> None:
+    def start_homing(self, axis_mask: int) -> None:
         """Start to home the axes in the bit mask ``axes``, which takes 0.5 s in the simulator."""
-        self.homing_end = self.time_s + 0.5, axes
+        self.homing_end_and_axes = self.time_s + 0.5, axis_mask
 
     def read_next_line(self) -> str | None:
         """Remove and return the next complete line of the buffer, or None if no line is complete."""
@@ -475,17 +483,17 @@ class GrblFirmware:
         """Send text to the host."""
         self.send_buffer += text.encode("ascii")
 
-    def acknowledge_line(self, error: int = 0) -> None:
-        """Acknowledge a line with ``ok``, or with an error code if ``error`` is not 0."""
-        if not error and self.behavior.garbled_replies:
+    def acknowledge_line(self, error_code: int = 0) -> None:
+        """Acknowledge a line with ``ok``, or with an error code if ``error_code`` is not 0."""
+        if not error_code and self.behavior.garbled_replies:
             self.send_buffer += self.behavior.garbled_replies.pop(0) + b"\r\n"
         else:
-            self.send_text(f"error:{error}\r\n" if error else "ok\r\n")
+            self.send_text(f"error:{error_code}\r\n" if error_code else "ok\r\n")
 
     def command_spindle(self, rpm: float) -> None:
         """Command the spindle speed in rpm, signed."""
-        self.report_generator.accessories_due = self.report_generator.accessories_due or (rpm > 0.0) - (
-            rpm < 0.0
-        ) != (self.programmed_rpm > 0.0) - (self.programmed_rpm < 0.0)
+        self.report_generator.are_accessories_due = self.report_generator.are_accessories_due or (
+            rpm > 0.0
+        ) - (rpm < 0.0) != (self.programmed_rpm > 0.0) - (self.programmed_rpm < 0.0)
         self.programmed_rpm = rpm
         self.spindle.command_speed(self.time_s, self.commanded_rpm)

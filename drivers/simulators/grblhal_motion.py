@@ -30,7 +30,7 @@ class PlannedBlock:
     the spindle index.
     """
 
-    number: int
+    line_number: int
     length_mm: float
     max_speed: float
     path: Callable[[float], Position]
@@ -38,7 +38,7 @@ class PlannedBlock:
     is_per_rev: bool = False
     is_thread: bool = False
     is_jog: bool = False
-    limits: tuple[float, float] | None = None  # Limits of the axes: mm/s, mm/s².
+    speed_and_accel_limits: tuple[float, float] | None = None  # Limits of the axes: mm/s, mm/s².
 
     def get_direction_at(self, distance_mm: float) -> Position:
         """Return the unit direction of the path at ``distance_mm`` from the start of the block."""
@@ -102,9 +102,9 @@ def make_arc_path(
 class GrblMotion:
     """Planner and axes, which the firmware advances in small steps."""
 
-    def __init__(self, registers: SettingRegisters, capacity: int) -> None:
+    def __init__(self, registers: SettingRegisters, max_block_count: int) -> None:
         self.block_queue: deque[PlannedBlock] = deque()
-        self.capacity = capacity
+        self.max_block_count = max_block_count
         self.position: Position = (0.0, 0.0)
         self.speed = 0.0
         self.feed_override = self.rapid_override = 1.0  # overrides
@@ -119,9 +119,9 @@ class GrblMotion:
         return self._s > 0.0 or self.speed > 0.0
 
     @property
-    def free_blocks(self) -> int:
+    def free_block_count(self) -> int:
         """Return the number of additional blocks that the planner can accept."""
-        return self.capacity - len(self.block_queue)
+        return self.max_block_count - len(self.block_queue)
 
     @property
     def is_moving(self) -> bool:
@@ -133,33 +133,33 @@ class GrblMotion:
         self.block_queue.clear()
         self.speed = self._s = 0.0
 
-    def advance(self, dt: float, spindle_rev_per_s: float) -> None:
-        """Advance the axes by ``dt`` seconds at a spindle speed of ``spindle_rev_per_s``."""
+    def advance(self, seconds: float, spindle_rev_per_s: float) -> None:
+        """Advance the axes by ``seconds`` seconds at a spindle speed of ``spindle_rev_per_s``."""
         if not self.block_queue:
             self.speed = 0.0
             return
         block = self.block_queue[0]
         most, accel = self._limits(block, self._s)
         goal = 0.0 if self.is_in_hold else self._target_speed(block, most, spindle_rev_per_s)
-        change = accel * dt
+        change = accel * seconds
         self.speed = min(self.speed + change, goal) if self.speed < goal else max(self.speed - change, goal)
         self.speed = min(self.speed, self._allowed_speed(accel, spindle_rev_per_s))
         if self.is_in_hold and self.speed < 1.5 * change:
             self.speed = 0.0
-        self._go(self.speed * dt)
+        self._go(self.speed * seconds)
 
     def _limits(self, block: PlannedBlock, at: float) -> tuple[float, float]:
         """Return the speed and acceleration limits of a block at a distance of ``at`` mm from its start.
 
         The limits of a straight line are constant.
         """
-        if block.limits is None or not isinstance(block.path, _Line):
+        if block.speed_and_accel_limits is None or not isinstance(block.path, _Line):
             heading = block.get_direction_at(at)
-            block.limits = (
+            block.speed_and_accel_limits = (
                 self._limit_in_direction(_RATE, heading) / 60.0,
                 self._limit_in_direction(_ACCELERATION, heading),
             )
-        return block.limits
+        return block.speed_and_accel_limits
 
     def _target_speed(self, block: PlannedBlock, max_speed: float, turns_per_s: float) -> float:
         """Return the speed of a block in mm/s, limited to ``max_speed``.

@@ -54,7 +54,7 @@ class ProgramController(Protocol):
     @property
     def is_reading(self) -> bool: ...
 
-    def start_homing(self, axes: int) -> None: ...
+    def start_homing(self, axis_mask: int) -> None: ...
 
     def read_next_line(self) -> str | None: ...
 
@@ -62,7 +62,7 @@ class ProgramController(Protocol):
 
     def send_text(self, text: str) -> None: ...
 
-    def acknowledge_line(self, error: int = 0) -> None: ...
+    def acknowledge_line(self, error_code: int = 0) -> None: ...
 
     def command_spindle(self, rpm: float) -> None: ...
 
@@ -100,9 +100,9 @@ class ModalState:
     scaling: str = "G50"
     is_hold_disabled: bool = False  # M53 P0
 
-    def take(self, code: str, *, lathe: bool) -> int:
+    def take(self, code: str, *, is_lathe_mode: bool) -> int:
         """Apply a G word, and return its error code, or 0 without an error."""
-        if code in _LATHE_CODES and not lathe:
+        if code in _LATHE_CODES and not is_lathe_mode:
             return 20
         if code in _MODAL_GROUPS:
             setattr(self, _MODAL_GROUPS[code], code)
@@ -110,11 +110,11 @@ class ModalState:
             return 20
         return 0
 
-    def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, lathe: bool) -> str:
+    def told(self, rpm: float, feed: float, outputs: dict[str, bool], *, is_lathe_mode: bool) -> str:
         """Return the modal state as text, in the format of the reply to ``$G``."""
         spindle = "M5" if not rpm else "M3" if rpm > 0.0 else "M4"
         coolant = "M7 " * outputs.get("mist", False) + "M8 " * outputs.get("flood", False) or "M9 "
-        radius, speed = (f" {self.radius}", f" {self.speed}") if lathe else ("", "")
+        radius, speed = (f" {self.radius}", f" {self.speed}") if is_lathe_mode else ("", "")
         scaling = "G51:X" if self.scaling == "G51" else "G50"
         held = "M53 " if self.is_hold_disabled else ""
         return (
@@ -218,9 +218,9 @@ __all__ = ["LineInterpreter", "ModalState"]
 class LineInterpreter:
     """Interpreter that executes received lines in order, as the planner and required standstills permit."""
 
-    def __init__(self, machine: ProgramController) -> None:
-        self._m = machine
-        self.modes = ModalState(radius="G7" if machine.behavior.diameter else "G8")
+    def __init__(self, controller: ProgramController) -> None:
+        self._m = controller
+        self.modes = ModalState(radius="G7" if controller.behavior.diameter else "G8")
         self.work_offset = [0.0, 0.0, 0.0]  # G54
         self.executed_lines: list[str] = []  # Executed lines.
         self.end_position: Position = (0.0, 0.0)  # End point of the planner's last block.
@@ -233,9 +233,11 @@ class LineInterpreter:
     def format_modes(self) -> str:
         """Return the text of the reply to ``$G``."""
         m = self._m
-        return self.modes.told(m.programmed_rpm, self._f, m.output_states, lathe=m.registers.is_lathe_mode)
+        return self.modes.told(
+            m.programmed_rpm, self._f, m.output_states, is_lathe_mode=m.registers.is_lathe_mode
+        )
 
-    def discard(self) -> None:
+    def discard_lines(self) -> None:
         """Discard pending lines and waits after a stop or a reset."""
         self._waits, self._cuts, self.last_error, self.end_position = None, False, 0, self._m.motion.position
         self.active_wait = None
@@ -253,7 +255,7 @@ class LineInterpreter:
         if self._waits is not None:
             line, self._waits = self._waits, None
             self._carry_out(line)
-        while self.is_line_complete and machine.is_reading and machine.motion.free_blocks > 0:
+        while self.is_line_complete and machine.is_reading and machine.motion.free_block_count > 0:
             line_ = machine.read_next_line()
             if line_ is None:
                 return
@@ -333,7 +335,7 @@ class LineInterpreter:
         if "G95" in codes and not self._m.behavior.encoder:
             return 20
         for code in (code for code in codes if code[0] == "G"):
-            error = self.modes.take(code, lathe=self._m.registers.is_lathe_mode)
+            error = self.modes.take(code, is_lathe_mode=self._m.registers.is_lathe_mode)
             if error:
                 return error
         if "G10" in codes:
@@ -377,7 +379,7 @@ class LineInterpreter:
         direction = {"M3": 1.0, "M4": -1.0, "M5": 0.0}[code]
         machine.command_spindle(direction * rpm)
         if direction != before:
-            self.active_wait = create_spindle_wait(machine, spindle_on=code != "M5")
+            self.active_wait = create_spindle_wait(machine, is_spindle_on=code != "M5")
 
     def _target(self, words: dict[str, float]) -> Position:
         scale = 0.5 if self.modes.radius == "G7" else 1.0

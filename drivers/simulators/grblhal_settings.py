@@ -159,10 +159,10 @@ class FunctionWait:
         return self.has_failed or abs(context.spindle.speed - context.commanded_rpm) <= slack
 
 
-def create_spindle_wait(context: WaitContext, *, spindle_on: bool) -> FunctionWait | None:
+def create_spindle_wait(context: WaitContext, *, is_spindle_on: bool) -> FunctionWait | None:
     """Create the wait of M3, M4 or M5, or return None if its settings are 0."""
     delay, tolerance = (
-        context.registers[SPINDLE_ON if spindle_on else SPINDLE_OFF],
+        context.registers[SPINDLE_ON if is_spindle_on else SPINDLE_OFF],
         context.registers[TOLERANCE],
     )
     if not delay and not tolerance:

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from typing import Any
 
 SignalCells = dict[str, float]  # By signal, or by pin if it is not connected to a signal.
-PinLookup = Callable[[str], str]  # Maps the name of a pin to its cell.
+FindCellName = Callable[[str], str]  # Maps the name of a pin to its cell.
 PeriodFunction = Callable[[float], None]  # One call of a thread function, with the period in s.
 
 _DEFAULT_DEPTH = 8192  # Default depth of a stream.
@@ -27,7 +27,7 @@ class RowFifo:
         self._most = depth
 
     @property
-    def depth(self) -> int:
+    def row_count(self) -> int:
         """Return the number of rows in the FIFO."""
         return len(self._rows)
 
@@ -78,19 +78,19 @@ class ThreadProgram:
         self._steps.append(step)
 
     def add_component(
-        self, component: str, name: str, pin_lookup: PinLookup, get_pin_value: Callable[[str], float]
+        self, component_type: str, name: str, pin_lookup: FindCellName, get_pin_value: Callable[[str], float]
     ) -> None:
         """Append the function of one component.
 
         ``get_pin_value`` returns the configured value of a pin or parameter.
         """
-        if component in _FORMULAS:
+        if component_type in _FORMULAS:
             self._lines.append(
                 f"cells[{pin_lookup(f'{name}.out')!r}] = "
-                f"{_formula(component, name, pin_lookup, get_pin_value)}"
+                f"{_formula(component_type, name, pin_lookup, get_pin_value)}"
             )
         else:
-            self.add_call(_COMPONENT_STEPS[component](self._cells, name, pin_lookup, get_pin_value))
+            self.add_call(_COMPONENT_STEPS[component_type](self._cells, name, pin_lookup, get_pin_value))
 
     def compile_calls(self) -> PeriodFunction:
         """Compile all calls into one function, which is several times faster than separate calls."""
@@ -100,13 +100,15 @@ class ThreadProgram:
         return run
 
 
-def _formula(component: str, name: str, at: PinLookup, value: Callable[[str], float]) -> str:
+def _formula(component: str, name: str, at: FindCellName, value: Callable[[str], float]) -> str:
     pins = {pin: f"cells[{at(f'{name}.{pin}')!r}]" for pin in ("in", "in0", "in1", "in2", "sel")}
     gains = {f"gain{n}": value(f"{name}.gain{n}") or 1.0 for n in range(2)}
     return _FORMULAS[component].format(**pins, **gains, difference=value(f"{name}.difference"))
 
 
-def _flipflop(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[str], float]) -> PeriodFunction:
+def _flipflop(
+    cells: SignalCells, name: str, at: FindCellName, _value: Callable[[str], float]
+) -> PeriodFunction:
     set_, reset, out = (at(f"{name}.{pin}") for pin in ("set", "reset", "out"))
 
     def step(_period: float) -> None:
@@ -118,7 +120,7 @@ def _flipflop(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[st
     return step
 
 
-def _latch(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[str], float]) -> PeriodFunction:
+def _latch(cells: SignalCells, name: str, at: FindCellName, _value: Callable[[str], float]) -> PeriodFunction:
     ok_in, fault_in, reset, ok_out, watchdog = (
         at(f"{name}.{pin}") for pin in ("ok-in", "fault-in", "reset", "ok-out", "watchdog")
     )
@@ -136,7 +138,9 @@ def _latch(cells: SignalCells, name: str, at: PinLookup, _value: Callable[[str],
     return step
 
 
-def _timedelay(cells: SignalCells, name: str, at: PinLookup, value: Callable[[str], float]) -> PeriodFunction:
+def _timedelay(
+    cells: SignalCells, name: str, at: FindCellName, value: Callable[[str], float]
+) -> PeriodFunction:
     in_, out, longest = at(f"{name}.in"), at(f"{name}.out"), value(f"{name}.on-delay")
     on = [0.0]
 
@@ -148,7 +152,7 @@ def _timedelay(cells: SignalCells, name: str, at: PinLookup, value: Callable[[st
 
 
 def _create_limit3(
-    cells: SignalCells, name: str, at: PinLookup, value: Callable[[str], float]
+    cells: SignalCells, name: str, at: FindCellName, value: Callable[[str], float]
 ) -> PeriodFunction:
     """Return the function of the component ``limit3``.
 
@@ -188,14 +192,15 @@ _COMPONENT_STEPS = {
 }
 
 
-def create_streamer(cells: SignalCells, fifo: RowFifo, enable: str, pins: list[str]) -> PeriodFunction:
-    """Return a function that writes one row of ``fifo`` to the pins in each period while ``enable`` is on.
+def create_streamer(cells: SignalCells, fifo: RowFifo, enable_pin: str, pins: list[str]) -> PeriodFunction:
+    """Return a function that writes one row of ``fifo`` to the pins in each period while ``enable_pin`` is
+    on.
 
     If there is no new row, the pins retain their values.
     """
 
     def step(_period: float) -> None:
-        if cells[enable] and fifo.readable:
+        if cells[enable_pin] and fifo.readable:
             for pin, figure in zip(pins, fifo.read(), strict=True):
                 cells[pin] = figure
 
@@ -211,21 +216,23 @@ def create_sampler(cells: SignalCells, fifo: RowFifo, pins: list[str]) -> Period
     return step
 
 
-def watchdog(cells: SignalCells, input_: str, enable: str, ok_output: str, timeout: float) -> PeriodFunction:
-    """Return a function that clears ``ok_output`` if the input does not change for ``timeout`` seconds.
+def watchdog(
+    cells: SignalCells, input_pin: str, enable_pin: str, ok_pin: str, timeout_s: float
+) -> PeriodFunction:
+    """Return a function that clears ``ok_pin`` if the input does not change for ``timeout_s`` seconds.
 
-    The output remains off until ``enable`` is switched off and on again.
+    The output remains off until ``enable_pin`` is switched off and on again.
     """
     was = [0.0, False, False]  # Seconds since the last change, the input, and enable.
 
     def step(period: float) -> None:
         since, last, enabled = was
-        now, on = cells[input_], bool(cells[enable])
+        now, on = cells[input_pin], bool(cells[enable_pin])
         since = 0.0 if bool(now) is not last else since + period
         if on and not enabled:
-            cells[ok_output], since = True, 0.0
-        elif not on or since > timeout:
-            cells[ok_output] = False
+            cells[ok_pin], since = True, 0.0
+        elif not on or since > timeout_s:
+            cells[ok_pin] = False
         was[:] = [since, bool(now), on]
 
     return step

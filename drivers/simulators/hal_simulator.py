@@ -45,19 +45,21 @@ class ServoThread:
     ``cells`` contains the values by the name of a signal or pin.
     """
 
-    def __init__(self, border: HalSection) -> None:
+    def __init__(self, hal_section: HalSection) -> None:
         self.cells: SignalCells = {}
-        self._cell: dict[str, str] = {pin: signal for signal, pins in border.nets.items() for pin in pins}
+        self._cell: dict[str, str] = {
+            pin: signal for signal, pins in hal_section.nets.items() for pin in pins
+        }
         self.machine_cells = {
-            link.pin: link.turndesk_signals[0] for link in border.machine_links
+            link.pin: link.turndesk_signals[0] for link in hal_section.machine_links
         }  # Cells of the machine's pins.
-        self.cells.update(dict.fromkeys([*border.nets, *self.machine_cells.values()], 0.0))
+        self.cells.update(dict.fromkeys([*hal_section.nets, *self.machine_cells.values()], 0.0))
         self.setpoint_fifos = (RowFifo(), RowFifo())
         self.sample_fifo = RowFifo()
-        component = {name: kind for kind, names in border.module_instances.items() for name in names}
-        values = dict(border.pin_values)
+        component = {name: kind for kind, names in hal_section.module_instances.items() for name in names}
+        values = dict(hal_section.pin_values)
         program = ThreadProgram(self.cells)
-        for call in border.function_calls:
+        for call in hal_section.function_calls:
             self._add(program, call, component, values)
         self.run_period = (
             program.compile_calls()
@@ -155,7 +157,7 @@ class HalPlant(SimulatedPlant):
         with self.action_lock:
             now = self.advance()
             self.station_panel.estop = True
-            self.spindle.cut_power(now)
+            self.spindle.remove_power(now)
 
 
 class HalSimulator:
@@ -178,7 +180,7 @@ class HalSimulator:
             0  # Consecutive periods without the board, like the packet errors of hm2_eth.
         )
         self.has_invalid_packets = False  # Sent data is not a valid packet.
-        self.has_index = True  # Phase Z of the spindle encoder is wired.
+        self.has_encoder_index = True  # Phase Z of the spindle encoder is wired.
         self._orients = False
         self._hands: object = None  # State of the controls when last read.
         self.delayed_report_count = 0  # Number of delayed reports.
@@ -204,7 +206,7 @@ class HalSimulator:
         bridge = HalBridge(create_bridge_config(self.config), pins, streams, samples, lambda: self.plant._at)
         for name, output in self.config.outputs.items():
             if output.safe_state is None:
-                pins[f"out.{name}"] = self.plant.terminals.outputs.get(name, False)
+                pins[f"out.{name}"] = self.plant.terminals.output_states.get(name, False)
         return bridge
 
     # --- the link -----------------------------------------------------------------------------------------
@@ -224,7 +226,7 @@ class HalSimulator:
         self._outbox.clear()
         return self
 
-    def send(self, data: bytes) -> None:
+    def send_packet(self, data: bytes) -> None:
         """Send a packet to the bridge.
 
         Raises DriverError if the bridge process has ended.
@@ -233,7 +235,7 @@ class HalSimulator:
             raise DriverError("the HAL bridge process has ended (broken pipe)", "hal-bridge")
         self.bridge.queue_packet(*unpack_packet(data))
 
-    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         """Yield the packets that the bridge has sent.
 
         Raises DriverError if the bridge process has ended.
@@ -259,7 +261,7 @@ class HalSimulator:
     # --- one period ---------------------------------------------------------------------------------------
 
     def _period(self, t: float) -> None:
-        period = self.config.table.period
+        period = self.config.hal_table.period
         if not self.is_thread_stopped:
             self._read_board(t)
             self.servo_thread.run_period(period)
@@ -287,7 +289,7 @@ class HalSimulator:
         if (
             self.board_error_count >= _PACKET_ERRORS
         ):  # io_error: the driver stops reading until it is reloaded.
-            self._set(self.config.table.link_fault, True)
+            self._set(self.config.hal_table.link_fault, True)
 
     def _coast(self, t: float, period: float) -> None:
         """Simulate the reaction of the board's watchdog.
@@ -302,7 +304,7 @@ class HalSimulator:
         for name, output in self.config.outputs.items():
             if (
                 output.safe_state is not None
-                and self.plant.terminals.outputs.get(name) is not output.safe_state
+                and self.plant.terminals.output_states.get(name) is not output.safe_state
             ):
                 self.plant.terminals.write(name, output.safe_state, t)
 
@@ -342,7 +344,7 @@ class HalSimulator:
         )
         for name, wired in config.inputs.items():
             on = getattr(state, name) if name in _STATION_NAMES else inputs.get(name)
-            cells[theirs[wired.pin]] = bool(on) is not wired.active_low
+            cells[theirs[wired.pin]] = bool(on) is not wired.is_active_low
         for name, pot in config.pots.items():
             if name == "handwheel":
                 self._set(pot.pin, state.handwheel)
@@ -355,7 +357,7 @@ class HalSimulator:
         self._turns = turns
         if pins.index_enable and self._get(pins.index_enable):
             passed = math.floor(turns - _INDEX_REV), math.floor(last - _INDEX_REV)
-            if passed[0] != passed[1] and self.has_index:
+            if passed[0] != passed[1] and self.has_encoder_index:
                 self._index_at = max(passed) + _INDEX_REV
                 self._set(pins.index_enable, False)
         self._set(pins.position, turns - self._index_at)
@@ -383,7 +385,7 @@ class HalSimulator:
         self._orient(t)
         for name, output in config.outputs.items():
             on = bool(self._get(output.pin)) and not (self.is_thread_stopped and output.safe_state is False)
-            if plant.terminals.outputs.get(name) is not on:
+            if plant.terminals.output_states.get(name) is not on:
                 plant.terminals.write(name, on, t)
 
     def _orient(self, t: float) -> None:

@@ -10,10 +10,20 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from core.ports import BoolArray, Cam, Clock, DriverError, Fault, FloatArray, Segments, StationState, StopMode
+from core.ports import (
+    BoolArray,
+    Cam,
+    Clock,
+    DriverError,
+    Fault,
+    FloatArray,
+    MotionSegments,
+    StationState,
+    StopMode,
+)
 from drivers.operator_station import PanelState
 from drivers.port_checks import SampleLog, require_no_fault, require_no_homing, require_power
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 from drivers.simulators.plant_config import SimConfig
 from drivers.simulators.plant_terminals import SimulatedTerminals, SimulatedToolSetter
 from drivers.simulators.predicted_motion import PredictedMotion, predict_motion
@@ -43,14 +53,18 @@ class SimulatedPlant:
         self.clock = clock
         self.lock = threading.RLock()
         self.wakeup = LocalWakeup(self.is_settled)
-        self.action_lock = ActionLock(self.lock, self.wakeup.wake)  # For operator actions and for faults.
+        self.action_lock = ActionLock(
+            self.lock, self.wakeup.request_poll
+        )  # For operator actions and for faults.
         self.servos = tuple(SimulatedServo(axis, config.step_s) for axis in config.axes)
         self.axis_names = tuple(axis.name for axis in config.axes)
         self.spindle = SpindleMotor(config.spindle)
-        self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.random_seed)
         self.terminals.setter = SimulatedToolSetter(config.setter) if config.setter is not None else None
-        self.station_panel = PanelState(config.palm_window_s, config.start_pulse_s, config.seed)
-        self.queue = GearedQueue(GearAxes.from_axes(config.axes, config.commit_time_s), self._readings())
+        self.station_panel = PanelState(config.palm_window_s, config.start_pulse_s, config.random_seed)
+        self.setpoint_queue = GearedQueue(
+            GearAxes.from_axes(config.axes, config.commit_time_s), self._readings()
+        )
         self.enabled = False
         self.fault: str = ""
         self._off_at = _NO_TIME
@@ -89,12 +103,12 @@ class SimulatedPlant:
             last = int(now / self.config.step_s + 1e-6)
             if last > self._k:
                 self._advance_axes(last)
-                self.queue.discard_before(self.model_time_s - _HISTORY_S)
+                self.setpoint_queue.discard_pieces_before(self.model_time_s - _HISTORY_S)
             if now > self.spindle.time_s:
                 self.spindle.advance_to(now)
         return now
 
-    def read_station(self, t: float) -> tuple[StationState, Mapping[str, bool]]:
+    def read_station(self, time_s: float) -> tuple[StationState, Mapping[str, bool]]:
         """Return the state of the operator station and the inputs at time ``t`` in seconds.
 
         They are calculated again only if they may have changed since the last call.
@@ -103,11 +117,11 @@ class SimulatedPlant:
         if self._hands is None or changes != self._hands_at:
             still = (
                 self.terminals.setter is None
-                and self.terminals.is_settled(t)
-                and self.station_panel.is_settled(t)
+                and self.terminals.is_settled(time_s)
+                and self.station_panel.is_settled(time_s)
             )
             self._hands_at = changes if still else None
-            self._hands = self.station_panel.state(t), self.terminals.read_inputs(t)
+            self._hands = self.station_panel.state(time_s), self.terminals.read_inputs(time_s)
         return self._hands
 
     def is_settled(self) -> bool:
@@ -131,7 +145,7 @@ class SimulatedPlant:
             due(now)
             self.apply_due_faults = due
 
-    def splice(self, segments: Segments) -> None:
+    def splice_segments(self, segments: MotionSegments) -> None:
         """Splice setpoints into the queue.
 
         Raises DriverError if the drives cannot follow the setpoints.
@@ -140,7 +154,7 @@ class SimulatedPlant:
             now = self.advance()
             self._need_power()
             check_drive_limits(segments, self.servos, self.spindle.speed)
-            self.queue.splice(segments, now)
+            self.setpoint_queue.splice_segments(segments, now)
 
     def engage_cam(self, cam: Cam) -> None:
         """Make the axes follow the spindle along ``cam``.
@@ -151,11 +165,11 @@ class SimulatedPlant:
             now = self.advance()
             self._need_power()
             check_cam_limits(cam, self.servos, self.spindle.speed)
-            self.queue.engage_cam(
+            self.setpoint_queue.engage_cam(
                 cam, SpindlePhaseFilter(now, self.spindle.counted_revolutions, self.spindle.speed / 60.0), now
             )
 
-    def set_power(self, powered: bool) -> None:
+    def set_power(self, is_on: bool) -> None:
         """Switch the drives on at their present positions, or off.
 
         Raises DriverError if the drives are to be switched on while the E-stop is pressed or a fault is
@@ -163,7 +177,7 @@ class SimulatedPlant:
         """
         with self.lock:
             self.advance()
-            if not powered:
+            if not is_on:
                 self._power_off()
                 return
             if self.station_panel.estop:
@@ -172,7 +186,7 @@ class SimulatedPlant:
                 )
             require_no_fault(self.fault)
             if not self.enabled:
-                self.queue.reset_to(self._readings())
+                self.setpoint_queue.reset_to(self._readings())
             self.enabled, self._off_at = True, _NO_TIME
 
     def stop(self, mode: StopMode) -> None:
@@ -183,7 +197,7 @@ class SimulatedPlant:
             if mode is StopMode.OFF:
                 self._power_off()
             elif self.enabled:
-                ends = self.queue.brake_to_rest(now, [axis.amax for axis in self.config.axes])
+                ends = self.setpoint_queue.brake_to_rest(now, [axis.amax for axis in self.config.axes])
                 if mode is StopMode.RAMP_OFF or self._off_at < _NO_TIME:
                     self._off_at = ends
 
@@ -199,14 +213,14 @@ class SimulatedPlant:
             servo = self.servos[index]
             if servo.axis.absolute:
                 return
-            rest, velocity = self.queue.commanded_state_at(now)
+            rest, velocity = self.setpoint_queue.get_commanded_state(now)
             if any(velocity) or self._homing is not None:
                 raise DriverError(
                     "{axis} cannot home while an axis is moving; wait until all axes are at rest",
                     reason="axis-moves",
                     axis=name,
                 )
-            pieces = plan_straight_move(
+            pieces = plan_axis_move(
                 now + self.config.commit_time_s,
                 rest,
                 index,
@@ -214,8 +228,8 @@ class SimulatedPlant:
                 speed=servo.axis.home_speed,
                 accel=servo.axis.amax,
             )
-            self.queue.splice(pieces, now)
-            self._homing = (servo, self.queue.queue_end(now) + _HOME_SETTLE)
+            self.setpoint_queue.splice_segments(pieces, now)
+            self._homing = (servo, self.setpoint_queue.get_end_time(now) + _HOME_SETTLE)
 
     def press_estop(self) -> None:
         """Brake the axes, remove their power and let the spindle coast, as the E-stop circuit does."""
@@ -223,7 +237,7 @@ class SimulatedPlant:
             now = self.advance()
             self.station_panel.estop = True
             self.stop(StopMode.RAMP_OFF)
-            self.spindle.cut_power(now)
+            self.spindle.remove_power(now)
 
     def stop_machine(self) -> None:
         """Stop the axes and the spindle, and set the outputs to their safe states.
@@ -234,7 +248,7 @@ class SimulatedPlant:
             raise DriverError("no response from the simulated machine")
         try:
             self.stop(StopMode.RAMP_OFF)
-            self.spindle.command_speed(self.advance(), 0.0, coast=True)
+            self.spindle.command_speed(self.advance(), 0.0, should_coast=True)
             self.terminals.switch_to_safe_state(self.clock.now())
         finally:
             self.lock.release()
@@ -260,7 +274,7 @@ class SimulatedPlant:
 
     def _power_off(self) -> None:
         self.enabled, self._off_at, self._homing = False, _NO_TIME, None
-        self.queue.reset_to(self._readings())
+        self.setpoint_queue.reset_to(self._readings())
         for servo in self.servos:
             servo.handle_power_loss()
 
@@ -282,7 +296,7 @@ class SimulatedPlant:
         """Advance the time to grid point ``last``, or only to the time when the drives switch off."""
         self.spindle.is_cutting = False
         if self.spindle.slip_fraction:
-            self.spindle.set_cutting(self.model_time_s, cutting=False)
+            self.spindle.set_cutting(self.model_time_s, is_cutting=False)
         until = max(self._k + 1, int(min(self._off_at / self.config.step_s + 1, last)))
         if self.sample_log is not None:
             self._store_rest_samples(until)
@@ -295,7 +309,7 @@ class SimulatedPlant:
             ordered
             and self.terminals.setter is None
             and not self.spindle.faults.belt_slip_fraction
-            and not self.queue.is_engaged
+            and not self.setpoint_queue.is_engaged
         )
 
     def _advance_predicted(self, last: int) -> bool:
@@ -304,15 +318,15 @@ class SimulatedPlant:
         Return False if the piece must be calculated step by step.
         """
         ahead = self._ahead
-        piece, until = self.queue.find_piece_at(self.model_time_s)
-        if ahead is None or not ahead.is_valid(piece, until, self._k):
+        piece, until = self.setpoint_queue.find_piece_at(self.model_time_s)
+        if ahead is None or not ahead.is_valid_at(piece, until, self._k):
             ahead = self._ahead = predict_motion(self.servos, piece, until, self._k, self.config.step_s)
         if ahead is None:
             return False
         last = min(last, ahead.last_point)
         if self.sample_log is not None:
             self._store_predicted(ahead, last)
-        ahead.move_to(last)
+        ahead.move_axes_to(last)
         self._k = last
         self.spindle.is_cutting = self.is_cutting()
         return True
@@ -320,9 +334,12 @@ class SimulatedPlant:
     def _resting(self) -> bool:
         if not self.enabled:
             return all(servo.v == 0.0 for servo in self.servos)
-        if self.queue.is_engaged or self.queue.queue_end(self.model_time_s) > self.model_time_s:
+        if (
+            self.setpoint_queue.is_engaged
+            or self.setpoint_queue.get_end_time(self.model_time_s) > self.model_time_s
+        ):
             return False
-        rest, _ = self.queue.commanded_state_at(self.model_time_s)
+        rest, _ = self.setpoint_queue.get_commanded_state(self.model_time_s)
         settled = [servo.settle_at(p) for servo, p in zip(self.servos, rest, strict=True)]
         return all(settled)
 
@@ -340,10 +357,10 @@ class SimulatedPlant:
             self._follow_setpoints(p, v, dt)
         if self.terminals.setter is not None:
             x, z = (self.servos[self.axis_names.index(name)].where for name in "XZ")
-            self.terminals.setter.update(self.model_time_s, x, z, self._readings())
+            self.terminals.setter.update_touch(self.model_time_s, x, z, self._readings())
         self.spindle.is_cutting = self.is_cutting()
         if self.spindle.faults.belt_slip_fraction:
-            self.spindle.set_cutting(self.model_time_s, cutting=self.spindle.is_cutting)
+            self.spindle.set_cutting(self.model_time_s, is_cutting=self.spindle.is_cutting)
         self._advance_spindle()
 
     def _follow_setpoints(self, p: tuple[float, ...], v: tuple[float, ...], dt: float) -> bool:
@@ -355,7 +372,7 @@ class SimulatedPlant:
             if servo.follow_setpoint(position, speed, dt) and not self.fault:
                 self.fault = Fault("{axis}: following error", "following", axis=servo.axis.name)
         if self.fault and self._off_at == _NO_TIME:
-            self._off_at = self.queue.brake_to_rest(
+            self._off_at = self.setpoint_queue.brake_to_rest(
                 self.model_time_s, [axis.amax for axis in self.config.axes]
             )
         return bool(self.fault)
@@ -369,12 +386,14 @@ class SimulatedPlant:
 
         If the axes follow the spindle, the positions sent to the drives compensate for the following error.
         """
-        if not self.queue.is_engaged:
-            p, v = self.queue.commanded_state_at(t)
+        if not self.setpoint_queue.is_engaged:
+            p, v = self.setpoint_queue.get_commanded_state(t)
             return p, v, p
         if t > self.spindle.time_s:
             self.spindle.advance_to(t)
-        p, v, a = self.queue.play_setpoint(t, self.spindle.time_s, self.spindle.counted_revolutions)
+        p, v, a = self.setpoint_queue.calculate_setpoint(
+            t, self.spindle.time_s, self.spindle.counted_revolutions
+        )
         return tuple(servo.lead(*each) for servo, *each in zip(self.servos, p, v, a, strict=True)), v, p
 
     # --- samples for the scope ----------------------------------------------------------------------------
@@ -385,7 +404,7 @@ class SimulatedPlant:
             return
         actual = [servo.reading for servo in self.servos]
         load = [servo.load for servo in self.servos]
-        left = self.queue.queue_end(t) - t
+        left = self.setpoint_queue.get_end_time(t) - t
         self.sample_log.append_row(t, *(demand or actual), *actual, *load, *self._turned, left)
         self._changed = True
 
@@ -408,7 +427,7 @@ class SimulatedPlant:
         assert self.sample_log is not None
         rows = prediction.get_sample_rows(self._k, last)
         self._add_spindle_columns(rows, prediction.get_cutting_flags(self._k + 1, last + 1))
-        rows[:, -1] = self.queue.queue_end(self.model_time_s) - rows[:, 0]
+        rows[:, -1] = self.setpoint_queue.get_end_time(self.model_time_s) - rows[:, 0]
         self.sample_log.append_rows(rows)
         self._changed = True
 
@@ -429,7 +448,7 @@ class SimulatedPlant:
         While the spindle is also at rest, the interval between samples is 0.1 s.
         """
         assert self.sample_log is not None
-        demand = self.queue.commanded_state_at(self.model_time_s)[0] if self.enabled else None
+        demand = self.setpoint_queue.get_commanded_state(self.model_time_s)[0] if self.enabled else None
         while self._k < end_point:
             turns = not self.spindle.is_at_rest or self._turned[0] != 0.0
             if self.spindle.is_speed_constant and not self.spindle.is_at_rest:
@@ -458,4 +477,4 @@ class SimulatedPlant:
         if self._homing is not None and self.model_time_s >= self._homing[1]:
             self._homing[0].reference()
             self._homing = None
-            self.queue.reset_to(self._readings())
+            self.setpoint_queue.reset_to(self._readings())

@@ -27,10 +27,10 @@ class SimSpindle:
     Speeds are in rpm, ramps in rpm/s, and times in seconds.
     """
 
-    rpm_max: float = 3500.0
-    accel: float = 1500.0
-    decel: float = 2500.0
-    coast_decel: float = 600.0
+    max_rpm: float = 3500.0
+    acceleration_rpm_per_s: float = 1500.0
+    deceleration_rpm_per_s: float = 2500.0
+    coast_deceleration_rpm_per_s: float = 600.0
     latency_s: float = 0.08
     pulses_per_rev: int = 1024
     can_orient: bool = False  # The drive can stop the spindle at an angle; it turns there at orient_rpm.
@@ -52,14 +52,14 @@ class SimOutput:
 class SimCollet:
     """Configuration of a simulated collet and its switch; the output is on while the collet is clamped.
 
-    Times are in seconds. ``time_spread`` is the random variation of the times as a fraction.
+    Times are in seconds. ``time_variation_fraction`` is the random variation of the times as a fraction.
     """
 
     output_name: str = "collet"
     closed_input: str = "collet_closed"
     open_time_s: float = 0.25
     close_time_s: float = 0.30
-    time_spread: float = 0.2
+    time_variation_fraction: float = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +89,8 @@ class SimConfig:
     inputs: tuple[str, ...] = ()
     commit_time_s: float = 0.03
     step_s: float = 0.001  # Interval of the servo model in s.
-    seed: int = 1
-    faults: tuple[PlannedFault, ...] = ()
+    random_seed: int = 1
+    planned_faults: tuple[PlannedFault, ...] = ()
     setter: SimToolSetter | None = None
     has_load_input: bool = False  # An input measures the spindle load.
     palm_window_s: float = 0.5  # Seconds within which both palm buttons must be pressed.

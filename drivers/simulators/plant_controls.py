@@ -92,7 +92,7 @@ class PlantControls(StationControls):
         """Make the spindle lose up to ``fraction`` of its speed while a tool is cutting; 0 ends the fault."""
         with self._locked_time() as now:
             self._plant.spindle.faults.belt_slip_fraction = fraction
-            self._plant.spindle.set_cutting(now, cutting=False)
+            self._plant.spindle.set_cutting(now, is_cutting=False)
 
     def push(self, axis: str, distance: float) -> None:
         """Displace an axis by ``distance`` by hand, with or without power."""
@@ -139,7 +139,7 @@ class PlantControls(StationControls):
     def spindle_never_oriented(self, never_oriented: bool = True) -> None:
         """Prevent the drive from reporting that the spindle is oriented, or end this fault."""
         with self._locked_time():
-            self._plant.spindle.faults.never_oriented = never_oriented
+            self._plant.spindle.faults.is_never_oriented = never_oriented
 
     def collet_sensor_stuck(self, stuck: bool = True) -> None:
         """Freeze the collet switch in its present state, or end this fault."""
@@ -168,7 +168,7 @@ class PlantControls(StationControls):
     def outputs(self) -> dict[str, bool]:
         """Return the actual states of the outputs by name."""
         with self._plant.lock:
-            return dict(self._plant.terminals.outputs)
+            return dict(self._plant.terminals.output_states)
 
     def spindle_turns(self) -> float:
         """Return the true revolutions of the spindle, signed."""
@@ -192,7 +192,7 @@ class PlantControls(StationControls):
 class FaultSchedule:
     """Schedule that starts and ends faults.
 
-    The plant calls ``apply_due`` with the time of its clock.
+    The plant calls ``apply_due_actions`` with the time of its clock.
     """
 
     def __init__(self, machine: PlantControls, faults: Sequence[PlannedFault]) -> None:
@@ -204,7 +204,7 @@ class FaultSchedule:
                 self._acts.append((fault.at + fault.seconds, mends))
         self._acts.sort(key=lambda act: act[0])
 
-    def apply_due(self, now: float) -> None:
+    def apply_due_actions(self, now: float) -> None:
         """Apply all scheduled actions that are due at time ``now``, in order."""
         while self._acts and self._acts[0][0] <= now:
             self._acts.pop(0)[1]()

@@ -56,45 +56,47 @@ class PredictedMotion:
 
     def __init__(
         self,
-        moves: Sequence[tuple[SimulatedServo, SetpointPolynomial, ServoResponse]],
+        axis_responses: Sequence[tuple[SimulatedServo, SetpointPolynomial, ServoResponse]],
         piece: MotionPiece,
         end_time: float,
         points: range,
         dt: float,
     ) -> None:
-        self._moves = moves
-        self._moving = [move for move in moves if move[2] is not RESPONSE_AT_REST]
+        self._moves = axis_responses
+        self._moving = [move for move in axis_responses if move[2] is not RESPONSE_AT_REST]
         self._piece, self._until, self._dt = piece, end_time, dt
         self._points = points
-        self._loads = [servo.load for servo, _, _ in moves]  # At the first grid point, like the speeds.
-        self._speeds = [servo.v for servo, _, _ in moves]
-        for servo, _, response in moves:
+        self._loads = [
+            servo.load for servo, _, _ in axis_responses
+        ]  # At the first grid point, like the speeds.
+        self._speeds = [servo.v for servo, _, _ in axis_responses]
+        for servo, _, response in axis_responses:
             if response is RESPONSE_AT_REST:
                 servo.load = servo.over = 0.0
         self.last_point = points.stop  # Grid point at which the motion ends.
         self._note(points.start)
 
-    def is_valid(self, piece: MotionPiece, end_time: float, point: int) -> bool:
-        """Return whether the prediction is still valid at grid point ``point``.
+    def is_valid_at(self, piece: MotionPiece, end_time: float, grid_point: int) -> bool:
+        """Return whether the prediction is still valid at grid point ``grid_point``.
 
         The setpoints must be the same, and the axes must not have changed since the last call of
-        ``move_to``.
+        ``move_axes_to``.
         """
         if (
             piece is not self._piece
             or end_time != self._until
-            or point != self._k
-            or point >= self.last_point
+            or grid_point != self._k
+            or grid_point >= self.last_point
         ):
             return False
         return all(servo.p == p and servo.v == v and servo.sound for servo, p, v in self._left)
 
-    def move_to(self, point: int) -> None:
-        """Move the axes to their predicted state at grid point ``point``."""
-        steps = point - self._points.start
+    def move_axes_to(self, grid_point: int) -> None:
+        """Move the axes to their predicted state at grid point ``grid_point``."""
+        steps = grid_point - self._points.start
         for servo, setpoints, response in self._moving:
             servo.follow_response(setpoints, response, steps)
-        self._note(point)
+        self._note(grid_point)
 
     def _note(self, k: int) -> None:
         self._k = k

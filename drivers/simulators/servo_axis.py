@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple, TypeVar
 
-from core.ports import Cam, DriverError, FloatArray, Segments
+from core.ports import Cam, DriverError, FloatArray, MotionSegments
 from drivers.setpoint_queue import check_limits
 from drivers.simulators.plant_config import SimAxis
 
@@ -27,10 +27,10 @@ class SimulatedServo:
     Positions are those that the control counts; after homing, they count from the home position.
     """
 
-    def __init__(self, axis: SimAxis, step: float = 0.001) -> None:
+    def __init__(self, axis: SimAxis, step_s: float = 0.001) -> None:
         """Create the axis; ``step`` is the grid interval of the model in seconds."""
         self.axis = axis
-        self._step = step
+        self._step = step_s
         self.homed = axis.absolute
         self.switch = 0.0 if axis.absolute else -axis.power_up_position  # Home position in the present count.
         self.p = axis.power_up_position if axis.absolute else 0.0
@@ -43,7 +43,7 @@ class SimulatedServo:
         self.load = 0.0  # Percent of the drive's capacity, signed.
         self.feeds = (_FEEDS, _CUTS * axis.vmax)  # Speed range in which the axis is assumed to cut.
         self._wn = 2 * math.pi * axis.bandwidth
-        self._loop = ServoLoop(self._wn * step, axis.feed_forward) if self._wn * step < 0.5 else None
+        self._loop = ServoLoop(self._wn * step_s, axis.feed_forward) if self._wn * step_s < 0.5 else None
 
     @property
     def reading(self) -> float:
@@ -54,7 +54,7 @@ class SimulatedServo:
         p = (
             worn.slide_position
             if worn.gib
-            else worn.to_encoder_position(self.p)
+            else worn.get_encoder_position(self.p)
             if worn.has_encoder_error
             else self.p
         )
@@ -84,17 +84,19 @@ class SimulatedServo:
         self.p += distance
         self.worn.slide_position += distance
 
-    def lead(self, p: float, v: float, a: float) -> float:
+    def lead(self, position: float, velocity: float, acceleration: float) -> float:
         """Return the setpoint that moves the axis to position ``p`` despite its following error.
 
         The calculation inverts ``follow_setpoint``, where ff is the feed-forward fraction and wn the
         natural frequency: 2(1 - ff)v/wn compensates for the velocity ``v``, and a/wn² for the acceleration
-        ``a``.
+        ``acceleration``.
         """
-        return p + (2.0 * (1.0 - self.axis.feed_forward) * v + a / self._wn) / self._wn
+        return (
+            position + (2.0 * (1.0 - self.axis.feed_forward) * velocity + acceleration / self._wn) / self._wn
+        )
 
-    def follow_setpoint(self, p: float, v: float, dt: float) -> bool:
-        """Advance the powered drive by one step of ``dt`` seconds, and return whether the drive trips.
+    def follow_setpoint(self, position: float, velocity: float, seconds: float) -> bool:
+        """Advance the powered drive by one step of ``seconds`` seconds, and return whether the drive trips.
 
         The setpoint is position ``p`` and velocity ``v``. The drive trips if the following error is outside
         its window for too long. The model is of second order with damping 1. With a feed-forward fraction
@@ -103,7 +105,7 @@ class SimulatedServo:
         wn, axis = self._wn, self.axis
         seen = self.p if self.stuck is None and not self.worn.has_encoder_error else self._encoder_reading()
         limit = axis.amax * axis.accel_reserve
-        force = wn * (wn * (p - seen) + 2 * (axis.feed_forward * v - self.v))
+        force = wn * (wn * (position - seen) + 2 * (axis.feed_forward * velocity - self.v))
         # Faster than min and max; this code runs three times per millisecond.
         if not -limit <= force <= limit:
             force = math.copysign(limit, force)
@@ -112,15 +114,15 @@ class SimulatedServo:
             self.v = 0.0
         elif self.runaway:
             self.v = self.runaway
-            self.p += self.v * dt
+            self.p += self.v * seconds
         else:
-            speed, top = self.v + force * dt, axis.vmax * 1.1
+            speed, top = self.v + force * seconds, axis.vmax * 1.1
             self.v = speed if -top <= speed <= top else math.copysign(top, speed)
-            self.p += self.v * dt
+            self.p += self.v * seconds
         if self.worn.gib:
             self.worn.move_slide(self.p, self.v)
-        if abs(p - seen) > axis.following_window:
-            self.over += dt
+        if abs(position - seen) > axis.following_window:
+            self.over += seconds
             return self.over > axis.following_time
         self.over = 0.0
         return False
@@ -160,41 +162,41 @@ class SimulatedServo:
         self.over = 0.0
 
     def states(
-        self, setpoints: SetpointPolynomial, response: ServoResponse, steps: FloatOrArray
+        self, setpoints: SetpointPolynomial, response: ServoResponse, point_count: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position, velocity and load after ``steps`` grid points.
+        """Return the position, velocity and load after ``point_count`` grid points.
 
-        ``steps`` is a single number or an array.
+        ``point_count`` is a single number or an array.
         """
         assert self._loop is not None
         dt = self._step
-        place, moved, bent = self._loop.get_states_at(setpoints, response, steps)
+        place, moved, bent = self._loop.calculate_states_at(setpoints, response, point_count)
         return place, moved / dt, 100.0 * bent / (dt * dt) / (self.axis.amax * self.axis.accel_reserve)
 
     def _encoder_reading(self) -> float:
         """Return the position that the drive measures."""
         if self.stuck is not None:
             return self.stuck
-        return self.worn.to_encoder_position(self.p) if self.worn.has_encoder_error else self.p
+        return self.worn.get_encoder_position(self.p) if self.worn.has_encoder_error else self.p
 
-    def roll(self, dt: float) -> None:
-        """Advance the axis by one step of ``dt`` seconds without power, while friction slows it down."""
-        drop = 0.5 * self.axis.amax * dt
+    def roll(self, seconds: float) -> None:
+        """Advance the axis by one step of ``seconds`` seconds without power, while friction slows it down."""
+        drop = 0.5 * self.axis.amax * seconds
         self.v = 0.0 if self.jammed or abs(self.v) <= drop else self.v - math.copysign(drop, self.v)
-        self.p += self.v * dt
+        self.p += self.v * seconds
         if self.worn.gib:
             self.worn.move_slide(self.p, self.v)
         self.over = self.load = 0.0
 
-    def settle_at(self, p: float) -> bool:
+    def settle_at(self, position: float) -> bool:
         """Return whether the axis is at rest at setpoint ``p``.
 
         An axis that is very close to the setpoint is moved exactly to ``p``.
         """
         if self.jammed or self.stuck is not None or self.runaway:
             return False
-        if abs(self._encoder_reading() - p) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
-            self.p = self.p if self.worn.has_encoder_error else p
+        if abs(self._encoder_reading() - position) < _SETTLED_MM and abs(self.v) < _SETTLED_MM * self._wn:
+            self.p = self.p if self.worn.has_encoder_error else position
             self.v = self.over = self.load = 0.0
             return True
         return False
@@ -219,7 +221,7 @@ _STANDSTILL_RPM = 10.0  # Rpm above which the spindle drive cannot position.
 _SLIP_SPEED_FACTOR = 1.1  # Factor of an axis' speed: above it a cam is rejected, below it the gear slips.
 
 
-def check_drive_limits(segments: Segments, servos: Sequence[SimulatedServo], rpm: float) -> None:
+def check_drive_limits(segments: MotionSegments, servos: Sequence[SimulatedServo], rpm: float) -> None:
     """Check setpoints against the limits of the drives.
 
     Raises DriverError if a speed or position is out of range, or if C moves while the spindle is turning.
@@ -227,7 +229,12 @@ def check_drive_limits(segments: Segments, servos: Sequence[SimulatedServo], rpm
     axes = [servo.axis for servo in servos]
     check_limits(segments, axes, [servo.homed for servo in servos], [servo.reading for servo in servos])
     for i, axis in enumerate(axes):
-        if axis.name == "C" and not axis.own_drive and abs(rpm) > _STANDSTILL_RPM and segments.v[:, i].any():
+        if (
+            axis.name == "C"
+            and not axis.own_drive
+            and abs(rpm) > _STANDSTILL_RPM
+            and segments.velocities[:, i].any()
+        ):
             raise DriverError(
                 "C axis: the spindle is turning at {rpm} rpm, so no setpoints were queued",
                 "drive-limits",
@@ -240,8 +247,8 @@ def check_cam_limits(cam: Cam, servos: Sequence[SimulatedServo], rpm: float) -> 
 
     Raises DriverError in the same cases as ``check_drive_limits``.
     """
-    by_time = cam.way.v * (abs(rpm) / 60.0 / _SLIP_SPEED_FACTOR)
-    check_drive_limits(cam.way._replace(v=by_time), servos, rpm)
+    by_time = cam.segments.velocities * (abs(rpm) / 60.0 / _SLIP_SPEED_FACTOR)
+    check_drive_limits(cam.segments._replace(velocities=by_time), servos, rpm)
     if cam.following_segments is not None:
         check_drive_limits(cam.following_segments, servos, rpm)
 
@@ -278,21 +285,25 @@ class AxisWear:
         """Return whether the position that the drive measures differs from the motor position."""
         return self.ripple != 0.0 or self.missed != 0.0
 
-    def set_gib_play(self, play_mm: float, p: float) -> None:
+    def set_gib_play(self, play_mm: float, slide_position: float) -> None:
         """Set the play of the gib in mm while the slide is at ``p``; 0 removes the play."""
-        self.gib, self.slide_position = play_mm, p
+        self.gib, self.slide_position = play_mm, slide_position
 
-    def to_encoder_position(self, p: float) -> float:
+    def get_encoder_position(self, motor_position: float) -> float:
         """Return the position that the encoder measures for a motor position ``p``."""
-        turns = p / self.turn
-        return p + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
+        turns = motor_position / self.turn
+        return (
+            motor_position + self.ripple * math.sin(2.0 * math.pi * turns) - self.missed * math.floor(turns)
+        )
 
-    def move_slide(self, p: float, v: float) -> None:
+    def move_slide(self, motor_position: float, motor_velocity: float) -> None:
         """Move the slide with the motor, which is at position ``p`` with velocity ``v``."""
         play = 0.5 * self.gib
-        slide_lag = p - self.slide_position
-        if abs(slide_lag) > play * (1.0 + 2.0 * _STICK_FRACTION if abs(v) < _STICK_SLIP_SPEED else 1.0):
-            self.slide_position = p - math.copysign(play, slide_lag)
+        slide_lag = motor_position - self.slide_position
+        if abs(slide_lag) > play * (
+            1.0 + 2.0 * _STICK_FRACTION if abs(motor_velocity) < _STICK_SLIP_SPEED else 1.0
+        ):
+            self.slide_position = motor_position - math.copysign(play, slide_lag)
 
 
 # --- Closed-form response of the servo to setpoints of constant acceleration.
@@ -346,31 +357,34 @@ class ServoLoop:
         self.slow_curvature, self.fast_curvature = (self.slow_mode - 1.0) ** 2, (self.fast_mode - 1.0) ** 2
 
     def calculate_response(
-        self, position: float, step: float, setpoints: SetpointPolynomial
+        self, position: float, last_move: float, setpoints: SetpointPolynomial
     ) -> ServoResponse:
         """Return the response of an axis at ``position`` whose last move was ``step``, in mm or degrees."""
         w, missing, (p, dp, ddp) = self._w, self._missing, setpoints
         drift = -4.0 * ddp * missing / w
         lag = (2.0 * w * (ddp - missing * dp - drift) - 2.0 * ddp) / (w * w)
         now = position - p - lag
-        before = position - step - (p - dp + ddp) - (lag - drift)
+        before = position - last_move - (p - dp + ddp) - (lag - drift)
         after = (2.0 - 2.0 * w - w * w) * now - (1.0 - 2.0 * w) * before
         slow = (after - self.fast_mode * now) / (self.slow_mode - self.fast_mode)
         return ServoResponse(lag, drift, slow, now - slow)
 
-    def get_states_at(
-        self, setpoints: SetpointPolynomial, response: ServoResponse, k: FloatOrArray
+    def calculate_states_at(
+        self, setpoints: SetpointPolynomial, response: ServoResponse, grid_point: FloatOrArray
     ) -> tuple[FloatOrArray, FloatOrArray, FloatOrArray]:
-        """Return the position at grid point ``k``, the last move, and the change of the last move.
+        """Return the position at grid point ``grid_point``, the last move, and the change of the last move.
 
         The last move and its change are lengths. Lengths are in mm or degrees, and times are in grid
         intervals.
         """
         (p, dp, ddp), (lag, drift, slow_part, fast_part) = setpoints, response
-        slow, fast = slow_part * self.slow_mode ** (k - 1), fast_part * self.fast_mode ** (k - 1)
-        place = p + dp * k + ddp * k * k + lag + drift * k
+        slow, fast = (
+            slow_part * self.slow_mode ** (grid_point - 1),
+            fast_part * self.fast_mode ** (grid_point - 1),
+        )
+        place = p + dp * grid_point + ddp * grid_point * grid_point + lag + drift * grid_point
         place = place + (slow * self.slow_mode + fast * self.fast_mode)
-        moved = dp + ddp * (2 * k - 1) + drift
+        moved = dp + ddp * (2 * grid_point - 1) + drift
         moved = moved + slow * (self.slow_mode - 1.0) + fast * (self.fast_mode - 1.0)
         bent = (
             2.0 * ddp

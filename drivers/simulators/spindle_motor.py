@@ -27,7 +27,7 @@ class SpindleFaults:
     oscillation_period_s: float = 2.0  # s
     belt_slip_fraction: float = 0.0  # fraction of the speed that a slipping belt loses in the cut
     fault_text: str = ""
-    never_oriented: bool = False  # The drive does not report that the angle is reached.
+    is_never_oriented: bool = False  # The drive does not report that the angle is reached.
 
 
 class OrientCommand(NamedTuple):
@@ -39,9 +39,9 @@ class OrientCommand(NamedTuple):
     angle_deg: float
     direction: int
 
-    def get_revolutions_to_angle(self, turns: float) -> float:
-        """Return the signed revolutions from the position ``turns`` to the angle."""
-        left = (self.angle_deg / 360.0 - turns) % 1.0
+    def get_revolutions_to_angle(self, revolutions: float) -> float:
+        """Return the signed revolutions from the position ``revolutions`` to the angle."""
+        left = (self.angle_deg / 360.0 - revolutions) % 1.0
         if left > 1.0 - _ANGLE_TOLERANCE_REV:
             left = 0.0
         if self.direction > 0 or (not self.direction and left <= 0.5):
@@ -109,7 +109,7 @@ class SpindleMotor:
         faster = (
             abs(self._target) * self.faults.speed_fraction > abs(self._even) + 1e-9 and not self._coasting
         )
-        turning = _BEARINGS * abs(self._even) / self.config.rpm_max
+        turning = _BEARINGS * abs(self._even) / self.config.max_rpm
         return min(100.0, turning + (_SPEEDS_UP if faster else 0.0) + (_IN_CUT if self.is_cutting else 0.0))
 
     @property
@@ -132,20 +132,20 @@ class SpindleMotor:
         edges = 4 * self.config.pulses_per_rev
         return round(self.revolutions * edges) / edges
 
-    def command_speed(self, time_s: float, rpm: float, coast: bool = False) -> None:
+    def command_speed(self, time_s: float, rpm: float, should_coast: bool = False) -> None:
         """Queue a speed command, which takes effect after the latency of the inverter.
 
-        A stop cancels pending speed commands. With ``coast``, the spindle stops without a ramp.
+        A stop cancels pending speed commands. With ``should_coast``, the spindle stops without a ramp.
         """
         if self.faults.ignores_stop and abs(rpm) < abs(self._target):
             return
-        limit = self.config.rpm_max
+        limit = self.config.max_rpm
         self.cancel_orientation()
         if rpm == 0.0:
             self._orders = deque(waiting for waiting in self._orders if waiting[1] == 0.0)
-        self._orders.append((time_s + self.config.latency_s, min(max(rpm, -limit), limit), coast))
+        self._orders.append((time_s + self.config.latency_s, min(max(rpm, -limit), limit), should_coast))
 
-    def cut_power(self, now: float) -> None:
+    def remove_power(self, now: float) -> None:
         """Remove the power of the motor, so that the spindle coasts."""
         self._orders.clear()
         self.cancel_orientation()
@@ -153,12 +153,12 @@ class SpindleMotor:
 
     # --- orientation --------------------------------------------------------------------------------------
 
-    def orient_spindle(self, now: float, angle: float, sense: int) -> None:
-        """Turn the spindle from standstill to ``angle`` in degrees and hold it at this angle.
+    def orient_spindle(self, now: float, angle_deg: float, direction: int) -> None:
+        """Turn the spindle from standstill to ``angle_deg`` in degrees and hold it at this angle.
 
         The motion starts after the latency of the inverter.
         """
-        self._orient, self._begins = OrientCommand(angle, sense), now + self.config.latency_s
+        self._orient, self._begins = OrientCommand(angle_deg, direction), now + self.config.latency_s
 
     def cancel_orientation(self) -> None:
         """Cancel the orientation; the spindle stays at its present angle."""
@@ -173,7 +173,7 @@ class SpindleMotor:
             and self.time_s >= self._begins
             and not order.get_revolutions_to_angle(self.revolutions)
         )
-        return there and not self.faults.never_oriented and not self.faults.fault_text
+        return there and not self.faults.is_never_oriented and not self.faults.fault_text
 
     @property
     def _orient_speed(self) -> float:
@@ -210,7 +210,7 @@ class SpindleMotor:
             self._turn_to_angle(now)
         self.time_s = now
 
-    def turn_to_times(self, times: FloatArray, cuts: BoolArray) -> FloatArray:
+    def turn_to_times(self, times: FloatArray, cutting_flags: BoolArray) -> FloatArray:
         """Turn to the last of ``times``, and return the speed, counted revolutions and load at each time.
 
         The times are in seconds, and the result has the shape (n, 3). ``cuts`` specifies for each time
@@ -218,13 +218,13 @@ class SpindleMotor:
         """
         if not self.is_speed_constant:
             return np.array(
-                [self._turn_to(*each) for each in zip(times.tolist(), cuts.tolist(), strict=True)]
+                [self._turn_to(*each) for each in zip(times.tolist(), cutting_flags.tolist(), strict=True)]
             )
         edges, self.is_cutting = 4 * self.config.pulses_per_rev, False
         rows = np.empty((len(times), 3))
         rows[:, 0] = self._even
         rows[:, 1] = np.rint((self.revolutions + self._even / 60.0 * (times - self.time_s)) * edges) / edges
-        rows[:, 2] = self.load_percent + _IN_CUT * cuts if self._even else 0.0
+        rows[:, 2] = self.load_percent + _IN_CUT * cutting_flags if self._even else 0.0
         self.advance_to(float(times[-1]))
         return rows
 
@@ -233,12 +233,12 @@ class SpindleMotor:
         self.advance_to(t)
         return self.speed, self.counted_revolutions, self.load_percent
 
-    def set_cutting(self, now: float, *, cutting: bool) -> None:
+    def set_cutting(self, now: float, *, is_cutting: bool) -> None:
         """Set whether a tool is cutting; during the cut, a slipping belt loses and regains speed."""
         now = max(now, self.time_s)
         self.advance_to(now)
         swing = 0.5 - 0.5 * math.cos(2.0 * math.pi * _GRIP_FREQUENCY_HZ * now)
-        self.slip_fraction = self.faults.belt_slip_fraction * swing if cutting else 0.0
+        self.slip_fraction = self.faults.belt_slip_fraction * swing if is_cutting else 0.0
 
     def _ramp_speed(self, dt: float) -> None:
         """Ramp toward the target speed for ``dt`` seconds; continue at this speed when it is reached."""
@@ -249,9 +249,9 @@ class SpindleMotor:
                 self.revolutions += held * self._even / 60.0 * (dt + self._oscillation_seconds(t, dt))
                 return
             braking = self._even * target <= 0.0 < abs(self._even) or abs(target) < abs(self._even)
-            rate = self.config.decel if braking else self.config.accel
+            rate = self.config.deceleration_rpm_per_s if braking else self.config.acceleration_rpm_per_s
             if braking and (self._coasting or faults.fault_text):
-                rate = self.config.coast_decel
+                rate = self.config.coast_deceleration_rpm_per_s
             goal = 0.0 if self._even * target < 0.0 else target
             used = min(dt, abs(goal - self._even) / rate)
             before = self._even

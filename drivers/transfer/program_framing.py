@@ -19,17 +19,17 @@ class TransferSettings:
     """The settings for the transfer of a program, in addition to the line settings.
 
     ``delimiter`` is the line before and after a program. If it is empty, only silence marks the end. With
-    ``dc_codes``, DC2 and DC4 are sent before and after a program, and DC1 and DC3 before and after
-    reception. With ``waits_for_dc1``, sending starts only after DC1 from the other side. ``leader_length``
+    ``sends_dc_codes``, DC2 and DC4 are sent before and after a program, and DC1 and DC3 before and after
+    reception. With ``needs_dc1``, sending starts only after DC1 from the other side. ``leader_nul_count``
     is the number of NULs before and after a program.
     """
 
     line_settings: LineSettings
     delimiter: str = "%"
     line_end: str = "\r\n"
-    dc_codes: bool = False
-    waits_for_dc1: bool = False
-    leader_length: int = 0
+    sends_dc_codes: bool = False
+    needs_dc1: bool = False
+    leader_nul_count: int = 0
 
     @property
     def checks_parity(self) -> bool:
@@ -37,7 +37,7 @@ class TransferSettings:
 
         The line then has eight bits and carries seven bits with parity.
         """
-        return self.line_settings.bits == 7 and self.line_settings.parity in PARITY_VALUES
+        return self.line_settings.data_bits == 7 and self.line_settings.parity in PARITY_VALUES
 
     @property
     def sending_settings(self) -> LineSettings:
@@ -45,8 +45,8 @@ class TransferSettings:
 
         The port uses no flow control while TurnDesk waits for a DC1.
         """
-        held = self.line_settings.flow == "xonxoff" and self.waits_for_dc1
-        return replace(self.line_settings, flow="none") if held else self.line_settings
+        held = self.line_settings.flow_control == "xonxoff" and self.needs_dc1
+        return replace(self.line_settings, flow_control="none") if held else self.line_settings
 
     @property
     def receiving_settings(self) -> LineSettings:
@@ -54,10 +54,10 @@ class TransferSettings:
 
         The port does not use XON/XOFF, because the input is read immediately.
         """
-        flow = "rtscts" if self.line_settings.flow == "rtscts" else "none"
+        flow = "rtscts" if self.line_settings.flow_control == "rtscts" else "none"
         if self.checks_parity:
-            return replace(self.line_settings, bits=8, parity="N", flow=flow)
-        return replace(self.line_settings, flow=flow)
+            return replace(self.line_settings, data_bits=8, parity="N", flow_control=flow)
+        return replace(self.line_settings, flow_control=flow)
 
 
 # --- Lines and name of a received program, as tapes and controls write them.
@@ -95,7 +95,7 @@ def find_program_name(first_characters: bytes, lines: list[bytes]) -> str:
 
 
 MAX_PROGRAM_BYTES = 50_000_000  # Maximum size of a program in bytes.
-SHOWN_CHARACTERS = 32  # Number of characters before the first % that are shown.
+MAX_SHOWN_CHARACTERS = 32  # Number of characters before the first % that are shown.
 _SEVEN_BIT_MASK = 0x7F
 _CR, _LF, _TAB, _DC3 = 0x0D, 0x0A, 0x09, 0x13
 _END_CODES = frozenset((0x04, 0x13, 0x14, 0x1A))  # EOT, DC3, DC4, ^Z: end of the sender's data.
@@ -127,7 +127,7 @@ class ReceivedText:
     line_count: int
     sha256: str  # SHA-256
     is_seven_bit: bool  # Received with even parity through a line of eight bits.
-    skipped_bytes: int  # Number of characters before the first %.
+    skipped_byte_count: int  # Number of characters before the first %.
 
 
 class ProgramParser:
@@ -249,7 +249,7 @@ class ProgramParser:
         if wrong or not begins:
             self._skipped += 1
             if plain and plain != _SEVEN_BIT_MASK:
-                self._before = (self._before + bytes([character]))[-SHOWN_CHARACTERS:]
+                self._before = (self._before + bytes([character]))[-MAX_SHOWN_CHARACTERS:]
             return
         self.phase = ReceptionPhase.STORING
         if not self._wrap:
@@ -374,11 +374,11 @@ def encode_program(text: bytes, settings: TransferSettings) -> bytes:
     if not any(line.strip() for line in lines):
         raise DriverError("the program is empty; there is nothing to send", reason="empty")
     for number, line in enumerate(lines, 1):
-        _check(line, number, wrap, seven=settings.line_settings.bits == 7)
+        _check(line, number, wrap, seven=settings.line_settings.data_bits == 7)
     framed = [wrap, *lines, wrap] if wrap else lines
     body = b"".join(line + eol for line in framed)
-    nulls = bytes(settings.leader_length)
-    return nulls + (DC2 + body + DC4 if settings.dc_codes else body) + nulls
+    nulls = bytes(settings.leader_nul_count)
+    return nulls + (DC2 + body + DC4 if settings.sends_dc_codes else body) + nulls
 
 
 def _strip_framing(lines: list[bytes], wrap: bytes) -> list[bytes]:

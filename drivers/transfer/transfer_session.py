@@ -23,18 +23,24 @@ from drivers.transfer.program_framing import (
 
 CHUNK_BYTES = 64  # Bytes that a USB adapter may still send after a stop by the other side.
 CYCLE_S = 0.05  # s
-STOPPED_AFTER_S = (
+STOP_DETECTION_S = (
     1.0  # Seconds without a transmitted byte after which the line counts as stopped by the other side.
 )
 MAX_STOP_S = 120.0  # Seconds for which the other side may stop the line.
 DC1_REPEAT_S = 5.0  # Seconds after which DC1 is repeated without input.
 FINAL_SILENCE_S = 0.5  # Seconds of silence after a final % without a line end.
 # Reasons for waiting; the screen has the texts.
-HELD_BACK, FOR_DC1, FOR_SENDER, FOR_FRAME, NO_TEXT = "held", "dc1", "sender", "frame", "noise"
+STOPPED_BY_RECEIVER, WAITING_FOR_DC1, WAITING_FOR_SENDER, WAITING_FOR_FRAME, RECEIVED_NOISE = (
+    "held",
+    "dc1",
+    "sender",
+    "frame",
+    "noise",
+)
 END_SILENCE_S = 10.0  # Seconds of silence within a program after which it counts as ended.
 
 
-class CancelledError(DriverError):
+class TransferCanceledError(DriverError):
     """Error raised if the operator cancels the transfer, so that nothing is saved."""
 
 
@@ -42,13 +48,13 @@ class CancelledError(DriverError):
 class TransferState:
     """The progress of a transfer: bytes, lines, and the reason for waiting.
 
-    ``total_bytes`` is 0 if the total is unknown. ``wait_reason`` is empty or one of the reasons that this
-    module defines, such as FOR_DC1. ``received_text`` is the text received before the first %, which is not
-    part of the program.
+    ``total_byte_count`` is 0 if the total is unknown. ``wait_reason`` is empty or one of the reasons that
+    this module defines, such as WAITING_FOR_DC1. ``received_text`` is the text received before the first %,
+    which is not part of the program.
     """
 
-    done_bytes: int = 0
-    total_bytes: int = 0
+    done_byte_count: int = 0
+    total_byte_count: int = 0
     line_count: int = 0
     wait_reason: str = ""
     received_text: str = ""
@@ -74,7 +80,7 @@ class _Transfer:
 
     def _go_on(self) -> None:
         if self._cancelled.is_set():
-            raise CancelledError("cancelled")
+            raise TransferCanceledError("cancelled")
 
 
 class SendTransfer(_Transfer):
@@ -91,16 +97,16 @@ class SendTransfer(_Transfer):
         self._held = False  # Stopped by a DC3 that the kernel does not obey.
         self.progress = TransferState(0, len(data))
 
-    def run(self) -> int:
+    def send_program(self) -> int:
         """Send the program, and return the number of bytes.
 
         Raises CancelledError, WireError or DriverError if the program is not sent completely.
         """
         try:
-            if self._settings.waits_for_dc1:
+            if self._settings.needs_dc1:
                 self._wait_for_start()
             self._send()
-        except CancelledError:
+        except TransferCanceledError:
             self._wire.discard_output()
             raise
         finally:
@@ -109,7 +115,7 @@ class SendTransfer(_Transfer):
 
     def _wait_for_start(self) -> None:
         until = self._clock.now() + MAX_STOP_S
-        self._tell(0, FOR_DC1)
+        self._tell(0, WAITING_FOR_DC1)
         come = b""
         while DC1[0] not in {character & 0x7F for character in come}:
             self._go_on()
@@ -120,7 +126,7 @@ class SendTransfer(_Transfer):
                     reason="not-asked",
                 )
             come = self._wire.receive(CYCLE_S)
-        if self._settings.line_settings.flow == "xonxoff":
+        if self._settings.line_settings.flow_control == "xonxoff":
             self._wire.enable_xon_xoff()
         self._handle_codes(come)
 
@@ -133,7 +139,7 @@ class SendTransfer(_Transfer):
                 taken += self._wire.send_available(self._data[taken : taken + CHUNK_BYTES])
             before, out = out, taken - self._wire.count_unsent()
             self._watch(out, moved=out > before)
-            if out >= self._needed and (self._held or self.progress.wait_reason == HELD_BACK):
+            if out >= self._needed and (self._held or self.progress.wait_reason == STOPPED_BY_RECEIVER):
                 return  # DC3 after the final %: the program is complete.
             if out < len(self._data):
                 self._wait_for_room(taken - out)
@@ -150,12 +156,12 @@ class SendTransfer(_Transfer):
                 reason="held",
                 file=out,
             )
-        self._tell(out, HELD_BACK if still > STOPPED_AFTER_S else "")
+        self._tell(out, STOPPED_BY_RECEIVER if still > STOP_DETECTION_S else "")
 
     def _wait_for_room(self, waiting: int) -> None:
         """Wait until the pending bytes are transmitted, or until the other side sends a character."""
         self._handle_codes(
-            self._wire.receive(min(max(waiting, 1) * self._settings.line_settings.character_s, CYCLE_S))
+            self._wire.receive(min(max(waiting, 1) * self._settings.line_settings.character_time_s, CYCLE_S))
         )
 
     def _handle_codes(self, received: bytes) -> None:
@@ -163,7 +169,7 @@ class SendTransfer(_Transfer):
 
         Other received characters are ignored.
         """
-        if self._settings.line_settings.flow != "xonxoff":
+        if self._settings.line_settings.flow_control != "xonxoff":
             return
         for character in received:
             plain = character & 0x7F
@@ -172,14 +178,14 @@ class SendTransfer(_Transfer):
 
     def _tell(self, out: int, what: str) -> None:
         line_end = self._settings.line_end[-1].encode("ascii")
-        self._lines += self._data.count(line_end, self.progress.done_bytes, out)
+        self._lines += self._data.count(line_end, self.progress.done_byte_count, out)
         self.progress = TransferState(out, len(self._data), self._lines, what)
 
 
 class ReceiveTransfer(_Transfer):
     """A transfer that receives one complete program."""
 
-    def run(self) -> ReceivedText:
+    def receive_program(self) -> ReceivedText:
         """Receive a program and return it.
 
         Raises CancelledError, IncompleteError or WireError; nothing is then saved.
@@ -222,7 +228,7 @@ class ReceiveTransfer(_Transfer):
         if incoming.phase is not ReceptionPhase.WAITING:
             self.progress = TransferState(incoming.character_count, 0, incoming.line_count)
             return
-        what = NO_TEXT if incoming.is_noise or self._wire.damaged_count else FOR_FRAME
+        what = RECEIVED_NOISE if incoming.is_noise or self._wire.damaged_count else WAITING_FOR_FRAME
         self.progress = TransferState(
             incoming.character_count, 0, incoming.line_count, what, incoming.leading_text
         )
@@ -242,11 +248,11 @@ class ReceiveTransfer(_Transfer):
 
     def _ask(self) -> None:
         if not self.progress.received_text:
-            self.progress = TransferState(wait_reason=FOR_SENDER)
+            self.progress = TransferState(wait_reason=WAITING_FOR_SENDER)
         self._say(DC1)
 
     def _say(self, code: bytes) -> None:
-        if self._settings.dc_codes or self._settings.line_settings.flow == "xonxoff":
+        if self._settings.sends_dc_codes or self._settings.line_settings.flow_control == "xonxoff":
             own = self._settings.checks_parity
             self._wire.send_available(
                 code.translate(create_parity_table(self._settings.line_settings.parity)) if own else code

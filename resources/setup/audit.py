@@ -15,9 +15,15 @@ from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from resources.setup.lock import HOUSE, INSTALLER, SETS, locked_file, locked_packages
+from resources.setup.lock import (
+    EXTRAS_BY_SET,
+    INSTALLER_SET,
+    PROJECT_FOLDER,
+    get_locked_file,
+    read_locked_packages,
+)
 
-PAGE = HOUSE / "docs" / "vulnerabilities.md"
+PAGE_PATH = PROJECT_FOLDER / "docs" / "vulnerabilities.md"
 _ASK = (
     "--disable-pip",
     "--require-hashes",
@@ -28,59 +34,61 @@ _ASK = (
 _LONGEST = 300.0  # s
 
 
-class Result(NamedTuple):
+class AuditResult(NamedTuple):
     """Vulnerabilities that the list contains for one locked file.
 
-    ``unchecked`` are the packages for which the list returned no result.
+    ``unchecked_packages`` are the packages for which the list returned no result.
     """
 
     name: str
-    checked: int
-    found: Sequence[str] = ()
-    unchecked: Sequence[str] = ()
+    checked_count: int
+    vulnerabilities: Sequence[str] = ()
+    unchecked_packages: Sequence[str] = ()
 
 
-def result_of(name: str, packages: Sequence[str], answer: str) -> Result:
+def parse_audit_output(name: str, packages: Sequence[str], output: str) -> AuditResult:
     """Parse the output of pip-audit.
 
     A package that pip-audit omits or skips is unchecked.
     """
     try:
-        told: list[dict[str, Any]] = json.loads(answer)["dependencies"]
+        told: list[dict[str, Any]] = json.loads(output)["dependencies"]
         asked = {each["name"]: each["vulns"] for each in told if "vulns" in each}
         found = [f"{package}: {vuln['id']}" for package, vulns in asked.items() for vuln in vulns]
     except (ValueError, LookupError, TypeError):
-        return Result(name, 0, unchecked=packages)
+        return AuditResult(name, 0, unchecked_packages=packages)
     missing = [package for package in packages if package not in asked]
-    return Result(name, len(packages) - len(missing), found, missing)
+    return AuditResult(name, len(packages) - len(missing), found, missing)
 
 
-def audited(command: str, name: str) -> Result:
+def audit_locked_file(command: str, name: str) -> AuditResult:
     """Run pip-audit on one locked file, and return the result."""
-    packages = sorted(locked_packages(name))
-    words = [command, *_ASK, "--requirement", str(locked_file(name))]
+    packages = sorted(read_locked_packages(name))
+    words = [command, *_ASK, "--requirement", str(get_locked_file(name))]
     try:
         done = subprocess.run(words, capture_output=True, text=True, timeout=_LONGEST, check=False)
     except subprocess.TimeoutExpired:
-        return Result(name, 0, unchecked=packages)
-    return result_of(name, packages, done.stdout)
+        return AuditResult(name, 0, unchecked_packages=packages)
+    return parse_audit_output(name, packages, done.stdout)
 
 
-def page(results: Sequence[Result], day: str) -> str:
+def format_page(results: Sequence[AuditResult], day: str) -> str:
     """Return the text of the page, including its date."""
     return "\n".join(_lines(results, day)) + "\n"
 
 
-def _lines(results: Sequence[Result], day: str) -> Iterator[str]:
+def _lines(results: Sequence[AuditResult], day: str) -> Iterator[str]:
     yield "# Known vulnerabilities\n"
     yield "Written by `python -m resources.setup.audit`, which asks osv.dev about the locked packages.\n"
-    if not any(each.checked for each in results):
+    if not any(each.checked_count for each in results):
         yield f"{day}: the list could not be reached; **no package was checked**.\n"
     yield f"| locked file ({day}) | packages checked | not checked | known vulnerabilities |"
     yield "|---|---|---|---|"
     for each in results:
-        found = ", ".join(each.found) or ("none" if each.checked else "unknown")
-        yield f"| `locked-{each.name}.txt` | {each.checked} | {len(each.unchecked)} | {found} |"
+        found = ", ".join(each.vulnerabilities) or ("none" if each.checked_count else "unknown")
+        yield (
+            f"| `locked-{each.name}.txt` | {each.checked_count} | {len(each.unchecked_packages)} | {found} |"
+        )
 
 
 def main() -> int:
@@ -89,11 +97,15 @@ def main() -> int:
     if command is None:
         sys.stderr.write("pip-audit is not installed; it asks the list: pipx install pip-audit\n")
         return 2
-    results = [audited(command, name) for name in (*SETS, INSTALLER)]
-    PAGE.write_text(page(results, f"{datetime.now(UTC):%Y-%m-%d}"), encoding="utf-8")
-    sys.stderr.write("".join(f"{each.name}: {', '.join(each.found)}\n" for each in results if each.found))
-    sys.stderr.write(f"{PAGE} has the result\n")
-    return int(any(each.found or each.unchecked for each in results))
+    results = [audit_locked_file(command, name) for name in (*EXTRAS_BY_SET, INSTALLER_SET)]
+    PAGE_PATH.write_text(format_page(results, f"{datetime.now(UTC):%Y-%m-%d}"), encoding="utf-8")
+    sys.stderr.write(
+        "".join(
+            f"{each.name}: {', '.join(each.vulnerabilities)}\n" for each in results if each.vulnerabilities
+        )
+    )
+    sys.stderr.write(f"{PAGE_PATH} has the result\n")
+    return int(any(each.vulnerabilities or each.unchecked_packages for each in results))
 
 
 if __name__ == "__main__":

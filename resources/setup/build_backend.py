@@ -20,7 +20,7 @@ from setuptools.build_meta import (
     prepare_metadata_for_build_editable,
 )
 
-from resources.setup.one_package import in_one_package
+from resources.setup.wheel_merge import merge_packages
 
 __all__ = [
     "build_editable",
@@ -42,5 +42,5 @@ def build_wheel(
     settings = dict(config_settings) if config_settings else None
     name = str(build_meta.build_wheel(wheel_directory, settings, metadata_directory))
     path = Path(wheel_directory) / name
-    path.write_bytes(in_one_package(path.read_bytes()))
+    path.write_bytes(merge_packages(path.read_bytes()))
     return name

@@ -22,12 +22,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from app import VERSION
-from resources.setup.licences import PAGE, LicenceError
-from resources.setup.lock import HERE, HOUSE, PYTHONS, locked_file
-from resources.setup.packages.same_bytes import owned_by_root
-from resources.setup.sbom import Component, file_of_the_system, sbom
+from resources.setup.licences import PAGE_PATH, LicenseError
+from resources.setup.lock import PROJECT_FOLDER, PYTHONS, SETUP_FOLDER, get_locked_file
+from resources.setup.packages.reproducible_archives import normalize_member
+from resources.setup.sbom import Component, build_sbom, build_system_component
 
-GLIBC = {"x86_64": 34, "aarch64": 39}
+GLIBC_MINOR_VERSIONS = {"x86_64": 34, "aarch64": 39}
 """The newest glibc, as 2.n, for which packages are taken: that of Qt's, which needs the newest."""
 _OLD_NAMES = ("manylinux1", "manylinux2010", "manylinux2014")
 _TEXTS = Path("/usr/share/common-licenses")  # where Debian and Ubuntu have the licences that packages share
@@ -38,7 +38,7 @@ class BundleError(Exception):
     """Error that prevents the bundle from being built; the text states the reason."""
 
 
-def run(*words: object, cwd: Path = HOUSE) -> str:
+def run(*words: object, cwd: Path = PROJECT_FOLDER) -> str:
     """Run a command in ``cwd`` and return its output.
 
     Raises BundleError with the last lines of the output if the command fails.
@@ -50,7 +50,7 @@ def run(*words: object, cwd: Path = HOUSE) -> str:
     return done.stdout
 
 
-def version() -> str:
+def get_bundle_version() -> str:
     """Return the version in the bundle, with its commit and date if they are known."""
     try:
         day = run("git", "show", "--no-patch", "--format=%cd", "--date=format:%Y%m%d", "HEAD").strip()
@@ -62,9 +62,9 @@ def version() -> str:
         return VERSION
 
 
-def platforms(machine: str) -> Iterator[str]:
+def list_platform_options(machine: str) -> Iterator[str]:
     """Yield the pip options for all platforms whose wheels run on this machine."""
-    yield from (f"--platform=manylinux_2_{n}_{machine}" for n in range(GLIBC[machine], 4, -1))
+    yield from (f"--platform=manylinux_2_{n}_{machine}" for n in range(GLIBC_MINOR_VERSIONS[machine], 4, -1))
     yield from (f"--platform={each}_{machine}" for each in reversed(_OLD_NAMES))
 
 
@@ -77,11 +77,11 @@ def fetch_wheels(folder: Path, machine: str) -> None:
         for locked in ("desk", "installer"):
             words = ["--quiet", "--disable-pip-version-check", "--only-binary=:all:"]
             words += ["--require-hashes", "--no-deps", f"--dest={folder}"]
-            words += [f"--python-version={python}", *platforms(machine)]
-            run(sys.executable, "-m", "pip", "download", *words, "-r", locked_file(locked))
+            words += [f"--python-version={python}", *list_platform_options(machine)]
+            run(sys.executable, "-m", "pip", "download", *words, "-r", get_locked_file(locked))
 
 
-def build_product(folder: Path) -> None:
+def build_product_wheel(folder: Path) -> None:
     """Build the wheel of TurnDesk from a copy of the source.
 
     The wheel therefore does not contain files of an earlier build.
@@ -90,9 +90,9 @@ def build_product(folder: Path) -> None:
         copy = Path(work) / "turndesk"
         copy.mkdir()
         for room in ("app", "core", "drivers", "resources"):
-            shutil.copytree(HOUSE / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(PROJECT_FOLDER / room, copy / room, ignore=shutil.ignore_patterns("__pycache__"))
         for name in ("pyproject.toml", "setup.cfg", "README.md", "LICENSE"):
-            shutil.copy(HOUSE / name, copy)
+            shutil.copy(PROJECT_FOLDER / name, copy)
         words = ("--quiet", "--no-deps", "--no-build-isolation", f"--wheel-dir={folder}", copy)
         run(sys.executable, "-m", "pip", "wheel", *words)
 
@@ -105,7 +105,7 @@ def fetch_system_packages(folder: Path) -> list[Component]:
     folder.mkdir()
     wanted = re.findall(
         r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$',
-        (HERE / "environment.sh").read_text(encoding="utf-8"),
+        (SETUP_FOLDER / "environment.sh").read_text(encoding="utf-8"),
         re.MULTILINE,
     )
     with tempfile.TemporaryDirectory() as work:
@@ -125,12 +125,12 @@ def fetch_system_packages(folder: Path) -> list[Component]:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
         index.append(f"{control}\nFilename: ./{path.name}\nSize: {path.stat().st_size}\nSHA256: {digest}\n")
         fields = dict(re.findall(r"^(Package|Version): (.*)$", control, re.MULTILINE))
-        components.append(file_of_the_system(fields["Package"], fields["Version"], path, distribution[0]))
+        components.append(build_system_component(fields["Package"], fields["Version"], path, distribution[0]))
     (folder / "Packages").write_text("\n".join(index), encoding="utf-8")
     return components
 
 
-def release_name() -> str:
+def get_system_release() -> str:
     """Return the name of this system's release, such as ``debian12``."""
     text = Path("/etc/os-release").read_text(encoding="utf-8")
     found: dict[str, str] = dict(
@@ -139,7 +139,9 @@ def release_name() -> str:
     return found["ID"] + found.get("VERSION_ID", found.get("VERSION_CODENAME", ""))
 
 
-def gather(folder: Path, machine: str, *, system_packages: bool, wheels: Path | None = None) -> None:
+def collect_bundle_files(
+    folder: Path, machine: str, *, system_packages: bool, wheels: Path | None = None
+) -> None:
     """Put the contents of the bundle into a folder.
 
     ``wheels`` is a folder of wheels that are already downloaded; with None, the wheels are downloaded.
@@ -150,17 +152,20 @@ def gather(folder: Path, machine: str, *, system_packages: bool, wheels: Path | 
     else:
         wheels.mkdir()
         fetch_wheels(wheels, machine)
-    build_product(folder)
+    build_product_wheel(folder)
     system = fetch_system_packages(folder / "debs") if system_packages else []
     shutil.copytree(
-        HERE, folder, dirs_exist_ok=True, ignore=lambda _, names: [n for n in names if not _goes_along(n)]
+        SETUP_FOLDER,
+        folder,
+        dirs_exist_ok=True,
+        ignore=lambda _, names: [n for n in names if not _goes_along(n)],
     )
-    (folder / "VERSION").write_text(version(), encoding="utf-8")
-    document = sbom(version(), [*wheels.glob("*.whl")], system)
+    (folder / "VERSION").write_text(get_bundle_version(), encoding="utf-8")
+    document = build_sbom(get_bundle_version(), [*wheels.glob("*.whl")], system)
     (folder / "sbom.cdx.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
-    shutil.copy(PAGE, folder)
+    shutil.copy(PAGE_PATH, folder)
     (folder / "licences").mkdir()
-    shutil.copy(HOUSE / "LICENSE", folder / "licences" / "TurnDesk")
+    shutil.copy(PROJECT_FOLDER / "LICENSE", folder / "licences" / "TurnDesk")
     for name in _LICENCES:
         if not (text := _TEXTS / name).exists():
             raise BundleError(f"{text} is missing: the bundle has to hold the licences of what it passes on")
@@ -171,14 +176,14 @@ def _goes_along(name: str) -> bool:
     return name in {"environment.sh", "install.sh", "locked-desk.txt", "locked-installer.txt"}
 
 
-def pack(folder: Path, target: Path, machine: str) -> None:
+def write_bundle_file(folder: Path, target: Path, machine: str) -> None:
     """Write one file that unpacks itself.
 
     The file starts with a script, followed by the packed contents. The script contains their SHA-256.
     """
     with tempfile.TemporaryFile() as packed:
         with tarfile.open(fileobj=packed, mode="w") as archive:
-            archive.add(folder, arcname=".", filter=owned_by_root)
+            archive.add(folder, arcname=".", filter=normalize_member)
         packed.seek(0)
         digest = hashlib.file_digest(packed, "sha256").hexdigest()
         megabytes = packed.seek(0, 2) // 1_000_000 + 1
@@ -196,7 +201,7 @@ def _script(words: dict[str, str]) -> bytes:
 
     The position where the packed contents start has four digits.
     """
-    text = (HERE / "unpack.sh").read_text(encoding="utf-8")
+    text = (SETUP_FOLDER / "unpack.sh").read_text(encoding="utf-8")
     return re.sub("@([A-Z0-9]+)@", lambda found: words[found[1]], text).encode()
 
 
@@ -204,18 +209,18 @@ def main(argv: list[str]) -> int:
     """Build the bundle and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.bundle", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=Path(), help="where it is put")
-    parser.add_argument("--machine", choices=GLIBC, default=platform.machine())
+    parser.add_argument("--machine", choices=GLIBC_MINOR_VERSIONS, default=platform.machine())
     parser.add_argument("--system-packages", action="store_true", help="with the libraries of this release")
     args = parser.parse_args(argv)
     if args.system_packages and args.machine != platform.machine():
         parser.error(f"--system-packages for {args.machine} can be had on such a computer only")
-    release = f"-{release_name()}" if args.system_packages else ""
-    target = args.folder / f"turndesk-{version()}-linux-{args.machine}{release}.run"
+    release = f"-{get_system_release()}" if args.system_packages else ""
+    target = args.folder / f"turndesk-{get_bundle_version()}-linux-{args.machine}{release}.run"
     try:
         with tempfile.TemporaryDirectory() as work:
-            gather(Path(work), args.machine, system_packages=args.system_packages)
-            pack(Path(work), target, args.machine)
-    except (BundleError, LicenceError, OSError) as error:
+            collect_bundle_files(Path(work), args.machine, system_packages=args.system_packages)
+            write_bundle_file(Path(work), target, args.machine)
+    except (BundleError, LicenseError, OSError) as error:
         sys.stderr.write(f"No bundle: {error}\n")
         return 1
     sys.stdout.write(f"{target}: {target.stat().st_size // 1_000_000} MB\n")

@@ -13,9 +13,9 @@ from collections.abc import Iterator
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from typing import NamedTuple
 
-from resources.setup.lock import HOUSE, LockedPackage, locked_packages
+from resources.setup.lock import PROJECT_FOLDER, LockedPackage, read_locked_packages
 
-PAGE = HOUSE / "docs" / "licences.md"
+PAGE_PATH = PROJECT_FOLDER / "docs" / "licences.md"
 COMPATIBLE = frozenset(
     {
         *(
@@ -60,19 +60,19 @@ TABLES = (
 _ROW = re.compile(r"^\| (?P<name>[a-z0-9-]+) \| (?P<version>\d\S*) \| (?P<licence>[^|]+) \|", re.MULTILINE)
 
 
-class LicenceError(Exception):
+class LicenseError(Exception):
     """Error for a package whose license does not permit distribution or is not stated."""
 
 
-class Licensed(NamedTuple):
+class LicensedPackage(NamedTuple):
     """Package with its version and its license as an SPDX expression."""
 
     name: str
     version: str
-    licence: str
+    license_expression: str
 
 
-def licence_of(package: Distribution) -> str:
+def get_license(package: Distribution) -> str:
     """Return the license that a package states, as an SPDX expression.
 
     Raises LicenceError if the license is missing or not compatible.
@@ -88,14 +88,14 @@ def licence_of(package: Distribution) -> str:
     offered += [each.rpartition(" :: ")[2] for each in stated("Classifier") if each.startswith("License ::")]
     said = next((each for each in offered if each), "")
     expression = _NAMES.get(said, said)
-    if not compatible(expression):
-        raise LicenceError(
+    if not is_compatible(expression):
+        raise LicenseError(
             f"{name}: {said or 'no licence stated'}: read its text; see COMPATIBLE in {__name__}"
         )
     return expression
 
 
-def compatible(expression: str) -> bool:
+def is_compatible(expression: str) -> bool:
     """Return whether a license expression is compatible.
 
     At least one alternative (OR) must consist only of compatible licenses (AND).
@@ -106,46 +106,46 @@ def compatible(expression: str) -> bool:
     )
 
 
-def listed(name: str, without: str | None) -> Iterator[LockedPackage]:
-    """Return the locked packages of the set ``name`` that are not in the set ``without``."""
-    others = locked_packages(without) if without else {}
-    return (each for each in locked_packages(name).values() if each.name not in others)
+def list_packages_without(name: str, excluded_set: str | None) -> Iterator[LockedPackage]:
+    """Return the locked packages of the set ``name`` that are not in the set ``excluded_set``."""
+    others = read_locked_packages(excluded_set) if excluded_set else {}
+    return (each for each in read_locked_packages(name).values() if each.name not in others)
 
 
-def rows(page: str) -> list[Licensed]:
+def parse_page(page: str) -> list[LicensedPackage]:
     """Return the packages that are listed on a page."""
-    return [Licensed(*found.groups()) for found in _ROW.finditer(page)]
+    return [LicensedPackage(*found.groups()) for found in _ROW.finditer(page)]
 
 
-def tables(known: dict[str, str]) -> str:
+def tables(known_licenses: dict[str, str]) -> str:
     """Return the tables of the page as text.
 
-    ``known`` contains the licenses of packages that are not installed on this computer.
+    ``known_licenses`` contains the licenses of packages that are not installed on this computer.
     """
     lines = []
     for heading, name, without in TABLES:
         lines += [f"## {heading}", "", "| package | version | license |", "|---|---|---|"]
-        for package in listed(name, without):
+        for package in list_packages_without(name, without):
             try:
-                licence = licence_of(distribution(package.name))
+                licence = get_license(distribution(package.name))
             except PackageNotFoundError:
-                licence = known[package.name]
+                licence = known_licenses[package.name]
             lines.append(f"| {package.name} | {package.version} | {licence} |")
         lines.append("")
     return "\n".join(lines)
 
 
-def page(old: str) -> str:
+def update_page(old_page: str) -> str:
     """Return the page with new tables, which replace everything from its first table on."""
-    known = {row.name: row.licence for row in rows(old)}
-    return old.partition(f"## {TABLES[0][0]}")[0] + tables(known)
+    known = {row.name: row.license_expression for row in parse_page(old_page)}
+    return old_page.partition(f"## {TABLES[0][0]}")[0] + tables(known)
 
 
 def main() -> int:
     """Write the page and return the exit status."""
     try:
-        PAGE.write_text(page(PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-    except LicenceError as error:
+        PAGE_PATH.write_text(update_page(PAGE_PATH.read_text(encoding="utf-8")), encoding="utf-8")
+    except LicenseError as error:
         sys.stderr.write(f"{error}\n")
         return 1
     except KeyError as error:

@@ -18,18 +18,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-HERE = Path(__file__).parent
-HOUSE = HERE.parents[1]
+SETUP_FOLDER = Path(__file__).parent
+PROJECT_FOLDER = SETUP_FOLDER.parents[1]
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 """The versions of Python for which the packages are locked and tried."""
 # The tests' first: what the others share with them has the same versions then.
-SETS: dict[str, tuple[str, ...]] = {
+EXTRAS_BY_SET: dict[str, tuple[str, ...]] = {
     "tests": ("dev",),
     "desk": ("canopen", "shop", "postgresql"),
     "scheduler": ("scheduler",),
 }
 """The locked files and the optional dependencies that are in them."""
-INSTALLER = "installer"
+INSTALLER_SET = "installer"
 """The locked file of pip itself, which goes along where no network is."""
 _HEAD = """\
 # Python packages at the versions that were tested together, with the SHA-256 of every file of them.
@@ -51,17 +51,20 @@ class LockedPackage:
     marker: str = ""
 
 
-def locked_file(name: str) -> Path:
+def get_locked_file(name: str) -> Path:
     """Return the path of the file with the locked packages of a set."""
-    return HERE / f"locked-{name}.txt"
+    return SETUP_FOLDER / f"locked-{name}.txt"
 
 
-def locked_packages(name: str) -> dict[str, LockedPackage]:
+def read_locked_packages(name: str) -> dict[str, LockedPackage]:
     """Return the locked packages of a set by name."""
-    return {package.name: package for package in read_locked(locked_file(name).read_text(encoding="utf-8"))}
+    return {
+        package.name: package
+        for package in parse_locked_file(get_locked_file(name).read_text(encoding="utf-8"))
+    }
 
 
-def read_locked(text: str) -> Iterator[LockedPackage]:
+def parse_locked_file(text: str) -> Iterator[LockedPackage]:
     """Yield the packages in the text of a locked file."""
     starts = list(_PIN.finditer(text))
     ends = [each.start() for each in starts[1:]] + [len(text)]
@@ -70,17 +73,17 @@ def read_locked(text: str) -> Iterator[LockedPackage]:
         yield LockedPackage(found["name"], found["version"], hashes, found["marker"] or "")
 
 
-def project() -> dict[str, Any]:
+def read_project_file() -> dict[str, Any]:
     """Return the contents of pyproject.toml."""
-    return tomllib.loads((HOUSE / "pyproject.toml").read_text(encoding="utf-8"))
+    return tomllib.loads((PROJECT_FOLDER / "pyproject.toml").read_text(encoding="utf-8"))
 
 
-def build_packages() -> list[str]:
+def list_build_requirements() -> list[str]:
     """Return the requirements for building TurnDesk itself.
 
     They are also locked, so that the setup downloads nothing that is not locked.
     """
-    return [str(each) for each in project()["build-system"]["requires"]]
+    return [str(each) for each in read_project_file()["build-system"]["requires"]]
 
 
 def main(argv: list[str]) -> int:
@@ -88,9 +91,9 @@ def main(argv: list[str]) -> int:
     if (uv := shutil.which("uv")) is None:
         sys.stderr.write("uv is not installed; it resolves the packages: pipx install uv\n")
         return 2
-    for name in (*SETS, INSTALLER):
-        path = locked_file(name)
-        extras = SETS.get(name, ())
+    for name in (*EXTRAS_BY_SET, INSTALLER_SET):
+        path = get_locked_file(name)
+        extras = EXTRAS_BY_SET.get(name, ())
         command = [uv, "pip", "compile", "--quiet", "--universal", "--generate-hashes", "--no-header"]
         command += [
             "--no-annotate",
@@ -101,11 +104,11 @@ def main(argv: list[str]) -> int:
         ]
         command += [*argv, *(f"--extra={each}" for each in extras), "--output-file", str(path)]
         if name != "tests":
-            command += ["--constraints", str(locked_file("tests"))]
+            command += ["--constraints", str(get_locked_file("tests"))]
         done = subprocess.run(
-            [*command, *(["pyproject.toml"] if name in SETS else []), "-"],
-            cwd=HOUSE,
-            input="\n".join(build_packages() if name in SETS else ["pip"]),
+            [*command, *(["pyproject.toml"] if name in EXTRAS_BY_SET else []), "-"],
+            cwd=PROJECT_FOLDER,
+            input="\n".join(list_build_requirements() if name in EXTRAS_BY_SET else ["pip"]),
             text=True,
             stdout=subprocess.DEVNULL,
             check=False,

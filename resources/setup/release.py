@@ -20,40 +20,51 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from resources.setup.bundle import GLIBC, BundleError, build_product, fetch_wheels, gather, pack, run, version
-from resources.setup.licences import LicenceError
-from resources.setup.lock import HOUSE
+from resources.setup.bundle import (
+    GLIBC_MINOR_VERSIONS,
+    BundleError,
+    build_product_wheel,
+    collect_bundle_files,
+    fetch_wheels,
+    get_bundle_version,
+    run,
+    write_bundle_file,
+)
+from resources.setup.licences import LicenseError
+from resources.setup.lock import PROJECT_FOLDER
 from resources.setup.packages.debian_package import TARGETS, write_debian_package
 from resources.setup.packages.environment_folder import make_environment_folder
-from resources.setup.packages.same_bytes import repack_tar_gz, set_times, write_tar_gz
-from resources.setup.sbom import sbom
+from resources.setup.packages.reproducible_archives import repack_tar_gz, set_times, write_tar_gz
+from resources.setup.sbom import build_sbom
 
-SUMS = "SHA256SUMS"
+CHECKSUM_FILE_NAME = "SHA256SUMS"
 
 
-def build(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
+def build_artifacts(folder: Path, wheels: Path, machine: str, targets: Sequence[str]) -> None:
     """Build all artifacts from the checkout that contains this module.
 
     Raises BundleError or LicenceError.
     """
-    build_product(folder)
+    build_product_wheel(folder)
     wheel = next(folder.glob("turndesk-*.whl"))
     _write_source_distribution(folder)
     with tempfile.TemporaryDirectory() as work:
         gathered = Path(work) / "gathered"
         gathered.mkdir()
-        gather(gathered, machine, system_packages=False, wheels=wheels)
-        pack(gathered, folder / f"turndesk-{version()}-linux-{machine}.run", machine)
+        collect_bundle_files(gathered, machine, system_packages=False, wheels=wheels)
+        write_bundle_file(gathered, folder / f"turndesk-{get_bundle_version()}-linux-{machine}.run", machine)
     for name in targets:
         target = TARGETS[name]
         with tempfile.TemporaryDirectory() as work:
             environment = Path(work) / "environment"
-            make_environment_folder(environment, wheel, target.python, machine, wheels)
+            make_environment_folder(environment, wheel, target.python_version, machine, wheels)
             set_times(environment)
-            stem = f"turndesk-{version()}-linux-{machine}-python{target.python}"
+            stem = f"turndesk-{get_bundle_version()}-linux-{machine}-python{target.python_version}"
             write_tar_gz(environment, folder / f"{stem}.tar.gz", stem)
-            shutil.move(write_debian_package(environment, version(), target, machine, Path(work)), folder)
-    document = sbom(version(), [*wheels.glob("*.whl")])
+            shutil.move(
+                write_debian_package(environment, get_bundle_version(), target, machine, Path(work)), folder
+            )
+    document = build_sbom(get_bundle_version(), [*wheels.glob("*.whl")])
     (folder / "sbom.cdx.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
 
 
@@ -61,20 +72,20 @@ def _write_source_distribution(folder: Path) -> None:
     code = "import sys; from setuptools.build_meta import build_sdist; print(build_sdist(sys.argv[1]))"
     name = run(sys.executable, "-c", code, folder).strip().splitlines()[-1]
     repack_tar_gz(folder / name)
-    shutil.rmtree(HOUSE / "turndesk.egg-info", ignore_errors=True)
+    shutil.rmtree(PROJECT_FOLDER / "turndesk.egg-info", ignore_errors=True)
 
 
-def write_sums(folder: Path) -> None:
+def write_checksums(folder: Path) -> None:
     """Write the SHA-256 of every file in the format that ``sha256sum --check`` reads."""
     lines = []
     for path in sorted(folder.iterdir()):
-        if path.name != SUMS:
+        if path.name != CHECKSUM_FILE_NAME:
             with path.open("rb") as file:
                 lines.append(f"{hashlib.file_digest(file, 'sha256').hexdigest()}  {path.name}\n")
-    (folder / SUMS).write_text("".join(lines), encoding="utf-8")
+    (folder / CHECKSUM_FILE_NAME).write_text("".join(lines), encoding="utf-8")
 
 
-def differences(first: Path, second: Path) -> list[str]:
+def list_differences(first: Path, second: Path) -> list[str]:
     """Return the names of files that differ between two folders, or that exist in only one of them."""
     names = {path.name for folder in (first, second) for path in folder.iterdir()}
     return sorted(name for name in names if _bytes(first / name) != _bytes(second / name))
@@ -84,7 +95,7 @@ def _bytes(path: Path) -> bytes | None:
     return path.read_bytes() if path.exists() else None
 
 
-def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
+def build_release(folder: Path, machine: str, targets: Sequence[str]) -> None:
     """Build the release and write it to a new folder.
 
     Everything is built twice from two clean checkouts and compared. Raises BundleError if the two builds
@@ -100,7 +111,7 @@ def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
         made = []
         for number in ("first", "second"):
             checkout, out = Path(work) / number / "turndesk", Path(work) / f"{number}-release"
-            run("git", "clone", "--quiet", "--no-hardlinks", HOUSE, checkout)
+            run("git", "clone", "--quiet", "--no-hardlinks", PROJECT_FOLDER, checkout)
             run("git", "checkout", "--quiet", run("git", "rev-parse", "HEAD").strip(), cwd=checkout)
             out.mkdir()
             environment = {**os.environ, "SOURCE_DATE_EPOCH": commit_time, "PYTHONPATH": str(checkout)}
@@ -109,9 +120,9 @@ def release(folder: Path, machine: str, targets: Sequence[str]) -> None:
             command = [sys.executable, "-m", "resources.setup.release", *map(str, words)]
             if subprocess.run(command, cwd=checkout, env=environment, check=False).returncode:
                 raise BundleError(f"the {number} build failed")
-            write_sums(out)
+            write_checksums(out)
             made.append(out)
-        if differ := differences(*made):
+        if differ := list_differences(*made):
             raise BundleError(f"two builds of the same commit differ: {', '.join(differ)}")
         shutil.move(made[0], folder)
 
@@ -120,7 +131,7 @@ def main(argv: Sequence[str]) -> int:
     """Build the release and return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m resources.setup.release", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, help="new folder for the release")
-    parser.add_argument("--machine", choices=GLIBC, default=platform.machine())
+    parser.add_argument("--machine", choices=GLIBC_MINOR_VERSIONS, default=platform.machine())
     parser.add_argument(
         "--for",
         dest="targets",
@@ -131,16 +142,20 @@ def main(argv: Sequence[str]) -> int:
     parser.add_argument("--build", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("--wheels", type=Path, help=argparse.SUPPRESS)
     args = parser.parse_args(argv)
-    targets = args.targets or [name for name, each in TARGETS.items() if each.glibc >= GLIBC[args.machine]]
+    targets = args.targets or [
+        name
+        for name, each in TARGETS.items()
+        if each.glibc_minor_version >= GLIBC_MINOR_VERSIONS[args.machine]
+    ]
     try:
         if args.build:
-            build(args.build, args.wheels, args.machine, targets)
+            build_artifacts(args.build, args.wheels, args.machine, targets)
         elif args.folder:
-            release(args.folder, args.machine, targets)
-            sys.stdout.write((args.folder / SUMS).read_text(encoding="utf-8"))
+            build_release(args.folder, args.machine, targets)
+            sys.stdout.write((args.folder / CHECKSUM_FILE_NAME).read_text(encoding="utf-8"))
         else:
             parser.error("name the folder for the release")
-    except (BundleError, LicenceError, OSError) as error:
+    except (BundleError, LicenseError, OSError) as error:
         sys.stderr.write(f"No release: {error}\n")
         return 1
     return 0

@@ -27,7 +27,7 @@ _IGNORED = re.compile(r"^/(?:proc|sys|dev|run|tmp|root|var/(?:cache|log|lib/(?:a
 _PROGRAMS = "lib/python3*/site-packages/turndesk/resources/programs"
 _SAMPLES = f'samples=$(dirname "$(readlink -f /usr/bin/turndesk)")/../{_PROGRAMS}'
 _APT = "DEBIAN_FRONTEND=noninteractive apt-get -qq -y"
-USES: Sequence[tuple[str, str]] = (
+TEST_COMMANDS: Sequence[tuple[str, str]] = (
     ("the version", "turndesk --version"),
     ("a proof", "turndesk prove $samples/pin.nc --offsets $samples/offsets.toml"),
     ("proofs of a folder, by several processes", "turndesk prove $samples --offsets $samples/offsets.toml"),
@@ -42,7 +42,7 @@ USES: Sequence[tuple[str, str]] = (
 """What is tried after the installation and after the upgrade, as shell commands."""
 
 
-def earlier_package(package: Path, folder: Path) -> Path:
+def build_earlier_package(package: Path, folder: Path) -> Path:
     """Return the path of the same package as version 0.0.0, with its files in a different folder."""
     root = folder / "earlier"
     run("dpkg-deb", "--raw-extract", package, root)
@@ -63,7 +63,7 @@ def earlier_package(package: Path, folder: Path) -> Path:
 
 
 @contextmanager
-def bare_root(release: str, folder: Path) -> Iterator[Path]:
+def create_minimal_root(release: str, folder: Path) -> Iterator[Path]:
     """Yield a minimal root file system of a Debian release.
 
     The root has its mounts and the package sources of this computer.
@@ -91,7 +91,7 @@ def bare_root(release: str, folder: Path) -> Iterator[Path]:
             run("umount", "--lazy", root / name)
 
 
-def in_root(root: Path, command: str) -> str:
+def run_in_root(root: Path, command: str) -> str:
     """Run a shell command in the root file system, and return its output.
 
     Raises BundleError if the command fails.
@@ -100,9 +100,9 @@ def in_root(root: Path, command: str) -> str:
     return run("chroot", root, "sh", "-c", lines)
 
 
-def files(root: Path) -> set[str]:
+def list_files(root: Path) -> set[str]:
     """Return the files in the root file system that a purge must not change."""
-    listed = in_root(root, "find / -xdev \\( -type f -o -type l \\) -print").splitlines()
+    listed = run_in_root(root, "find / -xdev \\( -type f -o -type l \\) -print").splitlines()
     return {name for name in listed if not _IGNORED.match(name)}
 
 
@@ -111,34 +111,37 @@ def check(package: Path, release: str) -> Iterator[str]:
 
     Raises BundleError at the first failure.
     """
-    with tempfile.TemporaryDirectory(prefix="turndesk-") as work, bare_root(release, Path(work)) as root:
-        earlier = earlier_package(package, Path(work))
+    with (
+        tempfile.TemporaryDirectory(prefix="turndesk-") as work,
+        create_minimal_root(release, Path(work)) as root,
+    ):
+        earlier = build_earlier_package(package, Path(work))
         shutil.copy(earlier, root / "root" / "earlier.deb")
         shutil.copy(package, root / "root" / "new.deb")
-        in_root(root, f"{_APT} update")
+        run_in_root(root, f"{_APT} update")
         depends = run("dpkg-deb", "--field", package, "Depends")
         names = [re.split(r"[ (|:]", each.strip())[0] for each in depends.split(",")]
-        in_root(root, f"{_APT} install --no-install-recommends {' '.join(names)}")
-        before = files(root)
+        run_in_root(root, f"{_APT} install --no-install-recommends {' '.join(names)}")
+        before = list_files(root)
         for name in ("earlier", "new"):
-            in_root(root, f"dpkg -i /root/{name}.deb")
-            for what, command in USES:
-                in_root(root, command)
+            run_in_root(root, f"dpkg -i /root/{name}.deb")
+            for what, command in TEST_COMMANDS:
+                run_in_root(root, command)
                 yield f"{name}: {what}"
-        if "/opt/turndesk/0.0.0" in "\n".join(files(root)):
+        if "/opt/turndesk/0.0.0" in "\n".join(list_files(root)):
             raise BundleError("the upgrade left files of the earlier version")
-        in_root(root, "dpkg --remove turndesk && dpkg --purge turndesk")
-        if left := sorted(files(root) - before):
+        run_in_root(root, "dpkg --remove turndesk && dpkg --purge turndesk")
+        if left := sorted(list_files(root) - before):
             raise BundleError(f"purge left: {', '.join(left[:10])}")
-        if gone := sorted(before - files(root)):
+        if gone := sorted(before - list_files(root)):
             raise BundleError(f"purge removed files of others: {', '.join(gone[:10])}")
-        if in_root(root, "getent group machine || echo none").strip() != "none":
+        if run_in_root(root, "getent group machine || echo none").strip() != "none":
             raise BundleError("purge left the group machine")
-        in_root(root, "test -s /root/data/turndesk.db || test -d /root/data/logs")
+        run_in_root(root, "test -s /root/data/turndesk.db || test -d /root/data/logs")
         yield "removed and purged: only the data folder remains"
 
 
-def lintian_errors(package: Path) -> list[str]:
+def list_lintian_errors(package: Path) -> list[str]:
     """Return the errors that lintian reports, except those that a documented override explains."""
     done = subprocess.run(
         ["lintian", "--no-cfg", "--tag-display-limit=0", str(package)],
@@ -160,7 +163,7 @@ def main(argv: Sequence[str]) -> int:
         for line in check(args.package, args.release):
             sys.stdout.write(f"{line}\n")
             sys.stdout.flush()
-        errors = [] if args.without_lintian else lintian_errors(args.package)
+        errors = [] if args.without_lintian else list_lintian_errors(args.package)
     except (BundleError, OSError) as error:
         sys.stderr.write(f"The package failed: {error}\n")
         return 1

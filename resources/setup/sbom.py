@@ -17,24 +17,29 @@ from typing import Any
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name, parse_wheel_filename
 
-from resources.setup.licences import licence_of
-from resources.setup.lock import PYTHONS, locked_packages, project
+from resources.setup.licences import get_license
+from resources.setup.lock import PYTHONS, read_locked_packages, read_project_file
 
 Component = dict[str, Any]
 _ROOT = "turndesk"
 
 
-def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ()) -> dict[str, Any]:
+def build_sbom(
+    version: str, wheels: Iterable[Path], system_components: Iterable[Component] = ()
+) -> dict[str, Any]:
     """Return the SBOM for a version of TurnDesk, its wheels and the components of the system.
 
     Raises LicenceError if the license of a package does not permit distribution.
     """
     files = _files(wheels)
-    names = sorted(locked_packages("desk"))
+    names = sorted(read_locked_packages("desk"))
     packages = [_package(name, files.get(name, [])) for name in names]
-    others = [*_brought_along(), *system]
+    others = [*_brought_along(), *system_components]
     needs = {name: sorted(_needs(name) & set(names)) for name in names}
-    asked = {str(canonicalize_name(Requirement(each).name)) for each in project()["project"]["dependencies"]}
+    asked = {
+        str(canonicalize_name(Requirement(each).name))
+        for each in read_project_file()["project"]["dependencies"]
+    }
     product = {"type": "application", "bom-ref": _ROOT, "name": _ROOT, "version": version}
     product["purl"] = f"pkg:generic/{_ROOT}@{version}"
     depends = [{"ref": _ROOT, "dependsOn": sorted(asked | {each["bom-ref"] for each in others})}]
@@ -50,7 +55,7 @@ def sbom(version: str, wheels: Iterable[Path], system: Iterable[Component] = ())
     return document
 
 
-def file_of_the_system(name: str, version: str, path: Path, distribution_name: str) -> Component:
+def build_system_component(name: str, version: str, path: Path, distribution_name: str) -> Component:
     """Return the component for a system package that is part of the bundle.
 
     ``distribution_name`` is "debian" or "ubuntu".
@@ -67,10 +72,10 @@ def file_of_the_system(name: str, version: str, path: Path, distribution_name: s
 
 def _package(name: str, files: list[Path]) -> Component:
     """Return the component for a locked package, with its license and its available files."""
-    locked = locked_packages("desk")[name]
+    locked = read_locked_packages("desk")[name]
     component: Component = {"type": "library", "bom-ref": name, "name": name, "version": locked.version}
     component["purl"] = f"pkg:pypi/{name}@{locked.version}"
-    component["licenses"] = [{"expression": licence_of(distribution(name))}]
+    component["licenses"] = [{"expression": get_license(distribution(name))}]
     if inside := [*_qt(name, locked.version), *map(_file, files)]:
         component["components"] = inside
     return component

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from app.compose.optional_features import extras
 from core.access.access_table import AccessLevel, ProtectedChange
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.interpreter.dialects import get_code_book
 from core.interpreter.omniturn.codes.code_table import CODE_CHAPTERS
 from core.language.klartext import klartext_faults
@@ -26,27 +26,27 @@ from core.language.sinumerik.unsupported_words import UNSUPPORTED_WORDS
 from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WORDS
 from core.language.source import Dialect
 from resources.translations.message_list import write_list
-from resources.translations.reading import marked, texts_of
+from resources.translations.text_extraction import find_marked_texts, find_texts
 
-HERE = Path(__file__).parent
-HOUSE = HERE.parents[1]
-CONTEXT = "turndesk"
+CATALOG_FOLDER = Path(__file__).parent
+PROJECT_FOLDER = CATALOG_FOLDER.parents[1]
+CATALOG_CONTEXT = "turndesk"
 LANGUAGES = ("es",)
 # Of composing, what is said while the screen is open; the rest goes to the console before there is one.
-COMPOSING = "app/compose"
-COMPOSED = (
+COMPOSE_FOLDER = "app/compose"
+COMPOSE_FILES = (
     "accepted_machine.py",
     "part_prover.py",
     "journal.py",
     "desk_assembly.py",
     "desk_services.py",
     "screen_desk.py",
-    *("control_client.py", "control_place.py", "live_control.py"),
+    *("control_client.py", "control_slot.py", "live_control.py"),
     "simulated_backend.py",
     "stored_offsets.py",
     "program_proving.py",
 )
-ROOMS = (
+SCREEN_FOLDERS = (
     *(
         "app/automatic",
         "app/desk",
@@ -63,14 +63,14 @@ ROOMS = (
     *("app/special", "app/transfer"),
     "app/working_plane",
     *("core/alarms", "core/executor", "core/store", "core/interpreter"),
-    *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSING),
+    *("core/language", "core/proving", "core/geometry", "core/motion", "core/part", COMPOSE_FOLDER),
     *("core/production", "core/records", "core/extras", "core/access"),
     "app/shopfloor",
 )
 # Where much is told to programs or to the console: what is marked alone.
-MARKED_ALONE = ("app/shopfloor/", "app/extras/office/", "core/extras/sharing/shared_database.py")
+MARKED_ONLY_PATHS = ("app/shopfloor/", "app/extras/office/", "core/extras/sharing/shared_database.py")
 # Scripts and tables that no screen shows, and what the console is told where there is no screen.
-APART = frozenset(
+EXCLUDED_FILES = frozenset(
     {
         *(
             "access_page.py",
@@ -99,7 +99,7 @@ APART = frozenset(
         *("office_setup.py", "office_check.py", "page_server.py", "shop_network_tables.py"),
         "profile_command.py",
         *("shapes_command.py", "shape_steps.py"),
-        "convert/reasons.py",
+        "convert/conversion_messages.py",
         *("screen/pdf_pages.py", "lines/sinumerik_lines.py"),
         "lines/live_lines.py",
         *(
@@ -110,9 +110,9 @@ APART = frozenset(
     }
 )
 # Of optional features: what their commands print.
-APART_IN_EXTRAS = ("_command.py", "_check.py", "_json_keys.py")
+EXCLUDED_EXTRAS_ENDINGS = ("_command.py", "_check.py", "_json_keys.py")
 # Read by somebody, and not to be told from names by their looks.
-ALSO = (
+ADDITIONAL_TEXTS = (
     "the server does not support TLS; use an address that begins with http://",
     "the server closed the connection without a response",
     "the server accepts TLS only; use an address that begins with https://",
@@ -222,8 +222,12 @@ ALSO = (
     # What a finding rests on; tools are names.
     "stock",
 )
-LOUD = ("app", "core/alarms", "core/executor")  # where a single word in capitals is read by somebody
-HOLE = re.compile(r"\{\w*\}")
+CAPITALS_FOLDERS = (
+    "app",
+    "core/alarms",
+    "core/executor",
+)  # where a single word in capitals is read by somebody
+PLACEHOLDER_PATTERN = re.compile(r"\{\w*\}")
 _NO_TEXT = re.compile(
     r"^\s*(?!SELECT [A-Z][A-Z0-9 ,.:]*$)(SELECT|INSERT|UPDATE|DELETE|CREATE|PRAGMA|BEGIN|COMMIT) .*"
     r"|^\s*(WHERE|FROM|JOIN|LEFT|GROUP|ORDER|ON|AND) [^{]*[a-z].*"  # of ours those are in capitals
@@ -237,7 +241,7 @@ _WORDS = re.compile(r"[^\W\d_]{2,}.*\s+.*[^\W\d_]{2,}|[^\W\d_]{2,}\s*[:.?…]$")
 _LETTERS = re.compile(r"[^\W\d_]{2}")
 _SENTENCE = 3  # words from which on a text of the command line is a sentence and no name
 # Program lines, scripts of other programs and tables of words, which nobody reads as sentences.
-NO_SENTENCES = (
+FILE_ENDINGS_WITHOUT_SENTENCES = (
     "_book.py",
     "_lines.py",
     "cycle_names.py",
@@ -271,48 +275,55 @@ _SHORT = frozenset(
 )
 
 
-def texts() -> dict[str, str]:
+def collect_screen_texts() -> dict[str, str]:
     """Return every text that the screen shows, with the first file that contains the text.
 
     These texts are translated.
     """
     found: dict[str, str] = {}
-    for room in ROOMS:
-        loud = room.startswith(LOUD)
-        for path in sorted((HOUSE / room).rglob("*.py")):
+    for room in SCREEN_FOLDERS:
+        loud = room.startswith(CAPITALS_FOLDERS)
+        for path in sorted((PROJECT_FOLDER / room).rglob("*.py")):
             if not _is_apart(path, room):
-                place = path.relative_to(HOUSE).as_posix()
-                marked_alone = place.startswith(MARKED_ALONE) and path.name != "extra.py"
+                place = path.relative_to(PROJECT_FOLDER).as_posix()
+                marked_alone = place.startswith(MARKED_ONLY_PATHS) and path.name != "extra.py"
                 for text in _texts_of_file(path, loud, marked_alone):
-                    found.setdefault(text, str(path.relative_to(HOUSE)))
-    tables = [*ALSO, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_extras()]
+                    found.setdefault(text, str(path.relative_to(PROJECT_FOLDER)))
+    tables = [*ADDITIONAL_TEXTS, *_of_levels(), *_loud_alarms(), *_of_codes(), *_of_books(), *_of_extras()]
     return {**dict.fromkeys(tables, ""), **found}
 
 
-def console_texts(shown: Container[str]) -> dict[str, str]:
-    """Return the texts of the command line and the drivers that are not in ``shown``, with their files."""
+def collect_console_texts(screen_texts: Container[str]) -> dict[str, str]:
+    """Return the texts of the command line and the drivers that are not in ``screen_texts``, with their
+    files.
+    """
     found: dict[str, str] = {}
     for top in ("app", "core", "drivers"):
-        for path in sorted((HOUSE / top).rglob("*.py")):
-            if not path.name.endswith(NO_SENTENCES):
+        for path in sorted((PROJECT_FOLDER / top).rglob("*.py")):
+            if not path.name.endswith(FILE_ENDINGS_WITHOUT_SENTENCES):
                 for text in _texts_of_file(path, False, False):
-                    if text not in shown and len(text.split()) >= _SENTENCE:
-                        found.setdefault(text, str(path.relative_to(HOUSE)))
+                    if text not in screen_texts and len(text.split()) >= _SENTENCE:
+                        found.setdefault(text, str(path.relative_to(PROJECT_FOLDER)))
     return found
 
 
 def _is_apart(path: Path, room: str) -> bool:
     named = {path.name, f"{path.parent.name}/{path.name}"}
     driver = path.parent.name == "driver"  # of an optional feature
-    if driver or (room == "app/extras" and path.name.endswith(APART_IN_EXTRAS)):
+    if driver or (room == "app/extras" and path.name.endswith(EXCLUDED_EXTRAS_ENDINGS)):
         return True
-    return bool(named & APART) or (room == COMPOSING and path.name not in COMPOSED)
+    return bool(named & EXCLUDED_FILES) or (room == COMPOSE_FOLDER and path.name not in COMPOSE_FILES)
 
 
 def _texts_of_file(path: Path, loud: bool, marked_alone: bool) -> list[str]:
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    read = () if marked_alone else (text for text in texts_of(tree) if _is_read(text, loud))
-    return sorted({*read, *(text for text in marked(tree) if _LETTERS.search(HOLE.sub("", text)))})
+    read = () if marked_alone else (text for text in find_texts(tree) if _is_read(text, loud))
+    return sorted(
+        {
+            *read,
+            *(text for text in find_marked_texts(tree) if _LETTERS.search(PLACEHOLDER_PATTERN.sub("", text))),
+        }
+    )
 
 
 def _of_levels() -> list[str]:
@@ -329,7 +340,7 @@ def _of_codes() -> list[str]:
     said = {code.mdi_error_text for code in codes if code.mdi_error_text} | {code.group for code in codes}
     for refusal in (each for code in codes for each in code.entry_errors):
         said |= {refusal.text, refusal.hint}
-    rules = [rule for code in codes for rule in code.rules.values()]
+    rules = [rule for code in codes for rule in code.word_rules.values()]
     said |= {rule.description for rule in rules if any("{what}" in each.text for each in rule.errors)}
     return sorted(text for text in said if _is_read(text, False))
 
@@ -354,14 +365,14 @@ def _of_extras() -> list[str]:
 
 def _loud_alarms() -> list[str]:
     """Return the alarm texts that differ from their lower-case form, in capitals as the screen shows them."""
-    texts = [entry.text for entry in CATALOGUE.values()]
+    texts = [entry.text for entry in CATALOG.values()]
     return [text.upper() for text in texts if text != text.lower()]
 
 
 def _is_read(text: str, loud: bool) -> bool:
     if text in _SHORT or "\n" in text:
         return loud and text in _SHORT
-    bare = HOLE.sub("", text)
+    bare = PLACEHOLDER_PATTERN.sub("", text)
     if _NO_TEXT.match(text) or not re.search(r"[^\W\d_]{2}", bare):
         return False
     if bare != text and " " in bare and re.search(r"[^\W\d_]{3}", bare):
@@ -369,7 +380,7 @@ def _is_read(text: str, loud: bool) -> bool:
     return bool(_WORDS.search(text)) or (loud and bool(_CAPITALS.match(text)))
 
 
-def catalogue(language: str) -> dict[str, str]:
+def read_translations(language: str) -> dict[str, str]:
     """Return the finished translations in a ``.ts`` file by their English text."""
     return {text: told for text, (told, finished) in _entries(language).items() if finished}
 
@@ -379,7 +390,7 @@ def _entries(language: str) -> dict[str, tuple[str, bool]]:
 
     The result is empty if the file does not exist.
     """
-    path = HERE / f"turndesk_{language}.ts"
+    path = CATALOG_FOLDER / f"turndesk_{language}.ts"
     if not path.exists():
         return {}
     found = {}
@@ -391,27 +402,27 @@ def _entries(language: str) -> dict[str, tuple[str, bool]]:
     return found
 
 
-def write(language: str, wanted: dict[str, str], successors: Mapping[str, str]) -> None:
+def write_catalog(language: str, texts: dict[str, str], former_texts: Mapping[str, str]) -> None:
     """Write the ``.ts`` file with the wanted texts and their translations, and compile the ``.qm`` file.
 
-    ``successors`` maps the present English text to the former text of each reworded text. A reworded text
+    ``former_texts`` maps the present English text to the former text of each reworded text. A reworded text
     retains the former translation, marked as unfinished.
     """
     known = _entries(language)
     root = ET.Element("TS", version="2.1", language=language, sourcelanguage="en")
     context = ET.SubElement(root, "context")
-    ET.SubElement(context, "name").text = CONTEXT
-    for text, file in sorted(wanted.items(), key=lambda entry: (entry[1], entry[0])):
+    ET.SubElement(context, "name").text = CATALOG_CONTEXT
+    for text, file in sorted(texts.items(), key=lambda entry: (entry[1], entry[0])):
         message = ET.SubElement(context, "message")
         ET.SubElement(message, "location", filename=file)
         ET.SubElement(message, "source").text = text
         translation = ET.SubElement(message, "translation")
-        former = known.get(successors.get(text, ""), ("", False))[0]
+        former = known.get(former_texts.get(text, ""), ("", False))[0]
         translation.text, finished = known.get(text, (former, False))
         if not finished:
             translation.set("type", "unfinished")
     ET.indent(root)
-    path = HERE / f"turndesk_{language}.ts"
+    path = CATALOG_FOLDER / f"turndesk_{language}.ts"
     body = ET.tostring(root, encoding="unicode")
     path.write_text(f'<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE TS>\n{body}\n', encoding="utf-8")
     release = Path(sys.executable).with_name("pyside6-lrelease")
@@ -420,12 +431,12 @@ def write(language: str, wanted: dict[str, str], successors: Mapping[str, str]) 
 
 def main() -> int:
     """Update the message list and the catalogs, and return the number of texts without a translation."""
-    shown = texts()
-    successors = write_list({**shown, **console_texts(shown)})
+    shown = collect_screen_texts()
+    successors = write_list({**shown, **collect_console_texts(shown)})
     missing = 0
     for language in LANGUAGES:
-        write(language, shown, successors)
-        missing += len(shown) - len(catalogue(language))
+        write_catalog(language, shown, successors)
+        missing += len(shown) - len(read_translations(language))
     return missing
 
 

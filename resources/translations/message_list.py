@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from itertools import count
 from pathlib import Path
 
-LIST = Path(__file__).with_name("messages.csv")
+LIST_PATH = Path(__file__).with_name("messages.csv")
 _HOLE = re.compile(r"\{\w*\}")
 _WORDS = 5  # of a text in its id
 _SIMILAR = 0.6  # from this ratio on, a text is a reworded one; see difflib
@@ -21,9 +21,9 @@ _SIMILAR = 0.6  # from this ratio on, a text is a reworded one; see difflib
 
 def read_list() -> dict[str, str]:
     """Return the listed texts by id, or an empty dictionary if the list does not exist yet."""
-    if not LIST.exists():
+    if not LIST_PATH.exists():
         return {}
-    with LIST.open(newline="", encoding="utf-8") as file:
+    with LIST_PATH.open(newline="", encoding="utf-8") as file:
         return {row["id"]: row["english"] for row in csv.DictReader(file)}
 
 
@@ -43,7 +43,7 @@ def write_list(texts: Mapping[str, str]) -> dict[str, str]:
         if old:
             successors[text] = gone.pop(old)
         ids[text] = old or _new_id(text, path, ids.values())
-    with LIST.open("w", newline="", encoding="utf-8") as file:
+    with LIST_PATH.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file, lineterminator="\n")
         rows.writerow(("id", "english"))
         rows.writerows(sorted((name, text) for text, name in ids.items()))

@@ -5394,7 +5394,7 @@
       <translation>el proceso del control terminó</translation>
     </message>
     <message>
-      <location filename="app/compose/control/control_place.py" />
+      <location filename="app/compose/control/control_slot.py" />
       <source>the drivers of the control that has ended are still running</source>
       <translation>los controladores de equipo del control que terminó siguen funcionando</translation>
     </message>
@@ -10844,122 +10844,122 @@
       <translation>{rpm:g} RPM RECHAZADAS. ESCRIBA MÁS DE 0, HASTA {highest:g} RPM</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>AXES ARE STILL MOVING. WAIT UNTIL THEY STOP</source>
       <translation>LOS EJES TODAVÍA SE MUEVEN. ESPERE A QUE PAREN</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>CONTACT MADE. BACKING OFF</source>
       <translation>HAY CONTACTO. RETROCEDIENDO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER</source>
       <translation>CORTE EN {other} LO BASTANTE PARA MEDIR Y PULSE ENTER</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>JOG {axis} TO THE DEPTH OF CUT, THEN FEED IN {other}. ESC: CANCEL</source>
       <translation>LLEVE {axis} A LA PROFUNDIDAD DE CORTE, LUEGO AVANCE EN {other}. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED</source>
       <translation>LA MÁQUINA SE PARÓ. PASADA DE MEDIDA CANCELADA. SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>MEASURING WITH A SLOW TOUCH</source>
       <translation>MIDIENDO CON UN TOQUE LENTO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>NO CONTACT. RETURNING</source>
       <translation>SIN CONTACTO. VOLVIENDO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT</source>
       <translation>AÚN NO HAY PASADA, HUSILLO PARADO. PULSE B PARA ARRANCARLO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>NO CUT YET: {axis} MOVED LAST. FEED {other} WITHOUT MOVING {axis}</source>
       <translation>SIN PASADA AÚN: LO ÚLTIMO FUE {axis}. AVANCE {other} SIN MOVER {axis}</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>NO RAPID DURING TOUCH-OFF. PRESS WITHOUT SHIFT</source>
       <translation>SIN RÁPIDO DURANTE EL TOQUE. PULSE SIN MAYÚS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>NO TOOL SELECTED. PRESS T AND TYPE ITS NUMBER</source>
       <translation>NINGUNA HERRAMIENTA ELEGIDA. PULSE T Y ESCRIBA SU NÚMERO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>RETRACT {other} ONLY. DO NOT MOVE {axis}. THEN 0: STOP SPINDLE</source>
       <translation>RETIRE SOLO EN {other}. NO MUEVA {axis}. LUEGO 0: PARAR HUSILLO</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP</source>
       <translation>BUSCANDO EL PALPADOR. SUELTE LA TECLA PARA DETENER</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>SKIM CUT CANCELED, NOTHING CHANGED</source>
       <translation>PASADA DE MEDIDA CANCELADA, SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>SKIM CUT. X: DIAMETER   Z: FACE   ESC: CANCEL</source>
       <translation>PASADA DE MEDIDA. X: DIÁMETRO   Z: CARA   ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>START THE SPINDLE (B), THEN JOG INTO THE CUT. ESC: CANCEL</source>
       <translation>ARRANQUE EL HUSILLO (B), LUEGO VAYA AL CORTE A MANO. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>THIS MACHINE HAS NO TOOL SETTER</source>
       <translation>ESTA MÁQUINA NO TIENE PALPADOR DE HERRAMIENTAS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>TOOL SETTER, T{number}: HOLD {keys} UNTIL THE AXIS RETRACTS. ESC: CANCEL</source>
       <translation>PALPADOR, T{number}: MANTENGA {keys} HASTA QUE EL EJE SE RETIRE. ESC: CANCELAR</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>TOUCH OFF T{number} ONLY IN DIRECTION {ways}</source>
       <translation>TOQUE T{number} SOLO EN LA DIRECCIÓN {ways}</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>TOUCH-OFF FAILED: {why}</source>
       <translation>EL TOQUE FALLÓ: {why}</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>T{number}: TIP DIRECTION NOT SET. PRESS Q AND TYPE 1…9</source>
       <translation>T{number}: DIRECCIÓN DE PUNTA SIN DEFINIR. PULSE Q Y ESCRIBA 1…9</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>measured at the tool setter, direction {direction}, ±{error}</source>
       <translation>medido en el palpador, dirección {direction}, ±{error}</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>{axis} IS NOT HOMED. SKIM CUT CANCELED, NOTHING CHANGED</source>
       <translation>{axis} NO TIENE REFERENCIA. PASADA DE MEDIDA CANCELADA, SIN CAMBIOS</translation>
     </message>
     <message>
-      <location filename="app/jog/skim_and_setter.py" />
+      <location filename="app/jog/skim_cut_and_setter.py" />
       <source>{axis} MOVED {away} AFTER THE CUT. NOT SAVED. CUT AGAIN OR PRESS ESC</source>
       <translation>{axis} SE MOVIÓ {away} TRAS LA PASADA. NO SE GUARDÓ. CORTE DE NUEVO O PULSE ESC</translation>
     </message>
@@ -18514,22 +18514,22 @@
       <translation>retención de avance pedida por {name}</translation>
     </message>
     <message>
-      <location filename="core/executor/recorder.py" />
+      <location filename="core/executor/scope_recorder.py" />
       <source>alarm line</source>
       <translation>línea de la alarma</translation>
     </message>
     <message>
-      <location filename="core/executor/recorder.py" />
+      <location filename="core/executor/scope_recorder.py" />
       <source>the record of an alarm was lost: {error}</source>
       <translation>se perdió el registro de una alarma: {error}</translation>
     </message>
     <message>
-      <location filename="core/executor/recorder.py" />
+      <location filename="core/executor/scope_recorder.py" />
       <source>the scope record is stored in memory only: {error}</source>
       <translation>el registro del osciloscopio se guarda sólo en memoria: {error}</translation>
     </message>
     <message>
-      <location filename="core/executor/recorder.py" />
+      <location filename="core/executor/scope_recorder.py" />
       <source>{folder}: old alarm records cannot be deleted: {cause}</source>
       <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
     </message>
@@ -18639,22 +18639,22 @@
       <translation>{name} NO SE PUEDE CONMUTAR: {error}</translation>
     </message>
     <message>
-      <location filename="core/executor/signals.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>NO RESPONSE FROM OPERATOR STATION</source>
       <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
     </message>
     <message>
-      <location filename="core/executor/signals.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>OVERRIDE SIGNAL UNSTABLE</source>
       <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
     </message>
     <message>
-      <location filename="core/executor/signals.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>{name} TURNED OFF</source>
       <translation>SE APAGÓ {name}</translation>
     </message>
     <message>
-      <location filename="core/executor/signals.py" />
+      <location filename="core/executor/station_signals.py" />
       <source>{name} TURNED ON</source>
       <translation>SE ENCENDIÓ {name}</translation>
     </message>
@@ -19179,57 +19179,57 @@
       <translation>{path} es un dibujo DWG: guárdelo como DXF.</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>Z {front} to {back} is not cut: {why}</source>
       <translation>Z {front} a {back} no se corta: {why}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>except at the listed deviations, the simulated part matches the drawing to within {within} {unit}</source>
       <translation>salvo en las desviaciones indicadas, la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>gaps up to {closed} {unit} were closed</source>
       <translation>se cerraron huecos de hasta {closed} {unit}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>proving did not produce a simulated part, so a comparison with the drawing was not possible</source>
       <translation>la comprobación no produjo una pieza simulada, así que no se pudo comparar con el dibujo</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>secondary offset {number} must have X {x} (diameter), Z {z}, R {radius} {unit}</source>
       <translation>el corrector secundario {number} debe tener X {x} (diámetro), Z {z}, R {radius} {unit}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>the simulated part matches the drawing to within {within} {unit}</source>
       <translation>la pieza simulada coincide con el dibujo con {within} {unit} de diferencia como máximo</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>the tool data of T{tool} has no nose radius, so the contour is not compensated</source>
       <translation>los datos de herramienta de T{tool} no tienen radio de punta, así que el contorno no se compensa</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>{depth} {unit} of stock remains (measured on the radius) from Z {front} to Z {back}</source>
       <translation>quedan {depth} {unit} de material (medidos en el radio) de Z {front} a Z {back}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>{depth} {unit} of stock remains in the corner at Z {position} because of the tool nose radius</source>
       <translation>{depth} {unit} de material quedan en el rincón en Z {position} por el radio de punta del útil</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>{depth} {unit} too much is cut (measured on the radius) from Z {front} to Z {back}</source>
       <translation>se cortan {depth} {unit} de más (medidos en el radio) de Z {front} a Z {back}</translation>
     </message>
     <message>
-      <location filename="core/extras/drawings/profile_job.py" />
+      <location filename="core/extras/drawings/profile_description.py" />
       <source>{edge} must have nose radius {radius} {unit} and tip quadrant {quadrant}</source>
       <translation>{edge} debe tener radio de punta {radius} {unit} y cuadrante de punta {quadrant}</translation>
     </message>
@@ -24234,12 +24234,12 @@
       <translation>líneas {first} a {last}</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/c_turn_at_centerline.py" />
+      <location filename="core/interpreter/shared/centerline_rotation.py" />
       <source>At the spindle centerline, the tool does not move while C turns; route the path around the centerline.</source>
       <translation>En el eje del husillo, la herramienta no se mueve mientras gira C; lleve la trayectoria por un lado del eje.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/shared/c_turn_at_centerline.py" />
+      <location filename="core/interpreter/shared/centerline_rotation.py" />
       <source>The path passes through the spindle centerline, where C turns by {angle} degrees.</source>
       <translation>La trayectoria pasa por el eje del husillo, donde C gira {angle} grados.</translation>
     </message>
@@ -25544,52 +25544,52 @@
       <translation>{name} es texto, no un número.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>Program a different end point.</source>
       <translation>Programe un punto final distinto.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>Program two consecutive moves for the corner.</source>
       <translation>Programe dos movimientos seguidos para la esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>Use CHF, CHR and RND only with G1, G2 and G3.</source>
       <translation>Use CHF, CHR y RND sólo con G1, G2 y G3.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>Write G18 before this block.</source>
       <translation>Escriba G18 antes de este bloque.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>corners in X and Z need G18</source>
       <translation>las esquinas en X y Z necesitan G18</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>the block is not a line or an arc</source>
       <translation>el bloque no es una recta ni un arco</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>the corner needs {needed} mm of the move on line {line}, which is only {left} mm long</source>
       <translation>la esquina necesita {needed} mm del movimiento de la línea {line}, que sólo mide {left} mm</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>the corner size</source>
       <translation>el tamaño de la esquina</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>the moves on lines {line} and {line2} are in the same direction and do not form a corner.</source>
       <translation>los movimientos de las líneas {line} y {line2} van en la misma dirección y no forman una esquina.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/sinumerik/motion/chamfers_and_rounds.py" />
+      <location filename="core/interpreter/sinumerik/motion/chamfers_and_roundings.py" />
       <source>the next move, on line {line}, is not a line or an arc in X and Z</source>
       <translation>el movimiento siguiente, en la línea {line}, no es una recta ni un arco en X y Z</translation>
     </message>

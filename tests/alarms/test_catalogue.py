@@ -13,7 +13,7 @@ from typing import Literal, get_args, get_origin
 
 import pytest
 
-from core.alarms import CATALOGUE, SUBJECTS, AlarmEntry, Reaction
+from core.alarms import ALARM_SUBJECTS, CATALOG, AlarmEntry, Reaction
 from core.alarms.alarm_entry import AlarmCode, ControlAlarmCode
 from core.faults import FaultCode
 
@@ -22,7 +22,7 @@ pytestmark = pytest.mark.long
 HOUSE = Path(__file__).parents[2]
 # Words of whoever wrote the control. An operator has slides, drives, blocks and keys.
 OURS = re.compile(r"\b(splice|queue|tick|commit|snapshot|exception|None|Error|executor|socket|ms)\b")
-ENTRIES = pytest.mark.parametrize("code", sorted(CATALOGUE))
+ENTRIES = pytest.mark.parametrize("code", sorted(CATALOG))
 
 
 def codes_of(alias: object) -> set[str]:
@@ -32,13 +32,13 @@ def codes_of(alias: object) -> set[str]:
 
 
 def test_every_code_has_its_entry_and_every_entry_a_code() -> None:
-    assert codes_of(AlarmCode) == codes_of(FaultCode) | codes_of(ControlAlarmCode) == set(CATALOGUE)
+    assert codes_of(AlarmCode) == codes_of(FaultCode) | codes_of(ControlAlarmCode) == set(CATALOG)
     assert not codes_of(FaultCode) & codes_of(ControlAlarmCode)
 
 
 def test_no_code_and_no_number_is_given_twice() -> None:
-    codes = Counter(code for _, entries in SUBJECTS for code in entries)
-    numbers = Counter(entry.number for entry in CATALOGUE.values())
+    codes = Counter(code for _, entries in ALARM_SUBJECTS for code in entries)
+    numbers = Counter(entry.number for entry in CATALOG.values())
     assert [
         each for each, count in (codes + Counter(map(str, numbers.elements()))).items() if count > 1
     ] == []
@@ -52,13 +52,13 @@ def test_numbers_that_were_there_before_stay() -> None:
         **{"collet-open": 301, "unclamp": 302, "collet": 303, "collet-lost": 304},
         **{"program": 401, "travel": 402, "internal": 901},
     }
-    assert {code: entry.number for code, entry in CATALOGUE.items() if code in known} == known
+    assert {code: entry.number for code, entry in CATALOG.items() if code in known} == known
 
 
 @ENTRIES
 def test_an_entry_says_what_why_and_what_to_do(code: AlarmCode) -> None:
-    entry = CATALOGUE[code]
-    assert [each for each in CATALOGUE.values() if each.number == entry.number] == [entry]
+    entry = CATALOG[code]
+    assert [each for each in CATALOG.values() if each.number == entry.number] == [entry]
     assert 100 <= entry.number <= 999
     assert entry.causes
     for text in (entry.text, entry.remedy, *entry.causes):
@@ -71,7 +71,7 @@ def test_an_entry_says_what_why_and_what_to_do(code: AlarmCode) -> None:
 @ENTRIES
 def test_the_remedy_names_the_key_that_goes_on(code: AlarmCode) -> None:
     """What stops with an alarm is acknowledged by Reset, what holds goes on by Cycle Start."""
-    entry = CATALOGUE[code]
+    entry = CATALOG[code]
     if entry.reaction is Reaction.HOLD:
         assert "Cycle Start" in entry.remedy
 
@@ -116,7 +116,7 @@ def test_no_alarm_exists_outside_the_catalogue() -> None:
     for path, told in house().items():
         for code, line in told.raises:
             found += 1
-            assert code in CATALOGUE, f"{path.relative_to(HOUSE)}:{line} raises {code!r}"
+            assert code in CATALOG, f"{path.relative_to(HOUSE)}:{line} raises {code!r}"
     assert found > 60
 
 
@@ -124,7 +124,7 @@ def test_every_entry_is_raised_somewhere() -> None:
     """An entry that nothing raises is a promise that nobody keeps."""
     catalogue = {HOUSE / "core" / "faults.py", *(HOUSE / "core" / "alarms").iterdir()}
     said = {word for path, told in house().items() if path not in catalogue for word in told.words}
-    unused = [code for code, entry in CATALOGUE.items() if not {code, entry.text.upper()} & said]
+    unused = [code for code, entry in CATALOG.items() if not {code, entry.text.upper()} & said]
     assert unused == []
 
 

@@ -38,11 +38,11 @@ import numpy as np
 from can.interfaces.socketcan.socketcan import build_can_frame, dissect_can_frame
 
 import resources
-from app.compose.backends.canopen_backend import create_canopen_peers
+from app.compose.backends.canopen_backend import create_simulated_devices
 from app.compose.backends.driver_host_process import create_host_drivers
 from app.compose.backends.simulated_devices import simulate_devices
 from app.compose.machine.machine_files import load_machine
-from core.ports import DriverError, FloatArray, MachinePorts, Segments
+from core.ports import DriverError, FloatArray, MachinePorts, MotionSegments
 from drivers.canopen.position_modes import CyclicFollower, SyncSchedule
 from drivers.driver_host.host_connection import HostConnection, SocketLink
 from drivers.driver_host.host_loop import (
@@ -53,7 +53,7 @@ from drivers.driver_host.host_loop import (
 )
 from drivers.driver_host.host_messages import NO_NUMBERS, Message, MessageDecoder, encode_message
 from drivers.driver_host.host_ports import create_host_ports
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 from drivers.wakeups import RealClock
 from tests.benchmarks.footprint import keep_result
 
@@ -113,7 +113,7 @@ def on_pair(descriptor: int) -> None:
 
 def machine_file(folder: Path, sync_ms: int) -> Path:
     """The shipped EPOS4 lathe on a bus between processes."""
-    text = resources.machine_file("gt75-epos4.toml")
+    text = resources.read_machine_file("gt75-epos4.toml")
     port = 20000 + os.getpid() % 20000 + sync_ms
     for old, new in (
         ('interface = "socketcan"', 'interface = "udp_multicast"'),
@@ -178,7 +178,7 @@ def far_end(arguments: list[str]) -> None:
     """Drives and terminals, until they are killed."""
     file, bus = arguments
     on_pair(int(bus))
-    simulate_devices(load_machine(Path(file)), lambda: True, say, tuple, create_canopen_peers)
+    simulate_devices(load_machine(Path(file)), lambda: True, say, tuple, create_simulated_devices)
 
 
 def witness(core: int, out: str) -> None:
@@ -221,14 +221,14 @@ def load(processes: int) -> Iterator[None]:
 # --- measuring -------------------------------------------------------------------------------------------
 
 
-def in_pieces(way: Segments) -> Segments:
+def in_pieces(way: MotionSegments) -> MotionSegments:
     """The same way as a program of short blocks is planned: a piece each 2 ms."""
     rows: list[tuple[float, float, FloatArray, FloatArray, FloatArray]] = []
     for t, dt, p, v, a in zip(*way, strict=True):
         edges = np.linspace(0.0, dt, max(round(dt / PIECE), 1) + 1)
         for at, to in itertools.pairwise(edges):
             rows.append((t + at, to - at, p + (v + 0.5 * a * at) * at, v + a * at, a))
-    return Segments(*(np.array(column) for column in zip(*rows, strict=True)))
+    return MotionSegments(*(np.array(column) for column in zip(*rows, strict=True)))
 
 
 def to_and_fro(ports: MachinePorts, seconds: float) -> str:
@@ -244,9 +244,7 @@ def to_and_fro(ports: MachinePorts, seconds: float) -> str:
             rest = axes.demand_at(axes.horizon())[0]
             start = axes.now() + axes.commit + 0.1
             try:
-                axes.splice(
-                    in_pieces(plan_straight_move(start, rest, 0, target=to, speed=SPEED, accel=ACCEL))
-                )
+                axes.splice(in_pieces(plan_axis_move(start, rest, 0, target=to, speed=SPEED, accel=ACCEL)))
             except DriverError as error:
                 if error.code != "late":  # this process has real-time priority no more than the control has
                     raise

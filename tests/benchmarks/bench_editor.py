@@ -79,7 +79,8 @@ def _measured(app: QApplication, window: MainWindow) -> None:
     _until(
         app,
         lambda: (
-            page.editor.live_proof.current.picture is not None and page.text_field.blockCount() > LINES - 5
+            page.editor.live_proof.current_findings.picture is not None
+            and page.text_field.blockCount() > LINES - 5
         ),
     )
     page.move_cursor_to(LINES // 2, 1)
@@ -97,7 +98,7 @@ def _measured(app: QApplication, window: MainWindow) -> None:
 def _key(app: QApplication, page: EditorPage, key: str) -> tuple[float, float, float]:
     """Press a key; seconds it took, until its findings and until its path were on the screen."""
     checker = page.editor.live_proof
-    before, old = checker.current.number, page.path_view.picture
+    before, old = checker.current_findings.number, page.path_view.picture
     begun = time.perf_counter()
     if key == "\b":
         QTest.keyClick(page.text_field, Qt.Key.Key_Backspace)

@@ -13,7 +13,7 @@ import time
 from hypothesis import HealthCheck, Phase, seed, settings
 from hypothesis.stateful import run_state_machine_as_test
 
-from core.executor.snapshot import TRANSITIONS
+from core.executor.snapshot import STATE_TRANSITIONS
 from tests.executor.model import ExecutorModel
 from tests.executor.model_machine import SEEN
 
@@ -54,11 +54,12 @@ def main(arguments: list[str]) -> int:
 
 
 def _table() -> None:
-    legal = sum(len(after) for after in TRANSITIONS.values())
-    met = sum(new in TRANSITIONS[old] for old, new in SEEN.changes)
+    legal = sum(len(after) for after in STATE_TRANSITIONS.values())
+    met = sum(new in STATE_TRANSITIONS[old] for old, new in SEEN.changes)
     lines = [
         "",
-        f"states seen: {len(SEEN.states)} of {len(TRANSITIONS)}; changes of state seen: {len(SEEN.changes)}, "
+        f"states seen: {len(SEEN.states)} of {len(STATE_TRANSITIONS)}; changes of state seen: "
+        f"{len(SEEN.changes)}, "
         f"{met} of the {legal} in the table",
         "states, ticks: " + ", ".join(f"{state.value} {n}" for state, n in SEEN.states.most_common()),
         "alarms: " + ", ".join(f"{code} {n}" for code, n in SEEN.alarms.most_common()),

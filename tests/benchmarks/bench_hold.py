@@ -88,7 +88,7 @@ def _one_move(chance: random.Random) -> None:
         for _ in range(chance.randrange(40)):
             machine.tick()
         took, speed = machine.hold()
-        allowed = machine.machine.timing.commit + speed / machine.machine.axes[0].amax
+        allowed = machine.machine.timing.commit + speed / machine.machine.axes[0].max_acceleration
         times.append(took - allowed)
         x, z, _ = machine.executor.snapshot.demand
         off.append(abs(4 * x + 3 * z) / 5)  # distance from the line through (0, 0) and (3, -4)

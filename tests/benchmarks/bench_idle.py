@@ -48,7 +48,7 @@ def desk(words: list[str]) -> int:
     from app.cli.main import run_console  # noqa: PLC0415  the parent needs none of it
     from drivers.simulators.plant import SimulatedPlant  # noqa: PLC0415
 
-    begin, splice = threading.Thread.run, SimulatedPlant.splice
+    begin, splice = threading.Thread.run, SimulatedPlant.splice_segments
 
     def named(thread: threading.Thread) -> None:
         Path(f"/proc/self/task/{threading.get_native_id()}/comm").write_text(thread.name[:15])
@@ -59,7 +59,10 @@ def desk(words: list[str]) -> int:
         splice(plant, segments)
 
     sys.argv = ["turndesk", *words]
-    with mock.patch.object(threading.Thread, "run", named), mock.patch.object(SimulatedPlant, "splice", told):
+    with (
+        mock.patch.object(threading.Thread, "run", named),
+        mock.patch.object(SimulatedPlant, "splice_segments", told),
+    ):
         return run_console()
 
 
@@ -226,7 +229,7 @@ def latency(bench: Bench) -> None:
 def in_host(stage: Server, folder: Path, shipped: str, seconds: float, name: str) -> dict[str, float]:
     """A shipped machine whose drivers are a process of their own; its far end is played beside it."""
     machine = folder / shipped
-    text = resources.machine_file(shipped)
+    text = resources.read_machine_file(shipped)
     machine.write_text(text if "\nfeeder = true" in text else text.replace("[machine]\n", HAS_DRIVER_HOST, 1))
     peer = None
     if name == "canopen":

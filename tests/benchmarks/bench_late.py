@@ -175,7 +175,7 @@ class Desk:
     def __init__(self, *, host: bool) -> None:
         self._folder = tempfile.TemporaryDirectory()
         self.home = Path(self._folder.name)
-        text = resources.machine_file("gt75.toml")
+        text = resources.read_machine_file("gt75.toml")
         if host:
             text = text.replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
         (self.home / "m.toml").write_text(text)

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import field_from_section
+from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import FloatArray
 from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView, fit_view
@@ -53,7 +53,7 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
         for side in np.radians(np.arange(0.0, 360.0, 60.0)):
             out, along = np.array([np.cos(side), np.sin(side)]), np.array([-np.sin(side), np.cos(side)])
             ends = np.array([16.0 * out - 30.0 * along, 16.0 * out + 30.0 * along])
-            part.mill_axial(np.column_stack([ends, [-45.0, -45.0]]), 4.0, length=13.0)
+            part.mill_axial(np.column_stack([ends, [-45.0, -45.0]]), 4.0, cutting_length=13.0)
 
     def face_holes(part: MilledPart) -> None:
         for place in np.radians(np.arange(30.0, 390.0, 60.0)):
@@ -62,7 +62,7 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
     def pocket(part: MilledPart) -> None:
         turn = np.linspace(0.0, 2.0 * math.pi, 200)
         circle = np.column_stack([3.0 * np.cos(turn), 3.0 * np.sin(turn), np.full(200, -58.0)])
-        part.mill_axial(circle + np.array([12.0, 0.0, 0.0]), 1.5, length=3.0)
+        part.mill_axial(circle + np.array([12.0, 0.0, 0.0]), 1.5, cutting_length=3.0)
 
     return [
         ("hexagon by six sides", hexagon),
@@ -82,7 +82,7 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
         ),
         (
             "rapid past all of it",
-            lambda part: part.hits_axial(np.array([[25.0, 0.0, 5.0], [25.0, 0.0, -60.0]]), 5.0),
+            lambda part: part.has_axial_collision(np.array([[25.0, 0.0, 5.0], [25.0, 0.0, -60.0]]), 5.0),
         ),
     ]
 
@@ -90,7 +90,7 @@ def operations() -> list[tuple[str, Callable[[MilledPart], object]]]:
 def removal(edges: FloatArray, low: FloatArray, high: FloatArray) -> Solid:
     """Print what each operation costs; the part that is left."""
     begin = time.process_time()
-    part = MilledPart(field_from_section(edges, low, high))
+    part = MilledPart(make_field_from_section(edges, low, high))
     sys.stdout.write(f"{'rays from the section':<32}{1000 * (time.process_time() - begin):>9.1f}\n")
     for name, work in operations():
         begin = time.process_time()

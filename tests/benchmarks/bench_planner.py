@@ -42,7 +42,7 @@ def row(count: int, times: int) -> str:
     blocks = chords(RADIUS, angle, count, FEED)
     path = build_path(blocks, LIMITS)
     planned = plan_motion(path).duration_s
-    ideal = path.length / FEED + FEED / LIMITS.plane_acceleration
+    ideal = path.length / FEED + FEED / LIMITS.max_plane_acceleration
     building = median_ms(lambda: build_path(blocks, LIMITS), max(times // 2, 1))
     planning = median_ms(lambda: plan_motion(path), times)
     windows = median_ms(lambda: _in_windows(blocks), 1)
@@ -55,7 +55,7 @@ def row(count: int, times: int) -> str:
 def rounded(grid: float) -> str:
     """One line of the second table: with words as written, and with joints moved by the machine's step."""
     blocks = rounded_chords(round(math.pi * RADIUS / CHORD), FEED, grid)
-    ideal = math.pi * RADIUS / FEED + FEED / LIMITS.plane_acceleration
+    ideal = math.pi * RADIUS / FEED + FEED / LIMITS.max_plane_acceleration
     written, moved = (plan_motion(build_path(blocks, limits)).duration_s for limits in (LIMITS, STEPPED))
     building = median_ms(lambda: build_path(blocks, STEPPED), PAIRS)
     return f"{grid:>9} {written / ideal:>11.4f} {moved / ideal:>11.4f} {building:>9.1f}\n"

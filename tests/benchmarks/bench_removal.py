@@ -20,7 +20,7 @@ import numpy as np
 
 from core.part.cutter import CutSide, Cutter
 from core.part.stock import make_bar
-from core.part.swept_edge import FloatArray, Point, axis_facing_edge, sweep_edge
+from core.part.swept_edge import FloatArray, Point, find_axis_facing_edge, sweep_edge
 from core.part.turned_part import TurnedPart
 
 MOVES, ROUNDS, STEP = 1000, 7, 0.01
@@ -60,7 +60,7 @@ def checked(work: list[Move]) -> float:
 
 def alone(work: list[Move]) -> float:
     """The metal alone."""
-    part, edge = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), axis_facing_edge(nose())
+    part, edge = TurnedPart(make_bar(2 * RADIUS, FRONT, BACK), STEP), find_axis_facing_edge(nose())
     for start, end in work:
         first, reach = sweep_edge(edge, start, end, part.columns)
         high = part.outer_radii[0, first : first + len(reach)]

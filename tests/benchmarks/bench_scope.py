@@ -30,7 +30,7 @@ from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
-from core.executor.recorder import Recorder
+from core.executor.scope_recorder import ScopeRecorder
 from core.records.record import ScopeRecord
 from tests.benchmarks.bench_screen import Bench
 from tests.scope.played_record import CHANNELS, RATE, PlayedSamples, record_of, seconds
@@ -88,7 +88,7 @@ def played() -> None:
         window._timer.stop()  # frames are made here, one by one
         assert window.frame is not None
         window.frame.open_page(page_table.SCOPE)
-        page, scope = window.frame.current_page, desk.page_registry.find(ScopeModel)
+        page, scope = window.frame.current_page, desk.page_registry.find_model(ScopeModel)
         assert isinstance(page, ScopePage)
         assert scope is not None
         scope.selected_keys = SHOWN
@@ -131,7 +131,7 @@ def running() -> None:
     """Frames with the scope open, once its window is full of samples of the program."""
     with tempfile.TemporaryDirectory() as home:
         bench, _recorder = _on_a_run(Path(home))
-        scope = bench.desk.page_registry.find(ScopeModel)
+        scope = bench.desk.page_registry.find_model(ScopeModel)
         assert scope is not None
         bench.window.press_key("Scope")
         scope.selected_keys = SHOWN
@@ -168,7 +168,7 @@ def hurried() -> None:
         _end(bench)
 
 
-def _opened(bench: Bench, recorder: Recorder, *keys: str) -> None:
+def _opened(bench: Bench, recorder: ScopeRecorder, *keys: str) -> None:
     begun = recorder.ring.samples.last_time_s
     bench.frames.clear()
     for each in keys:
@@ -188,7 +188,7 @@ def pages() -> None:
         frame = bench.window.frame
         assert frame is not None
         begun = recorder.ring.samples.last_time_s
-        for entry in page_table.list_pages(bench.desk.machine.language):
+        for entry in page_table.list_pages(bench.desk.machine.program_language):
             bench.frames.clear()
             bench.window.press_to(entry.name)
             bench.rest(0.5)
@@ -198,7 +198,7 @@ def pages() -> None:
         _end(bench)
 
 
-def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, Recorder]:
+def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, ScopeRecorder]:
     """A desk whose program has begun; ``rested``: all that is made ahead is there."""
     os.environ["TURNDESK_HOME"] = str(home)
     bench = Bench(home, SIZE)
@@ -212,7 +212,7 @@ def _on_a_run(home: Path, *, rested: bool = True) -> tuple[Bench, Recorder]:
         bench.until(lambda: bench.window.page_preloader is not None and bench.window.page_preloader.is_done)
     bench.start()
     recorder = bench.desk.desk_control.recordings
-    assert isinstance(recorder, Recorder)
+    assert isinstance(recorder, ScopeRecorder)
     return bench, recorder
 
 
@@ -239,7 +239,7 @@ def _tell(frames: np.ndarray) -> None:
         say(f"  a frame, {name:14s}: {figures}; {over}\n")
 
 
-def _late(recorder: Recorder, since: float) -> None:
+def _late(recorder: ScopeRecorder, since: float) -> None:
     """By how much ticks came late since an instant of the record."""
     late = 1e3 * recorder.get_record_between(since, np.inf, {"lateness"}).values_by_channel["lateness"]
     late = late[np.isfinite(late)]

@@ -116,7 +116,7 @@ class Operator:
             MachineState.IDLE: self._start,
             MachineState.PROGRAM_STOP: self._new_bar,
             MachineState.HOLD: self._go_on,
-            MachineState.BLOCK_END: self._go_on,
+            MachineState.SINGLE_BLOCK_STOP: self._go_on,
         }
         act = acts.get(shot.state)
         if act is not None:
@@ -241,7 +241,9 @@ class Operator:
     def _sections(self) -> Sequence[SpecialFunction]:
         """The sections of the page of measured parts; none where that feature is not installed."""
         entry = next((page for page in ALL_PAGES if page.name == "MEASURED PARTS"), None)
-        found = self.desk.page_registry.find(import_class(entry.model_class)) if entry is not None else None
+        found = (
+            self.desk.page_registry.find_model(import_class(entry.model_class)) if entry is not None else None
+        )
         return found.functions if isinstance(found, SpecialFunctionList) else ()
 
     def _measure(self) -> None:
@@ -281,21 +283,23 @@ class Operator:
 
     def fresh_insert(self) -> None:
         """The insert has made its parts: a new one, and its wear is nought again."""
-        functions = self.desk.page_registry.find(SpecialFunctionList)
+        functions = self.desk.page_registry.find_model(SpecialFunctionList)
         assert functions is not None
         lives = next(
             each for each in (*self._sections(), *functions.functions) if isinstance(each, ToolLifeFunction)
         )
         lives.marked = 0  # T1
         self._kept()  # right behind the start its life may not be read yet
-        self.shift.settle(lambda: 1 in self.shift.parts_book.current.tool_lives)  # its worker may be late
-        made = self.shift.parts_book.current.tool_lives[1].parts
+        self.shift.settle(
+            lambda: 1 in self.shift.parts_book.current_data.tool_lives
+        )  # its worker may be late
+        made = self.shift.parts_book.current_data.tool_lives[1].parts
         for _ in range(20):  # another answer may have taken the place of the question
             lives.confirm_new_insert()
             self.shift.run(0.6)
             self.desk.confirm_if_unchanged()
             self._kept()
-            if self.shift.parts_book.current.tool_lives[1].parts < made:
+            if self.shift.parts_book.current_data.tool_lives[1].parts < made:
                 break
         else:
             raise StuckError(f"the insert cannot be changed: {self.desk.prompt_notice!r}")

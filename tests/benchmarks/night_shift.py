@@ -16,14 +16,14 @@ from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.error_log import ErrorLog
 from app.compose.runs.journal import Journal
 from app.compose.stored_offsets import read_stored_offsets
-from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
+from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.desk import Desk
 from app.desk.status.state_prompt import make_page_prompt
 from app.production.parts_book import PartsBook
 from app.production.parts_watch import PartsWatch
 from app.programs.atomic_files import write_program_file
 from core.executor.executor import Executor
-from core.executor.recorder import Recorder
+from core.executor.scope_recorder import ScopeRecorder
 from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.store.store import Store
 from drivers.simulators.plant_controls import PlantControls
@@ -171,7 +171,7 @@ class NightShift:
     @property
     def parts_book(self) -> PartsBook:
         """Measured parts and lives."""
-        watch = self.desk.page_registry.find(PartsWatch)
+        watch = self.desk.page_registry.find_model(PartsWatch)
         assert watch is not None
         return watch.parts_book
 
@@ -183,7 +183,7 @@ class NightShift:
         self._ticks += 1
         if self._ticks % FRAME == 0:
             self.frame()
-        if self._ticks % DRAIN == 0 and isinstance(self.desk.desk_control.recordings, Recorder):
+        if self._ticks % DRAIN == 0 and isinstance(self.desk.desk_control.recordings, ScopeRecorder):
             self.desk.desk_control.recordings.store_queued_ticks()
 
     def frame(self) -> None:
@@ -225,14 +225,14 @@ def night_shift() -> Iterator[NightShift]:
     write_program_file(find_data_folder() / "programs" / NAME, PROGRAM.encode())
     clock, journal, log = ManualClock(), Journal.open_default(), ErrorLog()
     desk, executor = create_desk_and_executor(
-        None, read_stored_offsets, clock, journal, find_data_folder() / RECORDS_FOLDER
+        None, read_stored_offsets, clock, journal, find_data_folder() / RECORDS_FOLDER_NAME
     )
     desk.station_controls.clock = clock.now
     try:
         yield NightShift(desk, executor, clock, journal)
     finally:
         executor.shut_down()
-        if isinstance(desk.desk_control.recordings, Recorder):
+        if isinstance(desk.desk_control.recordings, ScopeRecorder):
             desk.desk_control.recordings.close()
         desk.close()
         journal.close()

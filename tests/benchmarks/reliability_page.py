@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.page_contents import make_anchor
 from tests.benchmarks.footprint import RESULTS
 
@@ -177,7 +177,7 @@ def _list(counted: dict[str, int]) -> str:
 
 def _alarms(counted: dict[str, int]) -> str:
     """Return how often each alarm occurred, with the number and text of the catalog."""
-    entries = {str(code): entry for code, entry in CATALOGUE.items()}
+    entries = {str(code): entry for code, entry in CATALOG.items()}
     named = {
         f"{entries[name].number} {entries[name].text.upper()}:" if name in entries else name: count
         for name, count in counted.items()

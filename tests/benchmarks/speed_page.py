@@ -294,7 +294,7 @@ def _removal() -> str:
 
 def _chords() -> str:
     """Half a circle in chords of rounded words: planned time over the ideal one, by the tolerance stated."""
-    ideal = math.pi * RADIUS / FEED + FEED / MotionLimits().plane_acceleration
+    ideal = math.pi * RADIUS / FEED + FEED / MotionLimits().max_plane_acceleration
     tolerances, count = (0.0, 0.0025, 0.0036, 0.005), 0.00127
 
     def ratios(grid: float) -> Iterator[str]:

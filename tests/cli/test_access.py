@@ -121,7 +121,7 @@ def test_each_command_says_who_changes_or_is_known_to_read() -> None:
 def test_each_change_asks_a_rule_before_it_is_made(
     command: str, say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
-    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
     (tmp_path / "part.nc").write_text("G90G94F200\nT1\nX.5Z0\nM30\n")
     (home / "programs").mkdir()
     given = {"home": home, "folder": home / "programs", "file": tmp_path / "b.db",

@@ -39,7 +39,7 @@ def test_its_offsets_are_those_of_the_samples_and_may_be_changed(home: Path) -> 
     journal = Journal.open_default()
     book = create_offset_book(read_stored_offsets, journal)
     assert not book.lock_reason
-    assert book.tools[1].x == pytest.approx(-0.5 * INCH)
+    assert book.tool_offsets[1].x == pytest.approx(-0.5 * INCH)
     journal.close()
     assert not (home / "turndesk.db").exists()  # nothing of it in the store of the machine
 
@@ -48,7 +48,7 @@ def test_the_stock_of_its_lathe_program_is_specified_and_in_a_collet(home: Path)
     with Store.open(open_demo(None), read_only=True) as store:
         kept = load_stored_part(store.settings.read_setting, "bushing.nc")
         assert load_stored_part(store.settings.read_setting, "pinbar.nc") == EMPTY_STORED_PART
-    assert (kept.stock, kept.stick_out) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
+    assert (kept.stock, kept.stick_out_mm) == ("tube:1.0:.4:2.4", pytest.approx(1.2 * INCH))
     assert read_machine(None).clamping.diameter == pytest.approx(2.5 * INCH)
 
 
@@ -105,7 +105,7 @@ def test_its_program_is_one_that_the_machine_runs(machine: str | None) -> None:
     found = read_machine(machine)
     report = prove(source, create_setup(found, tool_offsets={}, secondary_offsets={}), found)
     assert [each for each in report.diagnostics if each.severity is Severity.ERROR] == []
-    assert str(source.dialect) == found.language
+    assert str(source.dialect) == found.mdi_language
 
 
 def test_it_comes_back_with_the_program_and_the_step_of_the_first_job(

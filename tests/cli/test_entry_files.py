@@ -99,10 +99,10 @@ def test_bad_inputs_are_refused(tmp_path: Path, text: str, code: str, value: str
 def test_inputs_that_the_machine_does_not_have(tmp_path: Path) -> None:
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     assert read_inputs_file(path) == {"TB25": True}
-    assert read_inputs_file(written(tmp_path, "[inputs]\n7 = true\n"), known=("7",)) == {"7": True}
+    assert read_inputs_file(written(tmp_path, "[inputs]\n7 = true\n"), known_names=("7",)) == {"7": True}
     path = written(tmp_path, '[inputs]\n"TB25" = true\n')
     with raises_code(CommandError, "unknown-key", "TB2-5"):
-        read_inputs_file(path, known=("TB2-5", "10"))
+        read_inputs_file(path, known_names=("TB2-5", "10"))
 
 
 def test_missing_file_is_refused(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.bug_report.crash_report import report_crash, report_thread
+from app.cli.bug_report.crash_report import report_crash, report_thread_exception
 from app.cli.main import main
 from app.compose.runs import error_log
 from app.compose.runs.error_log import ErrorLog
@@ -67,7 +67,7 @@ def test_a_thread_that_fails_leaves_a_crash_file_and_one_line(
     def fail() -> None:
         raise RuntimeError("in a thread")
 
-    monkeypatch.setattr(threading, "excepthook", report_thread)
+    monkeypatch.setattr(threading, "excepthook", report_thread_exception)
     thread = threading.Thread(target=fail, name="preview")
     thread.start()
     thread.join()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from app import VERSION
-from app.cli.command_parser import is_for_screen
+from app.cli.command_parser import has_only_screen_options
 from app.cli.main import CORE_COMMANDS, build_parser, list_commands
 
 ROOT = Path(__file__).parents[2]
@@ -71,7 +71,7 @@ def test_a_command_has_its_line_of_help_once() -> None:
     "words", [[], ["--help"], ["--demo", "--kiosk"], ["--program", "prove"], ["--machine=a.toml", "--demo"]]
 )
 def test_options_of_the_screen_need_no_command(words: list[str]) -> None:
-    assert is_for_screen(words)
+    assert has_only_screen_options(words)
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,7 @@ def test_options_of_the_screen_need_no_command(words: list[str]) -> None:
     ],
 )
 def test_a_command_or_a_mistake_needs_the_whole_parser(words: list[str]) -> None:
-    assert not is_for_screen(words)
+    assert not has_only_screen_options(words)
 
 
 def test_the_version_is_that_of_the_package() -> None:

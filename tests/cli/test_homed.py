@@ -28,7 +28,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_slides_without_a_position_are_homed_first_and_it_is_said(tmp_path: Path, capsys: Captured) -> None:
-    text = resources.machine_file("gt75.toml")
+    text = resources.read_machine_file("gt75.toml")
     text = text.replace("absolute = true ", "home = { order = 2, speed = 60 }  # X goes last:", 1)
     text = text.replace("absolute = true\n", "home = { order = 1, speed = 60 }\n", 1)
     assert run(tmp_path, text) == 0
@@ -38,7 +38,7 @@ def test_slides_without_a_position_are_homed_first_and_it_is_said(tmp_path: Path
 
 
 def test_slides_that_know_theirs_are_not_homed(tmp_path: Path, capsys: Captured) -> None:
-    assert run(tmp_path, resources.machine_file("gt75.toml")) == 0
+    assert run(tmp_path, resources.read_machine_file("gt75.toml")) == 0
     assert "homing" not in capsys.readouterr().err
 
 

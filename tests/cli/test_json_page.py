@@ -142,7 +142,7 @@ def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
     offsets.write_text("".join(f"[tool.{number}]\nx = 0.0\nz = 0.0\n" for number in (1, 6)))
     broken = tmp_path / "broken.toml"
     fault = 'seed = 1\nfaults = [{ at = 1.5, what = "drive_fault", axis = "X" }]'
-    broken.write_text(resources.machine_file("gt75.toml").replace("seed = 1", fault, 1))
+    broken.write_text(resources.read_machine_file("gt75.toml").replace("seed = 1", fault, 1))
     nozzle = PROGRAMS / "nozzle.h"
     runs = ((path, "gt75"), (path, broken), (nozzle, "ac-table-mill"), (nozzle, "bc-table-mill"))
     words = ("--headless", "--offsets", offsets, "--json", "--machine")
@@ -156,7 +156,7 @@ def test_run(turndesk: Turndesk, offsets: Path, tmp_path: Path) -> None:
 
 def test_machine_check(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    text = resources.machine_file("gt75.toml")
+    text = resources.read_machine_file("gt75.toml")
     path.write_text(text)
     assert turndesk("machine", "accept", path).status == 0
     path.write_text(text.replace("vmax = 300", "vmax = 280").replace("max_feed = 300", "max_feed = 250"))

@@ -30,7 +30,7 @@ def test_shipped_lathe_is_good_and_answers(capsys: Captured) -> None:
 
 def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    path.write_text(resources.machine_file("gt75.toml").replace("GT-75", "OWN", 2))
+    path.write_text(resources.read_machine_file("gt75.toml").replace("GT-75", "OWN", 2))
     assert main(["machine", "check", str(path), "--json"]) == 0
     report = json.loads(capsys.readouterr().out)
     assert (report["file"], report["errors"]) == (str(path), [])
@@ -43,7 +43,7 @@ def test_json_has_every_drive_and_input(capsys: Captured, tmp_path: Path) -> Non
 
 
 def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
-    text = resources.machine_file("gt75.toml").replace("amax = 120", "amax = 0", 1)
+    text = resources.read_machine_file("gt75.toml").replace("amax = 120", "amax = 0", 1)
     path = tmp_path / "bad.toml"
     path.write_text(text.replace("lease_ms", "leese_ms"))
     assert main(["machine", "check", str(path)]) == 2
@@ -57,7 +57,7 @@ def test_every_mistake_is_a_line(capsys: Captured, tmp_path: Path) -> None:
 
 def test_mistakes_as_json(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "bad.toml"
-    path.write_text(resources.machine_file("gt75.toml") + "\n[profibus]\nbaud = 9600\n")
+    path.write_text(resources.read_machine_file("gt75.toml") + "\n[profibus]\nbaud = 9600\n")
     assert main(["machine", "check", str(path), "--json"]) == 2
     report = json.loads(capsys.readouterr().out)
     assert [error["path"] for error in report["errors"]] == ["[profibus]"]
@@ -143,7 +143,9 @@ def test_the_summary_counts_terminals_and_names_a_single_one() -> None:
 
 def test_an_inverter_that_is_not_there_has_its_row(capsys: Captured, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    path.write_text(resources.machine_file("gt75-vfd.toml").replace("/dev/ttyUSB1", str(tmp_path / "none")))
+    path.write_text(
+        resources.read_machine_file("gt75-vfd.toml").replace("/dev/ttyUSB1", str(tmp_path / "none"))
+    )
     assert main(["machine", "check", str(path), "--json"]) == 1
     report = json.loads(capsys.readouterr().out)
     assert [(port["name"], port["state"]) for port in report["ports"]] == [("spindle", "no answer")]

@@ -23,7 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def machine_file(folder: Path, shipped: str = "gt75.toml", **changes: str) -> str:
-    text = resources.machine_file(shipped)
+    text = resources.read_machine_file(shipped)
     for old, new in changes.items():
         assert old in text
         text = text.replace(old, new, 1)

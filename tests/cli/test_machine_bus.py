@@ -14,7 +14,7 @@ from app.cli.main import main
 from core.message import CodedError
 
 Captured = pytest.CaptureFixture[str]
-CAN = resources.machine_file("gt75-canopen.toml")
+CAN = resources.read_machine_file("gt75-canopen.toml")
 
 
 def virtual(tmp_path: Path, **changes: str) -> Path:

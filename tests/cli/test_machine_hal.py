@@ -17,7 +17,7 @@ Captured = pytest.CaptureFixture[str]
 def test_the_file_alone_on_stdout(capsys: Captured) -> None:
     assert main(["machine", "hal", "gt75-mesa-7i76e"]) == 0
     told = capsys.readouterr()
-    assert told.out == resources.hal_file("gt75-mesa-7i76e.hal").read_text(encoding="utf-8")
+    assert told.out == resources.get_hal_path("gt75-mesa-7i76e.hal").read_text(encoding="utf-8")
     assert told.err == ""
 
 
@@ -53,7 +53,7 @@ def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
     assert main(["machine", "hal", "gt75-mesa-7i97", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["board"] == "mesa-7i97"
-    assert told["hal"] == resources.hal_file("gt75-mesa-7i97.hal").read_text(encoding="utf-8")
+    assert told["hal"] == resources.get_hal_path("gt75-mesa-7i97.hal").read_text(encoding="utf-8")
     assert {"place": "INPUT1", "pin": "hm2_7i97.0.inmux.00.input-01", "signal": "in-guard",
             "names": ["io.in.guard"]} in told["wires"]  # fmt: skip
     assert (told["beside"], told["out"]) == ({}, None)
@@ -61,7 +61,7 @@ def test_json_has_file_wires_and_what_to_measure(capsys: Captured) -> None:
 
 
 def test_wrong_pins_are_named_all_at_once(capsys: Captured, tmp_path: Path) -> None:
-    text = resources.machine_file("gt75-mesa-7i97.toml")
+    text = resources.read_machine_file("gt75-mesa-7i97.toml")
     file = tmp_path / "own.toml"
     file.write_text(text.replace("input-01", "input-91").replace("out-01", "out-06"), encoding="utf-8")
     assert main(["machine", "hal", str(file)]) == 2

@@ -90,7 +90,7 @@ def office(tmp_path: Path) -> Path:
     (tmp_path / "home" / "programs").mkdir(parents=True)
     (tmp_path / "home" / "programs" / "part.nc").write_text(PART)
     (tmp_path / "place").mkdir()
-    lathe = resources.machine_file("gt75.toml")
+    lathe = resources.read_machine_file("gt75.toml")
     (tmp_path / "mine.toml").write_text(lathe)
     (tmp_path / "sharing.toml").write_text(f'{lathe}\n[sharing]\nfolder = "{tmp_path / "place"}"\n')
     return tmp_path

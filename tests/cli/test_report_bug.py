@@ -11,8 +11,8 @@ import pytest
 
 from app import VERSION
 from app.cli.bug_report import bug_report
-from app.cli.bug_report.private_texts import event_line, machine_without_names, program_without_comments
-from app.cli.bug_report.replaced_names import Replacements
+from app.cli.bug_report.private_texts import mask_machine_file, mask_program_texts, remove_record_name
+from app.cli.bug_report.replaced_names import PrivateValueReplacer
 from core.message import Message
 from core.store.store import Store
 from core.store.user_records import UserRow
@@ -157,7 +157,7 @@ def test_a_new_installation_has_a_report(home: Path, tmp_path: Path, turndesk: T
     ],
 )
 def test_private_values_are_recognized_by_their_form(text: str, expected: str) -> None:
-    replaced = Replacements()(text)
+    replaced = PrivateValueReplacer()(text)
     assert replaced.startswith(expected)
     assert not any(
         each in replaced for each in ("jo", "private", "192", "2001", "office", "nas", "x1", "flange")
@@ -178,11 +178,11 @@ def test_private_values_are_recognized_by_their_form(text: str, expected: str) -
     ],
 )
 def test_technical_values_remain(text: str) -> None:
-    assert Replacements(public=("gt75.toml",))(text) == text
+    assert PrivateValueReplacer(public=("gt75.toml",))(text) == text
 
 
 def test_a_name_is_replaced_in_any_case_as_a_word_only() -> None:
-    replacements = Replacements(people=["Ann", "A"], programs=["PIN.nc"])
+    replacements = PrivateValueReplacer(people=["Ann", "A"], programs=["PIN.nc"])
     assert replacements("ANN ran pin.nc; PIN is loaded, A, Annex, spinning") == (
         "PERSON-1 ran PROGRAM-1.nc; PROGRAM-1 is loaded, A, Annex, spinning"
     )
@@ -206,7 +206,7 @@ def test_shipped_programs_and_machines_are_public() -> None:
     ],
 )
 def test_comments_and_names_of_a_program_are_hidden(line: str, hidden: str) -> None:
-    found = program_without_comments(line)
+    found = mask_program_texts(line)
     assert "ACME" not in found
     assert found == hidden or '"' in line
 
@@ -222,10 +222,10 @@ def test_comments_and_names_of_a_program_are_hidden(line: str, hidden: str) -> N
     ],
 )
 def test_strings_of_a_machine_file_are_hidden(line: str, expected: str) -> None:
-    assert machine_without_names(line, {"known"}, Replacements()) == expected
+    assert mask_machine_file(line, {"known"}, PrivateValueReplacer()) == expected
 
 
 def test_a_line_of_a_log_that_is_no_json_remains_a_line() -> None:
-    assert event_line("{broken") == "{broken"
-    assert event_line("[1]") == "[1]"
-    assert json.loads(event_line('{"text": "READY", "record": "PIN.scope"}')) == {"text": "READY"}
+    assert remove_record_name("{broken") == "{broken"
+    assert remove_record_name("[1]") == "[1]"
+    assert json.loads(remove_record_name('{"text": "READY", "record": "PIN.scope"}')) == {"text": "READY"}

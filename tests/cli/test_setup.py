@@ -31,7 +31,7 @@ def saved(turndesk: Turndesk, home: Path, tmp_path: Path) -> Path:
     (home / "programs").mkdir()
     (home / "programs" / "part.nc").write_text("G90\nM30\n")
     lathe = tmp_path / "mine.toml"
-    lathe.write_text(resources.machine_file("gt75.toml"))
+    lathe.write_text(resources.read_machine_file("gt75.toml"))
     told = turndesk("setup", "save", tmp_path / "a.setup", "--machine", lathe)
     assert told.status == 0, told.err
     assert "programs: 1, machine file mine.toml" in told.out
@@ -388,7 +388,7 @@ def test_a_manifest_of_gigabytes_is_not_unpacked(saved: Path, turndesk: Turndesk
 
 
 def test_a_list_of_too_many_members_is_not_read(saved: Path, turndesk: Turndesk, tmp_path: Path) -> None:
-    more = {f"programs/{number}": b"" for number in range(setup_archive.MAX_MEMBERS)}
+    more = {f"programs/{number}": b"" for number in range(setup_archive.MAX_MEMBER_COUNT)}
     told = turndesk("setup", "load", _with(saved, tmp_path / "bad.setup", more), "--check")
     assert (told.status, told.code) == (2, "too-many-members")
 

@@ -269,7 +269,9 @@ def test_a_silenced_check_is_a_note_and_counted(turndesk: Turndesk, tmp_path: Pa
     check = found[0]["check"]
     assert found[0]["assumed"] == []
     machine = written(
-        tmp_path, resources.machine_file("gt75.toml") + f'\n[checks]\nsilenced = ["{check}"]\n', "quiet.toml"
+        tmp_path,
+        resources.read_machine_file("gt75.toml") + f'\n[checks]\nsilenced = ["{check}"]\n',
+        "quiet.toml",
     )
     quiet = turndesk(*given, "--machine", machine, "--json")
     (note,) = [each for each in quiet.lines[0]["diagnostics"] if each["check"] == check]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.command_parser import with_program_option
+from app.cli.command_parser import insert_program_option
 from app.cli.main import list_commands
 from tests.cli.conftest import Turndesk
 
@@ -64,7 +64,7 @@ def part(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 @pytest.mark.parametrize("before", [[], ["--kiosk"], ["--machine", "gt75"], ["--machine=gt75", "--demo"]])
 def test_a_file_is_the_program_of_the_screen(part: str, before: list[str]) -> None:
-    assert with_program_option([*before, part], list_commands()) == [*before, "--program", part]
+    assert insert_program_option([*before, part], list_commands()) == [*before, "--program", part]
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_a_file_is_the_program_of_the_screen(part: str, before: list[str]) -> No
     ],
 )
 def test_other_words_are_not_a_program(part: str, argv: list[str]) -> None:
-    assert with_program_option(argv, list_commands()) == argv
+    assert insert_program_option(argv, list_commands()) == argv
 
 
 @pytest.mark.parametrize(

@@ -13,9 +13,9 @@ from typing import TypeVar
 from app.compose.control.control_messages import (
     CommandMessage,
     EventMessage,
-    EventStored,
+    EventStoredMessage,
     HelloMessage,
-    ScreenAlive,
+    ScreenAliveMessage,
     SnapshotMessage,
     StationAction,
 )
@@ -119,7 +119,7 @@ class Screen:
 
     def hear(self, message: EventMessage) -> None:
         """Say that the event is kept."""
-        self.end.send(EventStored(message.number))
+        self.end.send(EventStoredMessage(message.number))
 
     def lose(self) -> None:
         """As a killed screen leaves it."""
@@ -158,7 +158,7 @@ class Bench:
     def alive(self, screen: Screen) -> None:
         """The screen says that it is, and it is heard."""
         feed = 1.0 if self.shot.feed_override < 1.0 else 0.9
-        screen.end.send(ScreenAlive())
+        screen.end.send(ScreenAliveMessage())
         screen.hand("set_feed_pot", feed)
         until(lambda: self.shot.feed_override == feed)
 

@@ -27,19 +27,19 @@ from app.compose.control.control_messages import (
     SCREEN_CONNECTED,
     CloseRequest,
     CommandMessage,
-    ControlFailed,
+    ControlFailedMessage,
     EventMessage,
-    EventStored,
+    EventStoredMessage,
     HelloMessage,
     InterruptedJobNote,
-    MachineClosed,
-    ScreenAlive,
+    MachineClosedMessage,
+    ScreenAliveMessage,
     SnapshotMessage,
     StationAction,
-    ThreadEnded,
+    ThreadEndedMessage,
     is_own_user,
 )
-from app.compose.control.control_start import StartedControl, socket_paths, start_control
+from app.compose.control.control_start import StartedControl, list_socket_paths, start_control
 from app.compose.control.descriptor_passing import SharedMemory, send_descriptor
 from app.compose.runs.receipt import Receipt
 from core.executor.commands import LoadJob, SetSwitch, SupplyProof
@@ -105,7 +105,9 @@ class Peer:
     def sent(self) -> list[object]:
         """What the client posted before a mark."""
         found = list[object]()
-        while not isinstance(message := self.next(CommandMessage, EventStored, StationAction), EventStored):
+        while not isinstance(
+            message := self.next(CommandMessage, EventStoredMessage, StationAction), EventStoredMessage
+        ):
             found.append(message.command if isinstance(message, CommandMessage) else message)
         return found
 
@@ -185,10 +187,10 @@ def connected(snapshot: Snapshot, folder: Path) -> Pair:
 def test_events_are_acknowledged_and_notes_are_handed_on(pair: Pair) -> None:
     job = broken_off()
     pair.peer.end.send(EventMessage(3, LogEvent(1.0, "part", "part 1")))
-    assert pair.peer.next(EventStored) == EventStored(3)
+    assert pair.peer.next(EventStoredMessage) == EventStoredMessage(3)
     assert pair.ear.origins == [EventOrigin("a control", 3)]
     pair.peer.end.send(InterruptedJobNote(job))
-    pair.peer.end.send(ThreadEnded("recorder"))
+    pair.peer.end.send(ThreadEndedMessage("recorder"))
     pair.mark()
     assert [event.kind for event in pair.ear.events] == ["part", "test"]
     assert pair.ear.notes == [job]
@@ -201,7 +203,7 @@ def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, id
     later = replace(idle, t=77.0)
     pair.peer.end.send(InterruptedJobNote(None))
     pair.peer.end.send(SnapshotMessage(later, has_changed=True))
-    pair.peer.end.send(ThreadEnded("a mark"))
+    pair.peer.end.send(ThreadEndedMessage("a mark"))
     until(lambda: bool(pair.ear.ended))
     assert pair.client.snapshot == later
 
@@ -209,7 +211,7 @@ def test_an_unknown_message_and_a_listener_that_fails_end_nothing(pair: Pair, id
 def test_an_event_that_could_not_be_kept_is_not_acknowledged(pair: Pair) -> None:
     pair.ear.fails = True
     pair.peer.end.send(EventMessage(1, LogEvent(1.0, "part", "part 1")))
-    pair.peer.end.send(ThreadEnded("a mark"))
+    pair.peer.end.send(ThreadEndedMessage("a mark"))
     until(lambda: bool(pair.ear.ended))
     pair.ear.fails = False
     pair.client.post_command(SetSwitch("single_block", True))
@@ -229,7 +231,7 @@ def test_hands_and_signs_of_life_go_with_their_time(pair: Pair, idle: Snapshot) 
     assert hand[:2] == ("press_left", ())
     assert hand.acted_at_s == pytest.approx(pair.client.clock.now(), abs=PATIENCE)
     pair.client.report_alive(idle)
-    assert pair.peer.next(ScreenAlive) == ScreenAlive()
+    assert pair.peer.next(ScreenAliveMessage) == ScreenAliveMessage()
     pair.client.report_alive(idle)  # at once: it was told a moment ago
     assert pair.mark() == []
 
@@ -244,7 +246,7 @@ def test_damaged_bytes_are_a_lost_control(pair: Pair, data: bytes) -> None:
 @pytest.mark.parametrize("closed", [False, True])
 def test_a_control_that_ends_by_itself_is_an_alarm(pair: Pair, closed: bool) -> None:
     if closed:  # as SIGTERM ends it
-        pair.peer.end.send(MachineClosed())
+        pair.peer.end.send(MachineClosedMessage())
     pair.peer.end.close()
     until(lambda: pair.client.snapshot.state is MachineState.FAULT)
     until(lambda: bool(pair.ear.stirs))
@@ -260,7 +262,7 @@ def test_a_control_that_the_screen_has_closed_is_none(idle: Snapshot, tmp_path: 
     closing = threading.Thread(target=pair.client.stop_and_close)
     closing.start()
     assert pair.peer.next(CloseRequest) == CloseRequest()
-    pair.peer.end.send(MachineClosed())
+    pair.peer.end.send(MachineClosedMessage())
     pair.peer.end.close()
     closing.join(PATIENCE)
     assert pair.ear.events == []
@@ -352,7 +354,7 @@ class Listening:
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    return socket_paths(tmp_path)[0]
+    return list_socket_paths(tmp_path)[0]
 
 
 def find(tmp_path: Path, path: Path, serve: Callable[[Connection], object]) -> ControlClient | None:
@@ -460,7 +462,7 @@ def test_a_control_whose_queue_is_full_keeps_nobody_waiting(
 
 @pytest.mark.parametrize("why", [SCREEN_CONNECTED])
 def test_a_control_that_has_a_screen_is_left_alone(tmp_path: Path, path: Path, why: str) -> None:
-    assert find(tmp_path, path, lambda end: end.send(ControlFailed(why))) is None
+    assert find(tmp_path, path, lambda end: end.send(ControlFailedMessage(why))) is None
 
 
 def test_a_control_that_ends_just_then_is_none(tmp_path: Path, path: Path) -> None:

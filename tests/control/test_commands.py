@@ -14,7 +14,7 @@ import pytest
 import resources
 from app.compose.control.control_messages import SnapshotMessage
 from app.compose.control.control_server import list_watched_threads
-from app.compose.desk_services import SUPERVISED_THREADS
+from app.compose.desk_services import SUPERVISED_THREAD_TEXTS
 from app.compose.machine.machine_files import load_machine
 from app.compose.machine.machine_setup import get_control_limits, read_machine
 from core.executor import commands
@@ -33,7 +33,7 @@ from core.executor.commands import (
     StopJog,
     StopSpindle,
 )
-from core.executor.hand_motion.drive_test import DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import DriveTestMotion, Shape
 from core.executor.job import Job, Proof, make_job, start_program_pass
 from core.executor.snapshot import LogEvent, MachineState, StartAction
 from core.interpreter.dialects import SharedProgram, interpret_mdi_line
@@ -89,7 +89,7 @@ def _values() -> Mapping[str, object]:
         "float | None": 2.5,
         "int": 1,
         "Direction | None": (1.0, 0.0, 0.0),
-        "DriveTestPath": _made(DriveTestPath),
+        "DriveTestMotion": _made(DriveTestMotion),
         "Mapping[int, ToolOffset]": {3: ToolOffset(1.0, 2.0)},
         "Mapping[int, SecondaryOffset]": {4: SecondaryOffset(1.0)},
         "tuple[Clearance, ...]": (commands.Clearance(job.digest, (1.0, 2.0, 0.0), 3),),
@@ -124,7 +124,7 @@ def test_a_job_of_each_language_runs_as_it_was_proved(source: ProgramSource) -> 
     assert arrived == job
     assert arrived.shared_program.has_same_source(job.shared_program)
     there, here = start_program_pass(arrived, arrived.setup), start_program_pass(job, job.setup)
-    assert repr(list(there.blocks)) == repr(list(here.blocks))
+    assert repr(list(there.block_iterator)) == repr(list(here.block_iterator))
     assert list(there.get_diagnostics()) == list(here.get_diagnostics())
 
 
@@ -145,7 +145,7 @@ def test_what_a_line_leaves_is_the_same_in_both_processes(machine: str) -> None:
     )
     assert here.digest == there.digest
     again: Job = pickle.loads(pickle.dumps(there))
-    blocks, same = (repr(list(start_program_pass(each, each.setup).blocks)) for each in (again, here))
+    blocks, same = (repr(list(start_program_pass(each, each.setup).block_iterator)) for each in (again, here))
     assert blocks == same
 
 
@@ -175,7 +175,7 @@ def test_snapshots_and_events_arrive_as_they_were_sent() -> None:
 
 
 def test_the_screen_can_name_every_thread_that_the_control_tells_of() -> None:
-    assert {"recorder", "pendant"} < set(list_watched_threads()) <= SUPERVISED_THREADS.keys()
+    assert {"recorder", "pendant"} < set(list_watched_threads()) <= SUPERVISED_THREAD_TEXTS.keys()
 
 
 def test_every_shipped_machine_file_is_recognized_by_the_next_screen() -> None:
@@ -196,7 +196,7 @@ class SlowReading:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.begun, self.over = threading.Event(), threading.Event()
-        monkeypatch.setattr(SharedProgram, "read", self.read)
+        monkeypatch.setattr(SharedProgram, "parse_text", self.read)
 
     def read(self, _read: object = None) -> None:
         """Begin, and end when the test says so."""
@@ -276,7 +276,7 @@ def test_a_program_is_read_once_for_all_commands_with_it(
     screen = bench.screen()
     screen.meet()
     read = list[str]()
-    monkeypatch.setattr(SharedProgram, "read", lambda self: read.append(self.source.text))
+    monkeypatch.setattr(SharedProgram, "parse_text", lambda self: read.append(self.source.text))
     job = job_of(SHORT, bench.machine)
     worn = job_of(SHORT, bench.machine, tools={1: ToolOffset(1.0)})
     screen.post(LoadJob(job, Proof(job.digest, ())))

@@ -26,7 +26,7 @@ FROZEN = 5.0  # s; the control waits for 3
 def started(tmp_path: Path, lost: str) -> tuple[str, str]:
     """The files of a simulated lathe with this ``screen_lost``, and of a program of many parts."""
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
-    text = resources.machine_file("gt75.toml")
+    text = resources.read_machine_file("gt75.toml")
     machine.write_text(text.replace("[machine]\n", f'[machine]\nscreen_lost = "{lost}"\n', 1))
     program.write_text(PROGRAM)
     return str(machine), str(program)

@@ -18,7 +18,7 @@ if sys.platform != "linux":
     pytest.skip("the control is a process only on Linux", allow_module_level=True)
 
 from app.compose.backends.driver_host_process import DriverHostProcess
-from app.compose.control.control_place import ControlPlace, ScreenListener
+from app.compose.control.control_slot import ControlSlot, ScreenListener
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError
 from drivers.wakeups import RealClock
@@ -33,8 +33,8 @@ def sockets(folder: Path) -> list[str]:
 @contextmanager
 def owned(folder: Path) -> Iterator[ScreenListener | None]:
     """A place and its listener."""
-    place = ControlPlace(folder)
-    listener = place.listen()
+    place = ControlSlot(folder)
+    listener = place.create_listener()
     try:
         yield listener
     finally:
@@ -53,7 +53,7 @@ def test_each_owner_has_its_own_socket(tmp_path: Path) -> None:
 
 
 def test_a_place_that_is_free_again_is_the_next_to_be_used(tmp_path: Path) -> None:
-    first = ControlPlace(tmp_path)
+    first = ControlSlot(tmp_path)
     with owned(tmp_path):
         first.close()
         with owned(tmp_path):
@@ -67,54 +67,54 @@ def test_an_old_socket_is_replaced(tmp_path: Path) -> None:
     with owned(tmp_path) as listener, socket.socket(socket.AF_UNIX) as screen:
         assert listener is not None
         screen.connect(str(path))
-        listener.accept().close()
+        listener.accept_screen().close()
         assert sockets(tmp_path) == NAMES[:1]
     assert not path.exists()
 
 
 def test_a_control_without_a_free_place_has_no_listener(tmp_path: Path) -> None:
-    places = [ControlPlace(tmp_path) for _ in range(5)]
-    assert [place.drivers is not None for place in places] == [True, True, True, True, False]
-    assert places[4].listen() is None
+    places = [ControlSlot(tmp_path) for _ in range(5)]
+    assert [place.drivers_lock is not None for place in places] == [True, True, True, True, False]
+    assert places[4].create_listener() is None
     for place in places:
         place.close()
 
 
 def test_a_place_is_not_used_before_the_drivers_of_its_last_owner_have_ended(tmp_path: Path) -> None:
-    killed = ControlPlace(tmp_path)
-    assert killed.drivers is not None
-    host = os.dup(killed.drivers)  # inherited by a driver host
+    killed = ControlSlot(tmp_path)
+    assert killed.drivers_lock is not None
+    host = os.dup(killed.drivers_lock)  # inherited by a driver host
     killed.close()
     with pytest.raises(DriverError):
-        ControlPlace(tmp_path, 0.0)
-    found: list[ControlPlace] = []
-    waiting = threading.Thread(target=lambda: found.append(ControlPlace(tmp_path, 30.0)))
+        ControlSlot(tmp_path, 0.0)
+    found: list[ControlSlot] = []
+    waiting = threading.Thread(target=lambda: found.append(ControlSlot(tmp_path, 30.0)))
     waiting.start()
     assert not found
     assert sockets(tmp_path) == []
     assert not (tmp_path / "control-2.lock").exists()  # it waits for the first place
     os.close(host)
     waiting.join(30.0)
-    assert found[0].drivers is not None
+    assert found[0].drivers_lock is not None
     found[0].close()
 
 
 @pytest.mark.real_time
 def test_a_driver_host_holds_the_lock_until_it_has_ended(tmp_path: Path) -> None:
-    place = ControlPlace(tmp_path)
-    host = DriverHostProcess(load_machine(), RealClock(), place.drivers)
+    place = ControlSlot(tmp_path)
+    host = DriverHostProcess(load_machine(), RealClock(), place.drivers_lock)
     place.close()
     with pytest.raises(DriverError):
-        ControlPlace(tmp_path, 0.0)
+        ControlSlot(tmp_path, 0.0)
     host.close()
-    ControlPlace(tmp_path, 0.0).close()
+    ControlSlot(tmp_path, 0.0).close()
 
 
 def test_other_programs_do_not_inherit_the_lock(tmp_path: Path) -> None:
-    place = ControlPlace(tmp_path)
+    place = ControlSlot(tmp_path)
     with subprocess.Popen(["/bin/cat"], stdin=subprocess.PIPE, close_fds=False) as other:
         place.close()
-        ControlPlace(tmp_path, 0.0).close()
+        ControlSlot(tmp_path, 0.0).close()
         assert other.poll() is None
         assert other.stdin is not None
         other.stdin.close()
@@ -122,16 +122,16 @@ def test_other_programs_do_not_inherit_the_lock(tmp_path: Path) -> None:
 
 def test_a_folder_that_cannot_be_written_has_no_place(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    place = ControlPlace(tmp_path / "file" / "home")
-    assert place.drivers is None
-    assert place.listen() is None
+    place = ControlSlot(tmp_path / "file" / "home")
+    assert place.drivers_lock is None
+    assert place.create_listener() is None
     place.close()
 
 
 def test_a_folder_whose_path_is_too_long_for_a_socket_has_its_locks(tmp_path: Path) -> None:
-    place = ControlPlace(tmp_path / ("long" * 30))
-    assert place.drivers is not None
-    assert place.listen() is None
+    place = ControlSlot(tmp_path / ("long" * 30))
+    assert place.drivers_lock is not None
+    assert place.create_listener() is None
     place.close()
 
 

@@ -40,8 +40,8 @@ FIRST, SECOND = job_of(SHORT, one_button()), job_of(LONG, one_button())
 def after(*posted: Command, last: Snapshot = LAST) -> list[Command]:
     state = PostedState(None)
     for command in posted:
-        state.see(command)
-    return state.commands(last)
+        state.note_command(command)
+    return state.list_commands(last)
 
 
 def test_a_control_without_a_program_gets_nothing() -> None:
@@ -119,9 +119,9 @@ def test_switches_are_as_last_shown_except_cycle_repeat() -> None:
 
 def test_an_interrupted_job_is_reported_once_more() -> None:
     state = PostedState(broken_off())
-    assert state.commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
-    state.interrupted = None
-    assert state.commands(LAST) == []
+    assert state.list_commands(LAST) == [ReportInterruptedJob(broken_off(), logged=True)]
+    state.interrupted_job = None
+    assert state.list_commands(LAST) == []
 
 
 def test_the_station_remains_as_it_was_set_without_its_presses() -> None:
@@ -135,11 +135,11 @@ def test_the_station_remains_as_it_was_set_without_its_presses() -> None:
         ("set_feed_pot", (0.5,)),
         ("set_spindle_auto", (False,)),
     ):
-        state.see_hand(name, values)
-    assert state.hands() == [
+        state.note_station_action(name, values)
+    assert state.list_station_actions() == [
         ("press_estop", ()),
         ("set_feed_pot", (0.5,)),
         ("set_spindle_auto", (False,)),
     ]
-    state.see_hand("release_estop", ())
-    assert state.hands()[0] == ("release_estop", ())
+    state.note_station_action("release_estop", ())
+    assert state.list_station_actions()[0] == ("release_estop", ())

@@ -21,9 +21,9 @@ from app.compose.control.control_client import (
     ControlStationControls,
     find_control,
 )
-from app.compose.control.control_start import socket_paths, start_control
-from app.compose.control.process_rights_check import READING, REAL_TIME_PRIORITY
-from app.compose.control.unattended_notes import NOTE_FILE
+from app.compose.control.control_start import list_socket_paths, start_control
+from app.compose.control.process_rights_check import READING_PRIORITY, REAL_TIME_PRIORITY
+from app.compose.control.unattended_notes import NOTE_FILE_NAME
 from app.compose.runs.receipt import Receipt
 from app.desk.data_folder import HOME_VARIABLE
 from core.executor.commands import (
@@ -113,7 +113,7 @@ def desk(folder: Path) -> Iterator[tuple[Desk, subprocess.Popen[bytes]]]:
 
 def found(folder: Path, place: int = 0) -> ControlClient:
     """The control that a lost screen has left."""
-    path = socket_paths(folder)[place]
+    path = list_socket_paths(folder)[place]
     clients: list[ControlClient] = []
 
     def look() -> bool:
@@ -155,7 +155,7 @@ def test_a_killed_control_is_an_alarm_and_the_next_start_finds_none(folder: Path
         process.kill()
         screen.until(MachineState.FAULT)
     assert (folder / "control.sock").is_socket()
-    path = socket_paths(folder)[0]
+    path = list_socket_paths(folder)[0]
     assert find_control(MACHINE, folder, path) is None
     with desk(folder) as (screen, process):
         until(lambda: _listens(path))
@@ -184,12 +184,12 @@ def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
     with desk(folder) as (screen, process):
         screen.run()
         screen.vanish()
-        until_long((folder / NOTE_FILE).exists, lambda: "")
+        until_long((folder / NOTE_FILE_NAME).exists, lambda: "")
         client = found(folder)
         second = Desk(client)
         second.until(MachineState.HOLD)
         assert client.hello_message.interrupted_job is not None
-        assert not (folder / NOTE_FILE).exists()
+        assert not (folder / NOTE_FILE_NAME).exists()
         second.client.stop_and_close()
         assert process.wait(30.0) == 0
         assert second.state is not MachineState.FAULT
@@ -197,7 +197,7 @@ def test_a_lost_screen_is_followed_by_the_next_one(folder: Path) -> None:
 
 def test_a_second_start_while_a_screen_is_connected_has_its_own_control(folder: Path) -> None:
     with desk(folder) as (first, _):
-        path = socket_paths(folder)[0]
+        path = list_socket_paths(folder)[0]
         until(lambda: _listens(path))
         for _ in range(5):  # none of them is left in the queue
             assert find_control(MACHINE, folder, path) is None
@@ -215,7 +215,7 @@ def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path)
         second.client.post_command(EnableDrives())
         second.until(MachineState.IDLE)
         second.vanish()
-        paths = socket_paths(folder)
+        paths = list_socket_paths(folder)
         assert find_control(MACHINE, folder, paths[0]) is None  # it has its screen
         client = found(folder, 1)
         assert client.snapshot.state is MachineState.IDLE
@@ -227,7 +227,7 @@ def test_the_second_control_of_a_folder_is_found_at_its_own_socket(folder: Path)
 
 
 def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None:
-    path = socket_paths(folder)[0]
+    path = list_socket_paths(folder)[0]
     started = start_control(MACHINE, folder)
     ControlClient(started, folder)
     until(lambda: _listens(path))
@@ -236,7 +236,7 @@ def test_the_place_of_a_killed_control_is_used_by_the_next(folder: Path) -> None
     assert not _listens(path)
     with desk(folder):
         until(lambda: _listens(path))
-        assert not socket_paths(folder)[1].exists()
+        assert not list_socket_paths(folder)[1].exists()
 
 
 def test_only_the_reading_thread_has_the_lowest_priority(folder: Path) -> None:
@@ -247,8 +247,8 @@ def test_only_the_reading_thread_has_the_lowest_priority(folder: Path) -> None:
             pytest.skip("the system grants no real-time priority")
         threads = [int(path.name) for path in Path(f"/proc/{process.pid}/task").iterdir()]
         priorities = [os.sched_getparam(thread).sched_priority for thread in threads]
-        assert priorities.count(READING) == 1
-        assert set(priorities) <= {READING, REAL_TIME_PRIORITY, 0}  # 0: threads of numpy
+        assert priorities.count(READING_PRIORITY) == 1
+        assert set(priorities) <= {READING_PRIORITY, REAL_TIME_PRIORITY, 0}  # 0: threads of numpy
         assert os.sched_getparam(process.pid).sched_priority == REAL_TIME_PRIORITY
 
 
@@ -271,7 +271,7 @@ def test_a_folder_in_which_no_socket_can_be_made_is_no_obstacle(folder: Path) ->
 
 def test_a_folder_whose_path_is_too_long_for_a_socket_is_no_obstacle(folder: Path) -> None:
     long = folder / ("long" * 30)
-    assert socket_paths(long) == []
+    assert list_socket_paths(long) == []
     with desk(long) as (screen, _):
         screen.client.post_command(EnableDrives())
         screen.until(MachineState.IDLE)

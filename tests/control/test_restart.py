@@ -55,11 +55,11 @@ class Desk:
         heard = ControlEventHandlers(
             lambda event, _: self.events.append(event), self.notes.append, lambda _: None
         )
-        self.live.begin(heard, self.said.append)
+        self.live.start_threads(heard, self.said.append)
 
     @property
     def process(self) -> int:
-        return self.live.client.hello_message.process
+        return self.live.client.hello_message.process_id
 
     @property
     def alarms(self) -> list[str]:
@@ -70,14 +70,14 @@ class Desk:
 
     def wait(self, ready: Callable[[], bool]) -> None:
         def look() -> bool:
-            self.live.see(self.live.snapshot)
+            self.live.report_alive(self.live.snapshot)
             return ready()
 
         until(look, lambda: (self.live.snapshot, self.said))
 
     def post(self, *commands: Command) -> None:
         for command in commands:
-            self.live.post(command)
+            self.live.post_command(command)
 
     def run(self) -> Job:
         job = job_of(LONG, MACHINE)
@@ -104,7 +104,7 @@ def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[Desk]:
         with suppress(ProcessLookupError):
             os.kill(made.process, signal.SIGCONT)
         made.live.close()
-        assert all(client.handle.wait(0.0) or client.control_process is not None for client in seen)
+        assert all(client.handle.wait_for_end(0.0) or client.control_process is not None for client in seen)
         assert all(
             client.control_process is None or client.control_process.poll() is not None for client in seen
         )
@@ -113,8 +113,8 @@ def desk(folder: Path, machine: Machine = MACHINE) -> Iterator[Desk]:
 @pytest.fixture(autouse=True)
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
     """An operator who waits less long for a control that hangs."""
-    monkeypatch.setattr(live_control, "HANGS", 1.0)
-    monkeypatch.setattr(live_control, "ENDS_IN", 0.5)
+    monkeypatch.setattr(live_control, "HANG_TIMEOUT_S", 1.0)
+    monkeypatch.setattr(live_control, "END_TIMEOUT_S", 0.5)
 
 
 @pytest.fixture
@@ -150,7 +150,7 @@ def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
         screen.run()
         hanging = screen.process
         os.kill(hanging, signal.SIGSTOP)
-        screen.wait(lambda: screen.live.client.silent_for > 0.5)
+        screen.wait(lambda: screen.live.client.silent_time_s > 0.5)
         screen.live.restart()
         screen.live.restart()  # pressed twice
         screen.wait(lambda: screen.process != hanging and screen.live.snapshot.program == "part.nc")
@@ -161,7 +161,7 @@ def test_reset_ends_a_control_that_hangs_and_replaces_it(folder: Path) -> None:
 
 
 def test_a_control_that_responds_again_is_not_ended(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(live_control, "HANGS", 600.0)
+    monkeypatch.setattr(live_control, "HANG_TIMEOUT_S", 600.0)
     with desk(folder) as screen:
         screen.run()
         process = screen.process
@@ -188,7 +188,7 @@ def test_a_control_that_does_not_start_can_be_started_again(
             screen.post(Reset())
             screen.wait(lambda: len(screen.said) == 2)
         assert screen.live.snapshot.state is MachineState.FAULT
-        screen.wait(lambda: not screen.live.restarting)
+        screen.wait(lambda: not screen.live.is_restarting)
         screen.post(Reset())
         screen.until(MachineState.DISABLED)
         assert screen.process != killed
@@ -200,7 +200,7 @@ def test_no_control_is_started_after_the_screen_is_closed(folder: Path) -> None:
         screen.until(MachineState.FAULT)
         screen.live.close()
         screen.post(Reset())
-        assert not screen.live.restarting
+        assert not screen.live.is_restarting
 
 
 def test_a_process_that_does_not_end_is_not_joined_by_another(
@@ -208,18 +208,18 @@ def test_a_process_that_does_not_end_is_not_joined_by_another(
 ) -> None:
     with desk(folder) as screen:
         process = screen.process
-        monkeypatch.setattr(screen.live.client.handle, "kill", lambda _seconds: False)
+        monkeypatch.setattr(screen.live.client.handle, "kill_process", lambda _seconds: False)
         os.kill(process, signal.SIGSTOP)
-        screen.wait(lambda: screen.live.client.silent_for > 1.0)
+        screen.wait(lambda: screen.live.client.silent_time_s > 1.0)
         screen.live.restart()
-        screen.wait(lambda: not screen.live.restarting)
+        screen.wait(lambda: not screen.live.is_restarting)
         assert screen.process == process
         assert len(screen.said) == 2
 
 
 def test_the_estop_and_the_stop_keys_act_on_the_new_control(folder: Path) -> None:
     with desk(folder) as screen:
-        line = screen.live.open_stop_line()
+        line = screen.live.open_stop_socket()
         assert line is not None
         assert screen.live.hands is not None
         screen.live.hands.press_estop()
@@ -252,10 +252,10 @@ def test_the_driver_host_of_a_killed_control_ends_before_another_begins(folder: 
         screen.wait(lambda: any(is_at_place(pid) for pid in children(os.getpid())))
         (new,) = (pid for pid in children(os.getpid()) if is_at_place(pid))
         assert not children(new)  # it waits for the driver host
-        assert not ended.wait(0.0)
+        assert not ended.wait_for_end(0.0)
         os.kill(host, signal.SIGCONT)
         screen.wait(lambda: bool(children(new)))
-        assert ended.wait(0.0)
+        assert ended.wait_for_end(0.0)
         screen.until(MachineState.DISABLED)
         assert screen.process == new
         ended.close()
@@ -294,7 +294,7 @@ def test_a_control_of_another_screen_is_replaced_too(folder: Path, monkeypatch: 
     screen = Desk(LiveControl(found[0], MACHINE, folder))
     screen.begin()
     os.kill(screen.process, signal.SIGSTOP)
-    screen.wait(lambda: screen.live.client.silent_for > 1.0)
+    screen.wait(lambda: screen.live.client.silent_time_s > 1.0)
     screen.live.restart()
     hanging = started.process.pid
     screen.wait(lambda: screen.process != hanging)

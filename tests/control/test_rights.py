@@ -12,12 +12,12 @@ import pytest
 from app.compose.control import process_rights_check
 from app.compose.control.process_rights_check import (
     NICE_VALUE,
-    READING,
+    READING_PRIORITY,
     REAL_TIME_PRIORITY,
     acquire_rights,
     check_rights,
 )
-from drivers.process_rights import lower_thread
+from drivers.process_rights import lower_thread_priority
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="rights of Linux")
 REFUSED = PermissionError(errno.EPERM, os.strerror(errno.EPERM))
@@ -102,24 +102,24 @@ def test_a_thread_of_a_real_time_process_has_a_lower_priority(
 ) -> None:
     system = System(monkeypatch, grants=True)
     monkeypatch.setattr(os, "sched_getscheduler", lambda _: policy)
-    lower_thread(READING)
+    lower_thread_priority(READING_PRIORITY)
     assert system.asked == [(policy, 1)]
-    assert READING < REAL_TIME_PRIORITY
+    assert READING_PRIORITY < REAL_TIME_PRIORITY
 
 
 def test_a_thread_without_real_time_priority_remains_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=True)
-    lower_thread(READING)
+    lower_thread_priority(READING_PRIORITY)
     assert system.asked == []
     monkeypatch.delattr(os, "sched_getscheduler")
-    lower_thread(READING)
+    lower_thread_priority(READING_PRIORITY)
     assert system.asked == []
 
 
 def test_a_refused_lower_priority_is_no_error(monkeypatch: pytest.MonkeyPatch) -> None:
     system = System(monkeypatch, grants=False)
     monkeypatch.setattr(os, "sched_getscheduler", lambda _: os.SCHED_RR)
-    lower_thread(READING)
+    lower_thread_priority(READING_PRIORITY)
     assert system.asked == [(os.SCHED_RR, 1)]
 
 

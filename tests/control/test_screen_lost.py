@@ -10,18 +10,18 @@ from pathlib import Path
 import pytest
 
 from app.compose.control.control_messages import (
-    ControlFailed,
+    ControlFailedMessage,
     EventMessage,
-    EventStored,
+    EventStoredMessage,
     InputChange,
     InterruptedJobNote,
     SnapshotMessage,
 )
-from app.compose.control.control_server import REST_CHECKS, SILENT_CHECKS, STOPPED_CHECKS
+from app.compose.control.control_server import REST_CHECK_COUNT, SILENT_CHECK_COUNT, STOPPED_CHECK_COUNT
 from app.compose.control.unattended_notes import (
-    EVENTS_FILE,
-    NOTE_FILE,
-    LeftEvents,
+    EVENTS_FILE_NAME,
+    NOTE_FILE_NAME,
+    UnconfirmedEvents,
     pop_events,
     read_note,
     remove_note,
@@ -100,7 +100,7 @@ def test_a_second_screen_is_refused_while_one_is_connected(bench: Bench) -> None
     first = bench.screen()
     first.meet()
     second = bench.screen()
-    assert second.take(ControlFailed).reason == "busy"
+    assert second.take(ControlFailedMessage).reason == "busy"
     second.thread.join()
     first.post(SetSwitch("single_block", True))
     first.take(SnapshotMessage, lambda each: each.snapshot.single_block)
@@ -125,7 +125,7 @@ def test_damaged_bytes_end_the_connection_and_nothing_else(bench: Bench, data: b
     screen.thread.join(10.0)
     assert not screen.thread.is_alive()
     with pytest.raises(EOFError):
-        screen.take(ControlFailed)
+        screen.take(ControlFailedMessage)
     bench.screen().meet()
 
 
@@ -171,8 +171,8 @@ def test_a_silent_screen_holds_although_its_threads_answer(bench: Bench) -> None
     bench.alive(screen)
     bench.looks(1)
     assert bench.shot.state in ACTIVE_STATES
-    for _ in range(SILENT_CHECKS):
-        screen.end.send(EventStored(0))
+    for _ in range(SILENT_CHECK_COUNT):
+        screen.end.send(EventStoredMessage(0))
         bench.server.check_screen()
     bench.until(MachineState.HOLD)
 
@@ -181,11 +181,11 @@ def test_a_screen_that_is_alive_holds_nothing(bench: Bench) -> None:
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    for _ in range(SILENT_CHECKS - 2):
+    for _ in range(SILENT_CHECK_COUNT - 2):
         bench.server.check_screen()
     bench.alive(screen)
     bench.looks(5)
-    for _ in range(SILENT_CHECKS - 7):
+    for _ in range(SILENT_CHECK_COUNT - 7):
         bench.server.check_screen()
     bench.looks(1)
     assert bench.shot.state in ACTIVE_STATES
@@ -196,7 +196,7 @@ def test_what_the_machine_starts_by_itself_while_the_screen_is_silent_is_held(be
     screen.meet()
     job = bench.run(screen)
     bench.alive(screen)
-    bench.looks(SILENT_CHECKS)
+    bench.looks(SILENT_CHECK_COUNT)
     bench.until(MachineState.HOLD)
     bench.start(screen, job)  # not ``Alive``: as buttons of the machine do it
     bench.until(MachineState.RUN)
@@ -229,7 +229,7 @@ def test_a_part_is_finished_without_a_screen_and_no_other_begins(tmp_path: Path)
         assert hello.snapshot.next_barred == barred
         assert hello.interrupted_job is None
         assert len(other.events("part")) == bench.shot.parts
-        bench.looks(SILENT_CHECKS + 1)
+        bench.looks(SILENT_CHECK_COUNT + 1)
         assert bench.shot.next_barred == barred  # its window is not open yet
         bench.alive(other)
         bench.looks(1)
@@ -245,7 +245,7 @@ def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, la
         if not late:
             screen.post(BlockNextPart("TOOL 3 IS WORN"))
             until(lambda: bench.shot.next_barred == "TOOL 3 IS WORN")
-        bench.looks(SILENT_CHECKS)
+        bench.looks(SILENT_CHECK_COUNT)
         until(lambda: bench.shot.next_barred not in {"", "TOOL 3 IS WORN"})
         if late:  # it is back, and nobody has looked yet
             screen.post(BlockNextPart("TOOL 3 IS WORN"))
@@ -255,14 +255,14 @@ def test_why_the_screen_had_barred_the_next_part_stands_again(tmp_path: Path, la
         assert bench.shot.next_barred == "TOOL 3 IS WORN"
 
 
-@pytest.mark.parametrize(("looks", "runs"), [(REST_CHECKS - 1, False), (REST_CHECKS, False)])
+@pytest.mark.parametrize(("looks", "runs"), [(REST_CHECK_COUNT - 1, False), (REST_CHECK_COUNT, False)])
 def test_a_machine_at_rest_without_a_screen_is_closed(bench: Bench, looks: int, runs: bool) -> None:
     screen = bench.screen()
     screen.meet()
     screen.lose()
     for _ in range(looks):
         bench.server.check_screen()
-    assert bench.server.closing_event.is_set() is (looks >= REST_CHECKS)
+    assert bench.server.closing_event.is_set() is (looks >= REST_CHECK_COUNT)
 
 
 def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
@@ -272,7 +272,7 @@ def test_a_held_program_waits_longer_for_a_screen(bench: Bench) -> None:
     screen.lose()
     bench.looks(1)
     bench.until(MachineState.HOLD)
-    for _ in range(STOPPED_CHECKS - 2):
+    for _ in range(STOPPED_CHECK_COUNT - 2):
         bench.server.check_screen()
     assert not bench.server.closing_event.is_set()
     bench.server.check_screen()
@@ -289,7 +289,7 @@ def test_what_is_interrupted_without_a_screen_is_noted_for_the_next_start(
     screen.meet()
     bench.run(screen)
     noted = screen.take(InterruptedJobNote, lambda each: each.job is not None).job
-    assert not (tmp_path / NOTE_FILE).exists()
+    assert not (tmp_path / NOTE_FILE_NAME).exists()
     screen.lose()
     bench.looks(1)
     known, left = read_note(tmp_path)
@@ -305,10 +305,10 @@ def test_that_nothing_is_interrupted_is_noted_too(bench: Bench, tmp_path: Path) 
     screen.meet()
     screen.lose()  # its store may have the note of a part that has ended since
     bench.looks(1)
-    assert json.loads((tmp_path / NOTE_FILE).read_bytes()) is None
+    assert json.loads((tmp_path / NOTE_FILE_NAME).read_bytes()) is None
     other = bench.screen()
     other.meet()
-    assert not (tmp_path / NOTE_FILE).exists()
+    assert not (tmp_path / NOTE_FILE_NAME).exists()
 
 
 def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path) -> None:
@@ -317,7 +317,7 @@ def test_a_screen_that_goes_at_once_leaves_the_note(bench: Bench, tmp_path: Path
     bench.run(screen)
     screen.lose()
     bench.looks(1)
-    assert (tmp_path / NOTE_FILE).exists()
+    assert (tmp_path / NOTE_FILE_NAME).exists()
     other = bench.screen()  # with another machine file
     other.meet()
     other.lose()
@@ -331,7 +331,7 @@ def test_a_screen_that_takes_its_time_to_open_is_not_silent(bench: Bench) -> Non
     screen = bench.screen()
     screen.meet()
     bench.run(screen)
-    bench.looks(SILENT_CHECKS + 1)
+    bench.looks(SILENT_CHECK_COUNT + 1)
     assert bench.shot.state in ACTIVE_STATES
 
 
@@ -355,7 +355,7 @@ def test_a_screen_that_comes_while_the_note_is_saved_leaves_none(
 
     monkeypatch.setattr("app.compose.control.control_server.save_note", slowly)
     bench.looks(1)
-    assert not (tmp_path / NOTE_FILE).exists()
+    assert not (tmp_path / NOTE_FILE_NAME).exists()
 
 
 def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> None:
@@ -374,7 +374,7 @@ def test_events_that_no_screen_has_kept_outlive_the_control(tmp_path: Path) -> N
     assert [row.kind for row in rows].count("part") == 1
     assert "load" not in {row.kind for row in rows}
     assert rows[0].at < rows[-1].at
-    assert pop_events(tmp_path) == LeftEvents()
+    assert pop_events(tmp_path) == UnconfirmedEvents()
     save_events(tmp_path, left)
     for _ in range(2):
         Journal(tmp_path).close()
@@ -404,7 +404,7 @@ def test_the_note_of_a_control_without_a_screen_is_newer_than_the_store(
 def test_a_store_that_cannot_be_opened_leaves_the_note_to_the_next_start(tmp_path: Path) -> None:
     save_note(tmp_path, broken_off())
     row = EventRow("2026-05-04T09:30:00.000Z", "part", "part 1")
-    save_events(tmp_path, LeftEvents("part.nc", (row,), (EventOrigin("control", 5),)))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", (row,), (EventOrigin("control", 5),)))
     with Store.open(tmp_path):  # by another TurnDesk
         journal = Journal(tmp_path)
         assert journal.left is None
@@ -421,14 +421,14 @@ def test_left_events_that_a_screen_has_stored_are_not_stored_again(tmp_path: Pat
     origins = tuple(EventOrigin("control", number) for number in (5, 6, 7))
     with Store.open(tmp_path) as store:
         store.runs.record_event(row, "part.nc", origins[1])  # and was killed before it confirmed it
-    save_events(tmp_path, LeftEvents("part.nc", (row, row, row), origins))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", (row, row, row), origins))
     journal = Journal(tmp_path)
     journal.close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 2
         assert store.runs.read_last_origin() == origins[2]
     other = tuple(EventOrigin("another", number) for number in (1, 2, 3))
-    save_events(tmp_path, LeftEvents("part.nc", (row, row, row), other))
+    save_events(tmp_path, UnconfirmedEvents("part.nc", (row, row, row), other))
     Journal(tmp_path).close()
     with Store.open(tmp_path, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") == 5
@@ -443,7 +443,7 @@ def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path
     until(lambda: not bench.server.outbox.unconfirmed_events)
     screen.lose()
     bench.close()
-    assert pop_events(tmp_path) == LeftEvents()
+    assert pop_events(tmp_path) == UnconfirmedEvents()
 
 
 @pytest.mark.parametrize(
@@ -451,19 +451,19 @@ def test_events_that_a_screen_has_kept_are_not_left(bench: Bench, tmp_path: Path
     [b"", b"{", b"\xff", b"[]", b"3", b'["a", [[1]]]', b'["a", 3]', b'["a", [["2", "part", "", 1, "", ""]]]'],
 )
 def test_damaged_events_are_none(tmp_path: Path, data: bytes) -> None:
-    (tmp_path / EVENTS_FILE).write_bytes(data)
-    assert pop_events(tmp_path) == LeftEvents()
-    assert not (tmp_path / EVENTS_FILE).exists()
+    (tmp_path / EVENTS_FILE_NAME).write_bytes(data)
+    assert pop_events(tmp_path) == UnconfirmedEvents()
+    assert not (tmp_path / EVENTS_FILE_NAME).exists()
 
 
 @pytest.mark.parametrize("data", [b"", b"{", b"\xff\xfe", b"[1"])
 def test_a_damaged_note_is_none(tmp_path: Path, data: bytes) -> None:
-    (tmp_path / NOTE_FILE).write_bytes(data)
+    (tmp_path / NOTE_FILE_NAME).write_bytes(data)
     assert read_note(tmp_path) == (False, None)
 
 
 def test_a_note_that_is_no_job_says_that_nothing_is_known_to_be_interrupted(tmp_path: Path) -> None:
-    (tmp_path / NOTE_FILE).write_text('{"program": 3}')
+    (tmp_path / NOTE_FILE_NAME).write_text('{"program": 3}')
     assert read_note(tmp_path) == (True, None)
 
 

@@ -40,7 +40,7 @@ def test_a_ring_that_another_process_writes_never_shows_half_a_row() -> None:
     writer.stdout.read(1)
     seen = 0
     while writer.poll() is None:
-        read = rows.copy_between(-np.inf, np.inf)
+        read = rows.copy_rows_between(-np.inf, np.inf)
         seen += len(read)
         assert (read == read[:, :1]).all()
         assert (np.diff(read[:, 0]) > 0).all()
@@ -58,7 +58,7 @@ def test_a_ring_in_shared_memory_shows_what_the_other_end_writes() -> None:
         ScopeRing.from_layout(RECORDED, memory.memory_view),
         ScopeRing.from_layout(RECORDED, SharedMemory(receive_descriptor(ours)).memory_view),
     )
-    there.samples.write(np.full((1, RECORDED.sample_width), 5.0))
+    there.samples.append_rows(np.full((1, RECORDED.sample_width), 5.0))
     assert here.samples.last_time_s == 5.0
     ours.close()
     theirs.close()

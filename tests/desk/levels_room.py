@@ -61,7 +61,7 @@ class Room:
         self.desk.offset_book.poll_saving()
 
     def find(self, kind: type[T]) -> T:
-        special = self.desk.page_registry.find(SpecialFunctionList)
+        special = self.desk.page_registry.find_model(SpecialFunctionList)
         assert special is not None
         return next(each for each in special.functions if isinstance(each, kind))
 
@@ -102,7 +102,7 @@ class NoPins(SignInSession):
 def opened_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: type[R]) -> Iterator[R]:
     """A desk of this kind of room, with an empty store."""
     file = tmp_path / "own.toml"
-    file.write_text(resources.machine_file("gt75.toml"))
+    file.write_text(resources.read_machine_file("gt75.toml"))
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
     clock, journal = ManualClock(), Journal.open_default()
     desk, executor = create_desk_and_executor(str(file), read_stored_offsets, clock, journal)

@@ -12,7 +12,7 @@ import pytest
 
 from app.compose.runs.journal import Journal
 from app.editor.editor_model import EditorModel
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions
+from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory
 from app.production.parts_watch import PartsWatch
 from app.programs.program_list_model import ProgramListModel
 from app.special.counter_functions import PartsCounterFunction
@@ -61,7 +61,7 @@ WRITES = re.compile(
     r"\.(save_setting|save_settings|save_version|add_parts|reset_parts|import_programs_and_offsets|change_row)\("
     r"|\.(save_user|remove_user|remove_all_users|save_loaded_version|renamed|set_input|unlink)\("
     r"|\.(rename|write_text)\("
-    r"|\b(write_program_file|write_new_file|copy_to_medium|write_atomically|store_received|ForceOutput|SetSpindleLimit)\("
+    r"|\b(write_program_file|write_new_file|copy_to_medium|write_atomically|store_received_program|ForceOutput|SetSpindleLimit)\("
 )
 BEHIND_A_RULE = {
     "compose/machine/accepted_machine.py": "asked by machine_records.py",
@@ -84,7 +84,7 @@ NO_CHANGE = {
     "cli/proofs/report_file.py": "a report, to a file of whoever asks",
     "extras/quality/shift_command.py": "a report",
     "cli/trace_command.py": "setpoints, to a file of whoever asks",
-    "compose/control/control_place.py": "the socket of a control",
+    "compose/control/control_slot.py": "the socket of a control",
     "compose/control/live_control.py": "inputs of a machine that is simulated",
     "compose/control/control_server.py": "inputs of a machine that is simulated",
     "compose/control/unattended_notes.py": "the job that is interrupted",
@@ -152,7 +152,7 @@ def test_without_people_nothing_is_asked_and_nothing_more_is_logged(room: Room) 
     assert [room.access.find_refusal(act) for act in ProtectedChange] == [""] * len(ProtectedChange)
     assert room.access.header_text == ""
     room.desk.offset_book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}, "typed")
-    room.desk.program_runs.part_counter.program = "pin.nc"
+    room.desk.program_runs.part_counter.program_name = "pin.nc"
     room.find(PartsCounterFunction).correct_count(1)
     room.settle()
     assert room.store.offsets.tool_offsets.read_history()[0].who == "operator"
@@ -212,7 +212,7 @@ def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
     room.store.offsets.tool_offsets.change_row(3, "touched off", {"x": 1.0, "z": -1.0}).result(LIMIT)
     room.desk.offset_book.read_store()
     room.enter_people()
-    questions = OffsetQuestions(OffsetHistory(room.desk, OffsetKind.TOOL))
+    questions = ConfirmedOffsetChanges(OffsetHistory(room.desk, OffsetKind.TOOL))
     refusals = (
         questions.change_fields(OffsetKind.TOOL, 3, {"x": -1.0}, "typed"),
         questions.touch_off(3, TouchPosition(x=-1.0), "touched off"),
@@ -228,8 +228,8 @@ def test_nothing_is_asked_that_the_level_does_not_allow(room: Room) -> None:
 def test_pages_without_a_book_refuse_too(room: Room) -> None:
     room.enter_people()
     programs, editor = (
-        room.desk.page_registry.find(ProgramListModel),
-        room.desk.page_registry.find(EditorModel),
+        room.desk.page_registry.find_model(ProgramListModel),
+        room.desk.page_registry.find_model(EditorModel),
     )
     assert programs is not None
     assert editor is not None
@@ -330,7 +330,7 @@ def test_what_stops_the_machine_is_behind_no_level(room: Room) -> None:
 def test_every_history_has_the_name(room: Room) -> None:
     room.enter_people()
     room.sign_in("BEN")
-    book, watch = room.desk.offset_book, room.desk.page_registry.find(PartsWatch)
+    book, watch = room.desk.offset_book, room.desk.page_registry.find_model(PartsWatch)
     assert watch is not None
     for kind, number, values in (
         (OffsetKind.TOOL, 3, {"x": 1.0, "z": -1.0}),
@@ -349,7 +349,7 @@ def test_every_history_has_the_name(room: Room) -> None:
     room.settle()
     with room.store.read() as connection:
         assert [row.who for row in read_insert_changes(connection, 9)] == ["BEN"]
-    room.desk.program_runs.part_counter.program = "pin.nc"
+    room.desk.program_runs.part_counter.program_name = "pin.nc"
     room.find(PartsCounterFunction).correct_count(1)
     assert room.log("change")[-1] == (
         wording("log.parts-changed", program="pin.nc", before=0, after=1),
@@ -369,7 +369,7 @@ def test_settings_sounds_and_notes_are_lines_of_the_log(room: Room) -> None:
     sheet._keep(["soft jaws"])
     sheet._keep(["soft jaws", "stop 12 mm"])
     sheet._keep(["stop 12 mm"])
-    sheet.select_next_paper()
+    sheet.select_next_paper_size()
     texts = [text for text, who in room.log("change") if who == "CARLA"]
     assert texts[:5] == [
         wording("log.screen-setting", what="theme", before="dark", after="light"),

@@ -106,7 +106,7 @@ def test_a_load_that_hangs_does_not_keep_the_machine_running(
         release.wait()
 
     desk.post(EnableDrives())
-    desk.program_loader.worker.request(hang, lambda _: None, lambda _: None)
+    desk.program_loader.worker.request_work(hang, lambda _: None, lambda _: None)
     assert reads.wait(LONG)
     let_go = desk.closing_sequence.close_drivers
 

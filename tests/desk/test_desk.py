@@ -98,7 +98,7 @@ def test_feed_hold_is_always_posted(desk: Desk, machine: FakeMachine, state: Mac
     assert FeedHold() in machine.posted
 
 
-@pytest.mark.parametrize("state", [MachineState.RUN, MachineState.WAIT, MachineState.HOLDING])
+@pytest.mark.parametrize("state", [MachineState.RUN, MachineState.WAIT, MachineState.STOPPING])
 def test_reset_of_a_moving_machine_is_refused(desk: Desk, machine: FakeMachine, state: MachineState) -> None:
     at(machine, state)
     desk.reset_control()
@@ -427,8 +427,8 @@ def test_what_is_attached_for_later_is_made_once_when_it_is_asked_for(desk: Desk
         return made[-1]
 
     desk.page_registry.attach_lazily(f"{__name__}._Model", make)
-    assert (desk.page_registry.find(_Other), made) == (None, [])
-    assert desk.page_registry.find(_Model) is desk.page_registry.find(_Model) is made[0]
+    assert (desk.page_registry.find_model(_Other), made) == (None, [])
+    assert desk.page_registry.find_model(_Model) is desk.page_registry.find_model(_Model) is made[0]
     desk.close()
     assert (len(made), made[0].closed) == (1, 1)
 

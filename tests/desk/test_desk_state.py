@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.desk.late_presses import LatePresses
+from app.desk.late_presses import LatePressFilter
 from app.desk.page_description import ProgramKey
 from app.desk.pages.page_registry import PageRegistry
 from app.desk.state.desk_machine import DeskMachine
@@ -31,8 +31,8 @@ class Other(Model):
 def test_a_model_is_found_by_its_class_and_no_other_is() -> None:
     pages, model = PageRegistry(), Model()
     pages.attach_model(model)
-    assert pages.find(Model) is model
-    assert pages.find(Other) is None
+    assert pages.find_model(Model) is model
+    assert pages.find_model(Other) is None
     assert [step.name for step in pages.make_closing_steps()] == ["Model"]
 
 
@@ -44,9 +44,9 @@ def test_a_model_of_later_is_made_once_and_only_when_it_is_asked_for() -> None:
         return made[-1]
 
     pages.attach_lazily(f"{Other.__module__}.Other", make)
-    assert pages.find(Model) is None
+    assert pages.find_model(Model) is None
     assert (made, pages.make_closing_steps()) == ([], [])
-    assert pages.find(Other) is pages.find(Other)
+    assert pages.find_model(Other) is pages.find_model(Other)
     assert len(made) == 1
 
 
@@ -69,7 +69,7 @@ def test_without_a_feature_nothing_is_offered() -> None:
 
 
 def test_a_window_that_is_not_there_bars_nothing_and_a_page_may() -> None:
-    window = WindowState(LatePresses(Snapshot, float))
+    window = WindowState(LatePressFilter(Snapshot, float))
     assert (window.can_start_here, window.is_keyboard_lost, window.is_stop_held()) == (True, False, False)
     assert (window.has_text_field(), window.find_press_age()) == (False, 0.0)
     woken: list[bool] = []
@@ -107,4 +107,8 @@ def test_starts_are_barred_from_the_begin_of_a_restore_to_its_end() -> None:
 
 def test_a_machine_without_a_file_is_an_omniturn_lathe() -> None:
     machine = DeskMachine()
-    assert (machine.language, machine.third_axis_name, machine.is_table_rotary) == ("omniturn", "C", True)
+    assert (machine.program_language, machine.third_axis_name, machine.is_table_rotary) == (
+        "omniturn",
+        "C",
+        True,
+    )

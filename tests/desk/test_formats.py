@@ -32,7 +32,7 @@ def test_length(mm: float, metric: bool, shown: str) -> None:
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_what_is_no_number_is_a_dash(value: float) -> None:
-    assert formats.format_length(value, metric=False) == "—"
+    assert formats.format_length(value, is_metric=False) == "—"
     assert formats.format_duration(value) == "—"
 
 
@@ -44,8 +44,8 @@ def test_no_figure_is_a_negative_zero(mm: float, metric: bool) -> None:
 
 @given(st.floats(-1000, 1000))
 def test_figures_have_the_places_of_their_unit(mm: float) -> None:
-    assert len(formats.format_length(mm, metric=True).partition(".")[2]) == 4
-    assert len(formats.format_length(mm, metric=False).partition(".")[2]) == 5
+    assert len(formats.format_length(mm, is_metric=True).partition(".")[2]) == 4
+    assert len(formats.format_length(mm, is_metric=False).partition(".")[2]) == 5
 
 
 @pytest.mark.parametrize(
@@ -72,8 +72,8 @@ def test_feed_unit(metric: bool, per_rev: bool, unit: str) -> None:
 
 def test_surface_speed_has_no_sign() -> None:
     # 400 ft/min = 400 · 304.8 / 60 mm/s
-    assert formats.format_surface_speed(-2032.0, metric=False) == "400"
-    assert formats.format_surface_speed(-2000.0, metric=True) == "120"
+    assert formats.format_surface_speed(-2032.0, is_metric=False) == "400"
+    assert formats.format_surface_speed(-2000.0, is_metric=True) == "120"
 
 
 @pytest.mark.parametrize(

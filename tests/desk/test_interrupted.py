@@ -202,7 +202,7 @@ def test_an_answer_covers_no_question(desk: Desk) -> None:
 def test_the_interrupted_program_keeps_its_name_and_its_file(
     desk: Desk, question: str, tmp_path: Path
 ) -> None:
-    files = desk.page_registry.find(ProgramListModel)
+    files = desk.page_registry.find_model(ProgramListModel)
     assert files is not None
     files.on_open()
     files.worker.wait_for_results(60.0)
@@ -242,7 +242,7 @@ def test_at_the_start_an_interrupted_program_that_is_not_there_is_told(desk: Des
 def test_closing_with_something_unwritten_says_so_and_means_it_only_later(desk: Desk) -> None:
     closed: list[bool] = []
     assert desk.can_close(lambda: closed.append(True))
-    desk.storage_state.set_store_readers(waiting=lambda: "20 parts, 61 events")
+    desk.storage_state.set_store_readers(read_unsaved=lambda: "20 parts, 61 events")
     for _ in range(3):  # a key that repeats
         assert not desk.can_close(lambda: closed.append(True))
         assert "20 parts, 61 events" in desk.prompt_notice

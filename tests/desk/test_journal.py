@@ -17,8 +17,8 @@ from app.compose.runs.journal import INTERRUPTED_JOB_KEY, Journal
 from app.compose.runs.receipt import Receipt
 from app.desk.persistence import Persistence
 from app.offsets.offset_values import describe_unset
-from core.executor.snapshot import LogEvent, interrupted_job_to_json
-from core.store.production.run_records import ORIGIN
+from core.executor.snapshot import LogEvent, convert_interrupted_job_to_json
+from core.store.production.run_records import LAST_ORIGIN_KEY
 from core.store.store import Store
 from core.store.store_errors import StoreError, StoreErrorCause
 from core.store.store_file import STORE_FILE_NAME
@@ -182,7 +182,7 @@ def test_events_without_a_store_are_not_confirmed(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("value", [3, ["a"], ["a", "b"], [1, 2], {"a": 1}])
 def test_a_damaged_origin_is_none(journal: Journal, tmp_path: Path, value: object) -> None:
-    journal.save_setting(ORIGIN, value)
+    journal.save_setting(LAST_ORIGIN_KEY, value)
     journal.close()
     again = Journal(tmp_path / "home")
     assert not again.has_stored(EventOrigin("a", 1))
@@ -198,9 +198,9 @@ def away(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Journal]:
     """Begun while the disk was full; the store holds a job that was interrupted before."""
     with Store.open(tmp_path / "home") as store:
         store.offsets.tool_offsets.change_row(3, "test", {"x": 1.25}).result(60)
-        store.settings.save_setting(INTERRUPTED_JOB_KEY, interrupted_job_to_json(broken_off(line=8))).result(
-            60
-        )
+        store.settings.save_setting(
+            INTERRUPTED_JOB_KEY, convert_interrupted_job_to_json(broken_off(line=8))
+        ).result(60)
     full = StoreErrorCause.FULL.make_error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 1e6)  # the test opens it
     with monkeypatch.context() as disk:
@@ -228,12 +228,12 @@ def test_offsets_are_changed_as_soon_as_the_store_is_there(away: Journal) -> Non
     assert shows(parts.lock_reason, "desk.parts-not-kept", why=pattern("desk.disk-full"))
     away._reopen()
     assert book.poll_saving() == ""
-    assert book.tools[3].x == 1.25
+    assert book.tool_offsets[3].x == 1.25
     assert book.changes == 1  # what is on the desk is proved anew
     assert book.change_fields(OffsetKind.TOOL, 3, {"x": 2.0}, "test") == ""
     away.save_version("a.nc", b"M30", "so that all is written")
     assert book.poll_saving() == ""
-    assert book.tools[3].x == 2.0
+    assert book.tool_offsets[3].x == 2.0
     parts.update("")
     assert (parts.lock_reason, parts.store) == ("", book.store)
     parts.worker.close()
@@ -285,9 +285,9 @@ def test_a_store_that_could_not_be_read_at_the_start_is_read_by_the_second_try(
 ) -> None:
     """The first try had opened it: its lock must be free again, and what happened meanwhile is written."""
     with Store.open(tmp_path / "home") as store:
-        store.settings.save_setting(INTERRUPTED_JOB_KEY, interrupted_job_to_json(broken_off(line=8))).result(
-            60
-        )
+        store.settings.save_setting(
+            INTERRUPTED_JOB_KEY, convert_interrupted_job_to_json(broken_off(line=8))
+        ).result(60)
     locked = StoreErrorCause.LOCKED.make_error(tmp_path / "home" / "turndesk.db", "")
     monkeypatch.setattr("app.compose.runs.journal.RETRY_INTERVAL_S", 1e6)  # the test tries again
     with monkeypatch.context() as disk:
@@ -331,8 +331,8 @@ def test_offsets_that_cannot_be_read_are_unknown_and_not_unset(tmp_path: Path) -
     (home / STORE_FILE_NAME).write_bytes(whole[:50])
     journal = Journal(home)
     book = journal.book()
-    assert (book.has_read_failed, book.tools) == (True, {})
-    assert describe_unset(is_unread=book.has_read_failed) != describe_unset()
+    assert (book.has_read_failed, book.tool_offsets) == (True, {})
+    assert describe_unset(is_unreadable=book.has_read_failed) != describe_unset()
     (home / STORE_FILE_NAME).write_bytes(whole)
     journal._reopen()
     book.poll_saving()
@@ -365,11 +365,11 @@ def test_a_second_instance_shows_the_offsets_of_the_first(tmp_path: Path) -> Non
     book = second.book()
     assert second.trouble
     assert book.lock_reason
-    assert book.tools[3].x == -12.5
+    assert book.tool_offsets[3].x == -12.5
     assert book.change_fields(OffsetKind.TOOL, 3, {"x": 1.0}, "test") == book.lock_reason
     first.require_store().offsets.tool_offsets.change_row(3, "test", {"x": -13.0}).result(60)
     second._reopen()  # as its thread does every few seconds
     book.poll_saving()
-    assert (book.tools[3].x, book.changes) == (-13.0, 1)
+    assert (book.tool_offsets[3].x, book.changes) == (-13.0, 1)
     second.close()
     first.close()

@@ -12,7 +12,7 @@ from app.desk.late_presses import (
     HARMLESS_COMMANDS,
     REPORT_INTERVAL_S,
     STARTING_COMMANDS,
-    LatePresses,
+    LatePressFilter,
     StartingAction,
     find_starting_action,
     name_starting_action,
@@ -20,9 +20,9 @@ from app.desk.late_presses import (
 from app.desk.posted_values import ARRIVAL_TIMEOUT_S, PostedValues
 from app.desk.station_controls import StationControls, StationPanel
 from core.executor import commands
-from core.executor.commands import MOTION_COMMANDS as STARTS_OF_CONTROL
+from core.executor.commands import MOTION_COMMAND_TYPES as STARTS_OF_CONTROL
 from core.executor.commands import Command
-from core.executor.hand_motion.drive_test import DriveTestPath
+from core.executor.hand_motion.drive_test import DriveTestMotion
 from core.executor.snapshot import MachineState, Snapshot
 
 
@@ -50,13 +50,13 @@ class Bench:
     posted: list[Command] = field(default_factory=list)
     told: list[tuple[str, ...]] = field(default_factory=list)
     answers: int = 0
-    late: LatePresses = field(init=False)
+    late: LatePressFilter = field(init=False)
 
     def __post_init__(self) -> None:
         def answered() -> None:
             self.answers += 1
 
-        self.late = LatePresses(lambda: self.shown, lambda: self.now, self.told.append, answered)
+        self.late = LatePressFilter(lambda: self.shown, lambda: self.now, self.told.append, answered)
 
     def post(self, command: Command) -> None:
         self.late.guard_post(self.posted.append)(command)
@@ -69,7 +69,7 @@ STARTING = (
     (commands.JogByStep("X", 1.0, 1.0), StartingAction.JOG),
     (commands.TouchOffTool("X", 1, 0.2, 1), StartingAction.TOUCH_OFF),
     (commands.SelectHandwheel("X", 0.1, 0.2), StartingAction.HANDWHEEL),
-    (commands.RunDriveTest(cast("DriveTestPath", None), 0.2), StartingAction.DRIVE_TEST),
+    (commands.RunDriveTest(cast("DriveTestMotion", None), 0.2), StartingAction.DRIVE_TEST),
     (commands.HomeAxes("X"), StartingAction.HOME),
     (commands.ForceOutput("collet", True), StartingAction.OUTPUT),
     (commands.ForceOutput("collet", False), StartingAction.OUTPUT),
@@ -220,7 +220,7 @@ def test_a_late_press_hits_the_mushroom_and_frees_it_not() -> None:
     hands.estop(is_pressed=True)
     hands.estop(is_pressed=False)
     assert pressed == ["press_estop"]
-    assert hands.estop_pressed
+    assert hands.is_estop_pressed
 
 
 @pytest.mark.parametrize("which", ["spindle_pot", "feed_pot"])

@@ -57,21 +57,21 @@ def test_an_answer_is_given_by_the_poll_of_whoever_asked(worker: LatestRequestWo
     def done(name: str) -> None:
         threads.extend([name, threading.current_thread().name])
 
-    worker.request(lambda _watch: threading.current_thread().name, done, heard.failed)
+    worker.request_work(lambda _watch: threading.current_thread().name, done, heard.failed)
     assert worker.is_busy
     worker.wait_for_results(LIMIT)
     assert not worker.is_busy
     assert threads[0].startswith("tried")
     assert threads[1] == threading.current_thread().name
-    worker.poll()
+    worker.deliver_results()
     assert len(threads) == 2
 
 
 def test_the_newest_request_gives_up_the_one_in_hand(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
-    worker.request(slow, heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
-    worker.request(lambda _watch: "new", heard.done, heard.failed)
+    worker.request_work(lambda _watch: "new", heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert slow.given_up.is_set()
     assert (heard.answers, heard.failures) == (["new"], [])
@@ -79,9 +79,9 @@ def test_the_newest_request_gives_up_the_one_in_hand(worker: LatestRequestWorker
 
 def test_an_answer_that_nobody_took_up_goes_with_its_request(worker: LatestRequestWorker) -> None:
     heard, ready = Heard(), threading.Event()
-    worker.request(lambda _watch: ready.set(), heard.done, heard.failed)
+    worker.request_work(lambda _watch: ready.set(), heard.done, heard.failed)
     assert ready.wait(LIMIT)
-    worker.request(lambda _watch: "new", heard.done, heard.failed)
+    worker.request_work(lambda _watch: "new", heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert heard.answers == ["new"]
 
@@ -94,22 +94,22 @@ def test_work_that_never_looks_up_is_not_answered_once_it_is_overtaken(worker: L
         go.wait(LIMIT)
         return "old"
 
-    worker.request(deaf, heard.done, heard.failed)
+    worker.request_work(deaf, heard.done, heard.failed)
     assert begun.wait(LIMIT)
-    worker.cancel()
+    worker.cancel_request()
     assert not worker.is_busy
     go.set()
-    worker.request(lambda _watch: "new", heard.done, heard.failed)
+    worker.request_work(lambda _watch: "new", heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert heard.answers == ["new"]
 
 
 def test_what_is_queued_is_done_in_its_turn_and_never_given_up(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
-    worker.request(slow, heard.done, heard.failed)
-    worker.enqueue(lambda: 1, heard.done, heard.failed)
-    worker.enqueue(lambda: 2, heard.done, heard.failed)
-    worker.request(lambda _watch: "new", heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
+    worker.enqueue_work(lambda: 1, heard.done, heard.failed)
+    worker.enqueue_work(lambda: 2, heard.done, heard.failed)
+    worker.request_work(lambda _watch: "new", heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert heard.answers == [1, 2, "new"]
 
@@ -131,10 +131,10 @@ def test_a_failure_is_a_sentence_and_the_next_request_is_worked_at(
     def fail(_watch: ProgressCallback) -> None:
         raise error
 
-    worker.request(fail, heard.done, heard.failed)
+    worker.request_work(fail, heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert (heard.answers, heard.failures) == ([], [told])
-    worker.request(lambda _watch: "good", heard.done, heard.failed)
+    worker.request_work(lambda _watch: "good", heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert heard.answers == ["good"]
 
@@ -150,7 +150,7 @@ def test_of_a_defect_the_traceback_is_logged(
     def fail(_watch: ProgressCallback) -> None:
         raise error
 
-    worker.request(fail, heard.done, heard.failed)
+    worker.request_work(fail, heard.done, heard.failed)
     worker.wait_for_results(LIMIT)
     assert [bool(each.exc_info) for each in caplog.records] == [True] * logged
     assert len(heard.failures) == 1
@@ -162,19 +162,19 @@ def test_an_answer_may_ask_again(worker: LatestRequestWorker) -> None:
     def again(answer: int) -> None:
         heard.done(answer)
         if answer < 3:
-            worker.request(lambda _watch: answer + 1, again, heard.failed)
+            worker.request_work(lambda _watch: answer + 1, again, heard.failed)
 
-    worker.request(lambda _watch: 1, again, heard.failed)
+    worker.request_work(lambda _watch: 1, again, heard.failed)
     worker.wait_for_results(LIMIT)
     assert heard.answers == [1, 2, 3]
 
 
 def test_how_far_it_has_come_is_that_of_the_work_in_hand(worker: LatestRequestWorker) -> None:
     slow, heard = Slow(), Heard()
-    worker.request(slow, heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
     _until(lambda: worker.progress == 7)
-    worker.cancel()
+    worker.cancel_request()
     assert worker.progress == 0
 
 
@@ -188,14 +188,14 @@ def test_what_is_published_on_the_way_is_that_of_the_newest_request_alone(
         def run(request: WorkRequest) -> str:
             begun.set()
             go.wait(LIMIT)
-            request.publish(lambda: seen.append(name))
+            request.publish_result(lambda: seen.append(name))
             return name
 
         return run
 
-    worker.request(work("old"), heard.done, heard.failed)
+    worker.request_work(work("old"), heard.done, heard.failed)
     assert begun.wait(LIMIT)
-    worker.request(work("new"), heard.done, heard.failed)
+    worker.request_work(work("new"), heard.done, heard.failed)
     go.set()
     worker.wait_for_results(LIMIT)
     assert (seen, heard.answers) == (["new"], ["new"])
@@ -203,28 +203,28 @@ def test_what_is_published_on_the_way_is_that_of_the_newest_request_alone(
 
 def test_closing_gives_up_what_was_asked_and_finishes_what_was_queued() -> None:
     worker, slow, heard, written = LatestRequestWorker("tried"), Slow(), Heard(), []
-    worker.request(slow, heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
-    worker.enqueue(lambda: written.append("whole"), heard.done, heard.failed)
+    worker.enqueue_work(lambda: written.append("whole"), heard.done, heard.failed)
     worker.close()
     assert slow.given_up.is_set()
     assert written == ["whole"]
-    worker.request(lambda _watch: written.append("late"), heard.done, heard.failed)
-    worker.enqueue(lambda: written.append("late"), heard.done, heard.failed)
+    worker.request_work(lambda _watch: written.append("late"), heard.done, heard.failed)
+    worker.enqueue_work(lambda: written.append("late"), heard.done, heard.failed)
     assert written == ["whole"]
     assert not [t for t in threading.enumerate() if t.name.startswith("tried")]
 
 
 def test_a_request_with_patience_behind_it_may_come_to_its_end() -> None:
     t = [0.0]
-    worker, heard = LatestRequestWorker("typed", grace_time_s=1.0, clock=lambda: t[0]), Heard()
+    worker, heard = LatestRequestWorker("typed", grace_time_s=1.0, read_time_s=lambda: t[0]), Heard()
     slow, slower = Slow(), Slow()
-    worker.request(slow, heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
-    worker.request(slower, heard.done, heard.failed)
+    worker.request_work(slower, heard.done, heard.failed)
     slow.go.set()
     assert slower.begun.wait(LIMIT)
-    worker.request(lambda _watch: "new", heard.done, heard.failed)
+    worker.request_work(lambda _watch: "new", heard.done, heard.failed)
     t[0] = 1.5
     worker.wait_for_results(LIMIT)
     assert slower.given_up.is_set()
@@ -236,7 +236,7 @@ def test_keys_are_waited_for_but_not_for_ever() -> None:
     heard = Heard()
     worker = LatestRequestWorker("typed", quiet_time_s=60.0, max_delay_s=0.02)
     for number in range(20):
-        worker.request(lambda _watch, number=number: number, heard.done, heard.failed)  # type: ignore[misc]
+        worker.request_work(lambda _watch, number=number: number, heard.done, heard.failed)  # type: ignore[misc]
     worker.wait_for_results(LIMIT)
     assert heard.answers == [19]
     worker.close()
@@ -245,9 +245,9 @@ def test_keys_are_waited_for_but_not_for_ever() -> None:
 def test_two_workers_may_share_a_thread(worker: LatestRequestWorker) -> None:
     heard, slow = Heard(), Slow()
     other = LatestRequestWorker("other", thread_owner=worker)
-    worker.request(slow, heard.done, heard.failed)
+    worker.request_work(slow, heard.done, heard.failed)
     assert slow.begun.wait(LIMIT)
-    other.request(lambda _watch: threading.current_thread().name, heard.done, heard.failed)
+    other.request_work(lambda _watch: threading.current_thread().name, heard.done, heard.failed)
     assert not slow.given_up.is_set()
     slow.go.set()
     worker.wait_for_results(LIMIT)

@@ -28,7 +28,7 @@ from tests.attached import attached
 from tests.texts import begins, shows
 from tests.texts import text as wording
 
-SHIPPED = resources.machine_file("gt75.toml")
+SHIPPED = resources.read_machine_file("gt75.toml")
 
 
 @dataclass
@@ -90,7 +90,7 @@ def test_a_file_that_is_new_here_is_accepted_by_being_chosen(
         with room(file, monkeypatch) as made:
             assert made.desk.changes.barred == ""
             assert made.cells() == []
-            assert made.section.function_keys() == {}
+            assert made.section.make_function_keys() == {}
             made.desk.enable_drives()
             made.run()
             assert made.state is MachineState.IDLE
@@ -112,7 +112,7 @@ def test_a_changed_file_keeps_the_drives_off_until_it_is_accepted(
         assert made.state is MachineState.DISABLED
         assert shows(made.desk.prompt_notice, "desk.machine-file-changed", count=2)
         assert shows(made.prompt, "desk.machine-file-changed", count=2)
-        accept = made.section.function_keys()["F2"].action
+        accept = made.section.make_function_keys()["F2"].action
         accept()
         accept()
         assert begins(made.desk.prompt_notice, "desk.accept-machine-file")
@@ -159,7 +159,7 @@ def test_the_changes_and_their_acceptance_are_in_the_log(file: Path, monkeypatch
 
 def bus_machine(tmp_path: Path) -> Machine:
     path = tmp_path / "bus.toml"
-    path.write_text(resources.machine_file("gt75-canopen.toml"))
+    path.write_text(resources.read_machine_file("gt75-canopen.toml"))
     return load_machine(path)
 
 

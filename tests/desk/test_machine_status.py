@@ -9,7 +9,7 @@ import pytest
 
 from app.desk.status.machine_status import Tone, make_status
 from app.desk.status.readouts import Lamp, ReadoutKind, find_coordinates, make_drives_lamp
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.interpreter.shared.modal_state import ModalState
@@ -288,8 +288,8 @@ def test_a_hold_that_waits_for_a_tap_is_in_the_title() -> None:
 
 def test_a_metric_feed_has_its_prefix_and_an_inch_feed_has_none() -> None:
     metric = replace(Snapshot(), modal=ModalState(metric=True), feed=5.0)
-    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.prefix == "MM"
-    assert make_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.prefix == ""
+    assert make_status(metric, ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == "MM"
+    assert make_status(Snapshot(), ReadoutKind.POSITION, has_c_axis=True).feed.value_prefix == ""
 
 
 def test_the_readout_is_doubled_exactly_where_it_is_marked() -> None:
@@ -302,6 +302,6 @@ def test_the_readout_is_doubled_exactly_where_it_is_marked() -> None:
 
 
 def test_an_overloaded_computer_is_the_first_cause_of_a_silent_control() -> None:
-    entry = CATALOGUE["control-silent"]
+    entry = CATALOG["control-silent"]
     assert entry.number == 908
     assert "overloaded" in entry.causes[0]

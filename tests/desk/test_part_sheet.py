@@ -78,7 +78,7 @@ class Bench:
 
     def press(self, *keys: str) -> None:
         for key in keys:
-            named = self.page.function_keys().get(key)
+            named = self.page.make_function_keys().get(key)
             if named is not None:
                 named.action()
             else:
@@ -116,8 +116,8 @@ def test_what_is_kept_comes_back_as_it_was_said(words: str) -> None:
 
 
 def test_words_mean_the_lengths_that_were_typed() -> None:
-    entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", metric=False)
-    entry = entry.typed(StockField.BORE, "10", metric=True)
+    entry = StockEntry(StockKind.TUBE).typed(StockField.DIAMETER, "1+1/8", is_metric=False)
+    entry = entry.typed(StockField.BORE, "10", is_metric=True)
     spec = parse_specification(entry.words)
     assert (spec.diameter, spec.bore) == (pytest.approx(28.575, abs=1e-6), pytest.approx(10.0))
 
@@ -133,7 +133,7 @@ def test_words_mean_the_lengths_that_were_typed() -> None:
 )
 def test_what_no_stock_can_be_is_refused(name: StockField, text: str) -> None:
     with pytest.raises(EntryError):
-        StockEntry(StockKind.TUBE, diameter=25.4).typed(name, text, metric=False)
+        StockEntry(StockKind.TUBE, diameter=25.4).typed(name, text, is_metric=False)
 
 
 # --- saying it ----------------------------------------------------------------------------------------
@@ -182,7 +182,7 @@ def test_a_file_is_found_beside_the_program_and_kept_by_its_whole_path(bench: Be
     bench.press("F2", "Left", "Left")
     assert bench.cells["STOCK"][0] == "PROFILE"
     bench.press("Down", "Enter")
-    assert bench.page.has_keyboard
+    assert bench.page.is_entering_text
     bench.types("gone.csv")
     assert shows(bench.desk.prompt_notice, "desk.no-file-beside", name="gone.csv")
     bench.press(*["Back"] * 8)
@@ -209,14 +209,14 @@ def test_under_a_running_program_nothing_is_changed(bench: Bench) -> None:
     bench.state = MachineState.RUN
     bench.press("F4")
     assert shows(bench.desk.prompt_notice, "desk.stock-between-cycles")
-    assert not bench.page.has_keyboard
+    assert not bench.page.is_entering_text
     bench.press("F2", "Right")
     assert bench.cells["STOCK"][0] == "–"
     assert bench.kept == StoredPart()
 
 
 def test_on_a_mill_no_stock_is_said(tmp_path: Path) -> None:
-    mill = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    mill = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     bench = Bench(tmp_path, model=mill)
     bench.load(SHAFT)
     bench.press("F2", "Right")
@@ -267,7 +267,7 @@ def test_a_check_is_silenced_with_a_reason_and_speaks_again(bench: Bench) -> Non
     assert bench.kept.silenced_checks == {"rapid-into-stock": "drilled before"}
     (found,) = bench.desk.program_loader.loaded.diagnostics
     assert (found.severity, found.downgrade_reason) == (Severity.NOTE, "drilled before")
-    assert bench.page.function_keys()["F4"].label == "UNDO"
+    assert bench.page.make_function_keys()["F4"].label == "UNDO"
     bench.press("F4")
     assert bench.kept == StoredPart()
     assert bench.desk.program_loader.loaded.diagnostics[0].severity is Severity.WARNING
@@ -278,7 +278,7 @@ def test_escape_leaves_the_check_on(bench: Bench) -> None:
     bench.press("F4")
     bench.page.handle_key("x")
     assert bench.page.handle_escape()
-    assert not bench.page.has_keyboard
+    assert not bench.page.is_entering_text
     assert bench.kept == StoredPart()
     assert not bench.page.handle_escape()
 
@@ -288,7 +288,7 @@ def test_what_the_interpreter_has_found_is_not_silenced(bench: Bench) -> None:
     assert bench.page.selected_finding is not None
     bench.press("F4")
     assert shows(bench.desk.prompt_notice, "desk.only-part-checks")
-    assert not bench.page.has_keyboard
+    assert not bench.page.is_entering_text
 
 
 def test_what_the_machine_file_silences_is_not_undone_here(tmp_path: Path) -> None:

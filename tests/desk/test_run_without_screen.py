@@ -35,7 +35,7 @@ class Idle:
         if any(isinstance(each, HomeAxes) for each in self.posted):
             done = self.homes
             self.snapshot = replace(
-                self.snapshot, homed=(done,) * 3, state=MachineState.IDLE if done else MachineState.HOME
+                self.snapshot, homed=(done,) * 3, state=MachineState.IDLE if done else MachineState.HOMING
             )
 
 

@@ -41,17 +41,17 @@ def test_what_rests_on_something_assumed_is_a_warning_as_on_the_desk(
     assert sheet.error_count == 0
     one = wording("desk.one-warning")
     some = wording("desk.many-warnings", count=sheet.warning_count)
-    assert sheet.summary == (one if sheet.warning_count == 1 else some)
+    assert sheet.findings_summary == (one if sheet.warning_count == 1 else some)
 
 
 def test_one_warning_is_told_as_one() -> None:
-    assert sheet_of(SLIP).summary == wording("desk.one-warning")
+    assert sheet_of(SLIP).findings_summary == wording("desk.one-warning")
 
 
 def test_an_error_of_what_is_said_is_one() -> None:
     sheet = sheet_of(SLIP, ROD, {1: TOOL})
-    assert begins(sheet.summary, "desk.many-errors")
-    assert sheet_of(TURNED, ROD, {1: TOOL}).summary == ""
+    assert begins(sheet.findings_summary, "desk.many-errors")
+    assert sheet_of(TURNED, ROD, {1: TOOL}).findings_summary == ""
 
 
 def test_a_groove_tool_without_a_width_is_assumed_and_so_is_its_width() -> None:

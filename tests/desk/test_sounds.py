@@ -58,7 +58,7 @@ def desk_sounds(volume: int = 50, silent: frozenset[str] = frozenset()) -> tuple
 
 def day(made: EventSounds, *snapshots: Snapshot) -> list[tuple[int, ...]]:
     for snapshot in snapshots:
-        made.play_new_events(snapshot)
+        made.play_new_event_sounds(snapshot)
     return cast("Noted", made.sound_player).asked
 
 

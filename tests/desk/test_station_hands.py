@@ -10,31 +10,31 @@ from app.desk.station_controls import OverridePot, PalmButtons
 @pytest.mark.parametrize(("gap", "together"), [(0.0, True), (0.5, True), (0.51, False), (3.0, False)])
 def test_palms_must_come_within_half_a_second(gap: float, together: bool) -> None:
     palms = PalmButtons()
-    assert palms.press("left", 10.0) is False
-    assert palms.press("right", 10.0 + gap) is together
+    assert palms.record_press("left", 10.0) is False
+    assert palms.record_press("right", 10.0 + gap) is together
 
 
 def test_a_palm_that_repeats_keeps_its_first_time() -> None:
     palms = PalmButtons()
-    palms.press("left", 0.0)
-    palms.press("left", 2.0)
-    assert palms.press("right", 2.1) is False
+    palms.record_press("left", 0.0)
+    palms.record_press("left", 2.0)
+    assert palms.record_press("right", 2.1) is False
 
 
 def test_a_palm_alone_is_told_and_a_good_pair_is_not() -> None:
     palms = PalmButtons()
-    palms.press("left", 0.0)
-    assert palms.release("left") is True
-    palms.press("left", 1.0)
-    palms.press("right", 1.2)
-    assert palms.release("left") is False
-    assert palms.release("right") is False
-    palms.press("right", 5.0)
-    assert palms.release("right") is True
+    palms.record_press("left", 0.0)
+    assert palms.record_release("left") is True
+    palms.record_press("left", 1.0)
+    palms.record_press("right", 1.2)
+    assert palms.record_release("left") is False
+    assert palms.record_release("right") is False
+    palms.record_press("right", 5.0)
+    assert palms.record_release("right") is True
 
 
 def test_releasing_what_is_not_down_is_nothing() -> None:
-    assert PalmButtons().release("left") is False
+    assert PalmButtons().record_release("left") is False
 
 
 def test_a_pot_turns_after_the_finger_and_arrives() -> None:

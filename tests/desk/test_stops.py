@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.desk.status.alarm_log import MAX_ENTRIES, AlarmLog, parse_alarm
-from core.alarms import CATALOGUE, AlarmCode
+from core.alarms import CATALOG, AlarmCode
 from core.executor.raised_alarm import format_log_line, make_alarm
 from core.executor.snapshot import LogEvent
 from core.store.store_rows import EventRow
@@ -21,7 +21,7 @@ def event(code: AlarmCode, detail: str = "", line: int = 0) -> LogEvent:
 
 
 def row(event: LogEvent, at: str = "2020-02-03T04:05:06Z") -> EventRow:
-    return EventRow(at, event.kind, event.text, event.line)
+    return EventRow(at, event.kind, event.text, event.line_number)
 
 
 @pytest.fixture
@@ -69,10 +69,10 @@ def test_the_days_before_come_behind_what_was_heard_since(log: AlarmLog) -> None
     alarm = before.alarm
     assert (alarm.number, alarm.code, alarm.line) == (102, "following", 7)
     assert alarm.cause == wording("screen.off-setpoint", axis="Z", distance="1.2")
-    assert alarm.remedy == CATALOGUE["following"].remedy
+    assert alarm.remedy == CATALOG["following"].remedy
 
 
-@pytest.mark.parametrize("code", sorted(CATALOGUE))
+@pytest.mark.parametrize("code", sorted(CATALOG))
 def test_every_alarm_comes_back_out_of_the_store(code: AlarmCode) -> None:
     made = event(code, "what was seen: here", 3)
     back = parse_alarm(row(made))

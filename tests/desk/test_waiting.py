@@ -14,7 +14,7 @@ from app.desk.status.machine_status import (
     make_status,
     make_wait_prompt,
 )
-from app.desk.status.prompt_line import MessageKind, PromptAnswers
+from app.desk.status.prompt_line import MessageKind, PromptLine
 from app.desk.status.readouts import ReadoutKind
 from core.executor.snapshot import MachineState, Snapshot
 from tests.texts import text
@@ -66,7 +66,7 @@ def test_not_homed_is_a_state_of_its_own() -> None:
 
 
 def test_success_question_and_refusal_are_told_apart() -> None:
-    answers = PromptAnswers(Snapshot, str, lambda: 0.0)
+    answers = PromptLine(Snapshot, str, lambda: 0.0)
     answers.say("T1 SAVED", is_success=True)
     assert answers.notice_kind is MessageKind.SUCCESS
     answers.ask_question("PRESS Y", lambda: None)
@@ -77,9 +77,13 @@ def test_success_question_and_refusal_are_told_apart() -> None:
 
 def test_an_answer_outlives_every_state_and_ends_after_four_seconds() -> None:
     now, clock = [replace(Snapshot(), state=MachineState.RUN)], [0.0]
-    answers = PromptAnswers(lambda: now[0], str, lambda: clock[0])
+    answers = PromptLine(lambda: now[0], str, lambda: clock[0])
     answers.say("TOUCH OFF WITH THE MACHINE AT REST AND READY")
-    for clock[0], state in ((0.1, MachineState.HOLDING), (0.4, MachineState.HOLD), (3.9, MachineState.ESTOP)):
+    for clock[0], state in (
+        (0.1, MachineState.STOPPING),
+        (0.4, MachineState.HOLD),
+        (3.9, MachineState.ESTOP),
+    ):
         answers.remove_expired(replace(Snapshot(), state=state))
         assert answers.message
     clock[0] = 4.0
@@ -90,23 +94,23 @@ def test_an_answer_outlives_every_state_and_ends_after_four_seconds() -> None:
 def test_a_question_belongs_to_its_state_and_an_answer_does_not_replace_it() -> None:
     done: list[str] = []
     now = [replace(Snapshot(), state=MachineState.HOLD)]
-    answers = PromptAnswers(lambda: now[0], str, lambda: 0.0)
+    answers = PromptLine(lambda: now[0], str, lambda: 0.0)
     answers.ask_question("PRESS Y", lambda: done.append("yes"))
     answers.say("REFUSED: NO")
     assert (answers.question, answers.message) == ("PRESS Y", "REFUSED: NO")
     answers.remove_expired(now[0])
     assert answers.on_confirmed is not None
     answers.remove_expired(replace(Snapshot(), state=MachineState.ESTOP))
-    answers.confirm(9.0)
+    answers.confirm_question(9.0)
     assert not done
 
 
 def test_a_lasting_answer_remains_for_its_four_seconds_whatever_is_pressed() -> None:
     clock = [0.0]
-    answers = PromptAnswers(Snapshot, str, lambda: clock[0])
+    answers = PromptLine(Snapshot, str, lambda: clock[0])
     answers.say("DROPPED", is_lasting=True)
     answers.clear_message()
-    answers.withdraw()
+    answers.withdraw_question()
     answers.say("THE DRIVES ARE ON")
     assert answers.message == "DROPPED"
     clock[0] = 4.0

@@ -37,7 +37,7 @@ from core.interpreter.shared.job_setup import ToolOffset
 from core.language.code_book import CodeBookEntry
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 from tests.dialects.golden_rows import Row, row, same
 
 FOLDER = Path(__file__).parents[1] / "programs" / "constructs"
@@ -58,7 +58,7 @@ GROUNDS = {
     Dialect.SINUMERIK: Ground(
         "sinumerik-modulo",
         "EXAMPLE.MPF",
-        {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_key(1, 2): ToolOffset(z=-3.0)},
+        {1: ToolOffset(name="ROUGHER", quadrant=3), make_row_number(1, 2): ToolOffset(z=-3.0)},
     ),
 }
 

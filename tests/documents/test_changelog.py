@@ -7,7 +7,7 @@ from importlib.metadata import version as installed_version
 import pytest
 
 from app import VERSION
-from resources.setup.lock import project
+from resources.setup.lock import read_project_file
 from tests.documents.changelog import mistakes, releases
 from tests.documents.pages import ROOT
 
@@ -63,6 +63,6 @@ def test_a_wrong_changelog_is_found(good: str, bad: str, kind: str) -> None:
 
 
 def test_the_version_is_stated_once() -> None:
-    assert "version" not in project()["project"]
-    assert project()["project"]["dynamic"] == ["version"]
+    assert "version" not in read_project_file()["project"]
+    assert read_project_file()["project"]["dynamic"] == ["version"]
     assert installed_version("turndesk") == VERSION

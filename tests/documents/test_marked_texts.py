@@ -2,7 +2,7 @@
 
 import ast
 
-from resources.translations.reading import marked
+from resources.translations.text_extraction import find_marked_texts
 
 CODE = """
 Message("a {x}}}", x=1)
@@ -15,4 +15,4 @@ Other("e {x}", x=1)
 
 
 def test_a_driver_error_with_values_has_a_template_and_one_with_a_reason_alone_has_none() -> None:
-    assert list(marked(ast.parse(CODE))) == ["a {x}}}", "b {x}}}", "c {x}"]
+    assert list(find_marked_texts(ast.parse(CODE))) == ["a {x}}}", "b {x}}}", "c {x}"]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.ports import FloatArray, Segments
+from core.ports import FloatArray, MotionSegments
 from drivers.simulated.simulated_machine import Simulation, build_simulation
 from drivers.simulators.plant_config import SimAxis, SimConfig, SimOutput, SimSpindle
 from drivers.simulators.plant_controls import PlantControls
@@ -44,14 +44,14 @@ def simulation(config: SimConfig = CONFIG, powered: bool = True) -> tuple[Simula
     return sim, clock
 
 
-def ramp(start: float, p: Sequence[float] | FloatArray, x_speed: float, cruise: float) -> Segments:
+def ramp(start: float, p: Sequence[float] | FloatArray, x_speed: float, cruise: float) -> MotionSegments:
     """X from rest at ``p`` to ``x_speed``, on for ``cruise`` seconds, back to rest; 3000 mm/s²."""
     up = abs(x_speed) / 3000.0
     a = 3000.0 if x_speed > 0 else -3000.0
     dt = np.array([up, cruise, up])
     x = p[0] + np.array([0.0, 0.5 * x_speed * up, 0.5 * x_speed * up + x_speed * cruise])
     column = np.zeros(3)
-    return Segments(
+    return MotionSegments(
         start + np.array([0.0, up, up + cruise]),
         dt,
         np.column_stack([x, column + p[1], column + p[2]]),

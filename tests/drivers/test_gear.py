@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import Cam, DriverError, Segments, SpindleGear, StopMode, is_queue_finished
+from core.ports import Cam, DriverError, MotionSegments, SpindleGear, StopMode, is_queue_finished
 from drivers.simulated.simulated_machine import Simulation
 from drivers.spindle_gear import SpindlePhaseFilter
 from drivers.wakeups import ManualClock
@@ -21,7 +21,7 @@ LEAD = 2.0  # mm a turn
 def turning(rpm: float = 600.0) -> tuple[Simulation, ManualClock, SpindleGear]:
     """A lathe whose spindle is up to speed, and its gear."""
     sim, clock = simulation()
-    sim.ports.spindle.run_at(rpm)
+    sim.ports.spindle.set_speed(rpm)
     play(sim, clock, 4.0)
     assert sim.ports.gear is not None
     return sim, clock, sim.ports.gear
@@ -35,12 +35,12 @@ def cam(sim: Simulation, lead: float = LEAD, turns: float = 10.0, start: float =
     a = 2.0 * lead
     z = np.array([0.0, 0.25 * lead, (0.25 + turns) * lead])
     v, acc, still = np.array([0.0, lead, lead]), np.array([a, 0.0, -a]), np.zeros(3)
-    way = Segments(
-        t=np.array([0.0, 0.5, 0.5 + turns]),
-        dt=np.array([0.5, turns, 0.5]),
-        p=np.column_stack([still, z, still]),
-        v=np.column_stack([still, v, still]),
-        a=np.column_stack([still, acc, still]),
+    way = MotionSegments(
+        start_times_s=np.array([0.0, 0.5, 0.5 + turns]),
+        durations_s=np.array([0.5, turns, 0.5]),
+        positions=np.column_stack([still, z, still]),
+        velocities=np.column_stack([still, v, still]),
+        accelerations=np.column_stack([still, acc, still]),
     )
     return Cam(read[1] + sign * start, sign, way)
 
@@ -86,7 +86,7 @@ def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim, turns=60.0))
     play(sim, clock, 0.5)
-    sim.ports.spindle.run_at(0.0)
+    sim.ports.spindle.set_speed(0.0)
     play(sim, clock, 3.0)
     stood = z_of(sim, clock)
     assert stood > LEAD
@@ -94,7 +94,7 @@ def test_a_spindle_that_stands_leaves_the_slides_standing() -> None:
     assert z_of(sim, clock) == pytest.approx(stood, abs=1e-6)
     assert sim.ports.axes.horizon() == math.inf
     assert sim.ports.axes.sample().fault == ""
-    sim.ports.spindle.run_at(600.0)
+    sim.ports.spindle.set_speed(600.0)
     play(sim, clock, 1.0)
     assert z_of(sim, clock) > stood + 4 * LEAD
 
@@ -122,12 +122,12 @@ def test_a_later_way_replaces_the_end() -> None:
     made = cam(sim, turns=60.0)
     gear.mesh(made)
     play(sim, clock, 0.6)
-    short = cam(sim, turns=20.0).way
-    cut = Segments(*(part[1:] for part in short))
+    short = cam(sim, turns=20.0).segments
+    cut = MotionSegments(*(part[1:] for part in short))
     at = 8.0
-    cut.t[0], cut.dt[0] = at, 20.5 - at
-    cut.p[0, 1] = LEAD * (at - 0.25)
-    gear.mesh(made._replace(way=cut))
+    cut.start_times_s[0], cut.durations_s[0] = at, 20.5 - at
+    cut.positions[0, 1] = LEAD * (at - 0.25)
+    gear.mesh(made._replace(segments=cut))
     play(sim, clock, 3.0)
     assert z_of(sim, clock) == pytest.approx(20.5 * LEAD)
 
@@ -150,7 +150,7 @@ def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
     sim, clock, gear = turning(600.0)
     lead = 4.0
     gear.mesh(cam(sim, lead=lead, turns=20.0))
-    sim.ports.spindle.run_at(1600.0)
+    sim.ports.spindle.set_speed(1600.0)
     speeds, p = [], []
     while gear.geared() is not None:
         clock.advance(0.001)
@@ -166,7 +166,7 @@ def test_a_spindle_that_speeds_up_asks_no_slide_for_more_than_it_has() -> None:
 def test_it_is_never_foretold_as_over_while_it_is_played() -> None:
     sim, clock, gear = turning()
     gear.mesh(cam(sim))
-    sim.ports.spindle.run_at(150.0)
+    sim.ports.spindle.set_speed(150.0)
     while gear.geared() is not None:
         assert not is_queue_finished(sim.ports.axes.horizon(), clock.now())
         clock.advance(0.00037)
@@ -183,7 +183,7 @@ def test_what_rounding_leaves_of_a_motion_is_rest() -> None:
     assert is_queue_finished(sim.ports.axes.horizon(), clock.now())
     made = cam(sim)
     x = np.array([sim.ports.axes.demand_at(end)[0][0], 0.0, 0.0])
-    gear.mesh(made._replace(way=made.way._replace(p=made.way.p + x)))
+    gear.mesh(made._replace(segments=made.segments._replace(positions=made.segments.positions + x)))
     assert gear.geared() is not None
 
 
@@ -191,10 +191,12 @@ def test_a_way_that_is_not_begun_is_replaced_whole() -> None:
     """A shorter running up leaves nothing of the longer one before it."""
     sim, clock, gear = turning()
     made = cam(sim, start=3.0)
-    early = Segments(*(part.copy() for part in made.way))
-    early.t[0], early.dt[0] = -1.0, 1.5
-    early.p[0, 1], early.a[0, 1] = -0.5 * LEAD, LEAD / 1.5
-    gear.mesh(made._replace(way=early._replace(p=early.p + np.array([0.0, 0.5 * LEAD, 0.0]))))
+    early = MotionSegments(*(part.copy() for part in made.segments))
+    early.start_times_s[0], early.durations_s[0] = -1.0, 1.5
+    early.positions[0, 1], early.accelerations[0, 1] = -0.5 * LEAD, LEAD / 1.5
+    gear.mesh(
+        made._replace(segments=early._replace(positions=early.positions + np.array([0.0, 0.5 * LEAD, 0.0])))
+    )
     gear.mesh(made)
     play(sim, clock, 4.0)
     assert z_of(sim, clock) == pytest.approx(10.5 * LEAD)
@@ -230,10 +232,14 @@ def test_a_way_has_to_begin_where_the_slides_are_and_end_at_rest() -> None:
     sim, _, gear = turning()
     made = cam(sim)
     with raises_code(DriverError, "driver", "Z: ") as told:
-        gear.mesh(made._replace(way=made.way._replace(p=made.way.p + np.array([0.0, 1.0, 0.0]))))
+        gear.mesh(
+            made._replace(
+                segments=made.segments._replace(positions=made.segments.positions + np.array([0.0, 1.0, 0.0]))
+            )
+        )
     assert told.value.reason == "jump"
     with raises_code(DriverError, "broken-path") as told:
-        gear.mesh(made._replace(way=Segments(*(part[:2] for part in made.way))))
+        gear.mesh(made._replace(segments=MotionSegments(*(part[:2] for part in made.segments))))
     assert told.value.reason == "moves-at-end"
     assert gear.geared() is None
 
@@ -316,7 +322,7 @@ def test_an_accelerating_spindle_is_met_without_lag() -> None:
     for k in range(1, 1000):
         phase.add_reading(0.001 * k, 12.5 * (0.001 * k) ** 2)
     assert phase.revolutions == pytest.approx(12.5 * 0.999**2, abs=1e-9)
-    assert phase.predict(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
+    assert phase.predict_revolutions(1.009) == pytest.approx(12.5 * 1.009**2, abs=1e-6)
 
 
 def test_the_same_reading_again_says_nothing() -> None:

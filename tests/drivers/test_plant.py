@@ -109,7 +109,7 @@ def test_drives_refuse_setpoints_when_off_faulted_or_outside() -> None:
 
 def test_estop_is_hardware() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run_at(1000.0)
+    sim.ports.spindle.set_speed(1000.0)
     sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.6))
     play(sim, clock, 0.2)
     sim.machine.press_estop()
@@ -120,7 +120,7 @@ def test_estop_is_hardware() -> None:
     with raises_code(DriverError, "no-power", "E-stop"):
         sim.ports.axes.enable(True)
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        sim.ports.spindle.run_at(500.0)
+        sim.ports.spindle.set_speed(500.0)
     play(sim, clock, 3.0)
     assert sim.machine.get_spindle_rpm() == 0.0
     sim.machine.release_estop()
@@ -162,7 +162,7 @@ def test_homing_refuses_while_moving_and_an_unknown_axis() -> None:
 
 def test_spindle_ramps_after_its_latency() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run_at(1500.0)
+    sim.ports.spindle.set_speed(1500.0)
     clock.sleep_until(0.08)
     assert sim.ports.spindle.speed() == pytest.approx(0.0)
     clock.sleep_until(0.58)
@@ -173,7 +173,7 @@ def test_spindle_ramps_after_its_latency() -> None:
     assert angle is not None
     # half of 1500/min for 1 s, then 1500/min for 1 s
     assert angle[1] == pytest.approx(12.5 + 25.0, abs=0.0003)
-    sim.ports.spindle.run_at(-1500.0)
+    sim.ports.spindle.set_speed(-1500.0)
     clock.sleep_until(2.16 + 0.6)
     assert sim.ports.spindle.speed() == pytest.approx(0.0, abs=1e-6)
     clock.sleep_until(2.76 + 0.5)
@@ -184,9 +184,9 @@ def test_spindle_ramps_after_its_latency() -> None:
 def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bool) -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
-    spindle.run_at(1500.0)
+    spindle.set_speed(1500.0)
     clock.advance(0.01)
-    spindle.coast() if coast else spindle.run_at(0.0)
+    spindle.start_coasting() if coast else spindle.set_speed(0.0)
     for _ in range(30):
         clock.advance(0.005)
         assert spindle.speed() == 0.0
@@ -195,17 +195,17 @@ def test_a_spindle_stopped_before_its_inverter_has_reacted_never_turns(coast: bo
 def test_a_stop_that_is_repeated_stops_after_the_latency_of_the_first() -> None:
     sim, clock = simulation()
     spindle = sim.ports.spindle
-    spindle.run_at(600.0)
+    spindle.set_speed(600.0)
     clock.advance(2.0)
     for _ in range(20):  # as the watchdog does
-        spindle.run_at(0.0)
+        spindle.set_speed(0.0)
         clock.advance(0.01)
     assert spindle.speed() == pytest.approx(600.0 - 2500.0 * (0.2 - 0.08))
 
 
 def test_spindle_faults() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run_at(9000.0)
+    sim.ports.spindle.set_speed(9000.0)
     clock.sleep_until(5.0)
     assert sim.ports.spindle.speed() == 3500.0
     sim.machine.spindle_bog(0.6)
@@ -213,13 +213,13 @@ def test_spindle_faults() -> None:
     assert sim.ports.spindle.speed() == pytest.approx(2100.0)
     sim.machine.spindle_bog(1.0)
     sim.machine.spindle_ignores_stop()
-    sim.ports.spindle.run_at(0.0)
+    sim.ports.spindle.set_speed(0.0)
     clock.sleep_until(12.0)
     assert sim.ports.spindle.speed() == 3500.0
     sim.machine.spindle_fault("overcurrent")
     assert sim.ports.spindle.read_fault() == "overcurrent"
     with raises_code(DriverError, "spindle-off", "overcurrent"):
-        sim.ports.spindle.run_at(100.0)
+        sim.ports.spindle.set_speed(100.0)
     clock.sleep_until(20.0)
     assert sim.ports.spindle.speed() == 0.0
 
@@ -245,7 +245,7 @@ def test_safe_keeps_the_collet() -> None:
     sim, _ = simulation()
     sim.ports.io.write("coolant", True)
     sim.ports.io.switch_to_safe_state()
-    assert sim.ports.io.outputs() == {"collet": True, "coolant": False, "catcher": False}
+    assert sim.ports.io.get_outputs() == {"collet": True, "coolant": False, "catcher": False}
 
 
 def test_terminals_refuse_unknown_names() -> None:
@@ -259,14 +259,18 @@ def test_terminals_refuse_unknown_names() -> None:
 def test_c_is_not_positioned_by_a_spindle_that_turns() -> None:
     sim, clock = simulation()
     turn = ramp(0.03, ZERO, 100.0, 0.2)
-    turn = turn._replace(p=turn.p[:, [1, 2, 0]], v=turn.v[:, [1, 2, 0]], a=turn.a[:, [1, 2, 0]])
-    sim.ports.spindle.run_at(500.0)
+    turn = turn._replace(
+        positions=turn.positions[:, [1, 2, 0]],
+        velocities=turn.velocities[:, [1, 2, 0]],
+        accelerations=turn.accelerations[:, [1, 2, 0]],
+    )
+    sim.ports.spindle.set_speed(500.0)
     play(sim, clock, 1.0)
     with raises_code(DriverError, "drive-limits", "C axis", "500 rpm"):
-        sim.ports.axes.splice(turn._replace(t=turn.t + 1.0))
-    sim.ports.spindle.run_at(0.0)
+        sim.ports.axes.splice(turn._replace(start_times_s=turn.start_times_s + 1.0))
+    sim.ports.spindle.set_speed(0.0)
     play(sim, clock, 1.0)
-    sim.ports.axes.splice(turn._replace(t=turn.t + 2.0))
+    sim.ports.axes.splice(turn._replace(start_times_s=turn.start_times_s + 2.0))
     play(sim, clock, 1.0)
     assert sim.ports.axes.sample().actual[2] == pytest.approx(100.0 * 0.2333, abs=0.05)
 

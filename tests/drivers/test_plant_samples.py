@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.ports import FloatArray, Segments, StopMode
+from core.ports import FloatArray, MotionSegments, StopMode
 from drivers.port_checks import SampleLog
 from drivers.simulated.simulated_machine import Simulation
 from drivers.simulators import plant
@@ -45,7 +45,7 @@ def test_the_samples_are_the_same_whoever_looks_when(tick: float) -> None:
         sim, clock = simulation()
         taken(sim)
         sim.ports.axes.splice(ramp(0.03, ZERO, 120.0, 0.2))
-        sim.ports.spindle.run_at(900.0)
+        sim.ports.spindle.set_speed(900.0)
         rows = []
         while clock.now() < 0.5:
             clock.advance(every)
@@ -63,7 +63,7 @@ def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.Monk
     def sampled() -> FloatArray:
         sim, clock = simulation()
         taken(sim)
-        sim.ports.spindle.run_at(900.0)
+        sim.ports.spindle.set_speed(900.0)
         sim.ports.axes.splice(ramp(0.03, ZERO, 60.0, 0.4))
         play(sim, clock, 0.2)
         if act == "push":
@@ -84,17 +84,17 @@ def test_a_foreseen_motion_is_the_stepped_one(act: str, monkeypatch: pytest.Monk
     np.testing.assert_allclose(foreseen, sampled(), rtol=0.0, atol=1e-9)
 
 
-def braking(t: float, p: tuple[float, ...], v: tuple[float, ...]) -> Segments:
+def braking(t: float, p: tuple[float, ...], v: tuple[float, ...]) -> MotionSegments:
     """To rest in 0.1 s."""
     a = [-each / 0.1 for each in v]
-    return Segments(np.array([t]), np.array([0.1]), np.array([p]), np.array([v]), np.array([a]))
+    return MotionSegments(np.array([t]), np.array([0.1]), np.array([p]), np.array([v]), np.array([a]))
 
 
 def test_a_spindle_is_sampled_also_while_the_slides_rest_and_its_ripple_is_the_known_one() -> None:
     sim, clock = simulation()
     taken(sim)
     sim.machine.spindle_wander(0.02, 0.25)
-    sim.ports.spindle.run_at(1200.0)
+    sim.ports.spindle.set_speed(1200.0)
     play(sim, clock, 3.0)
     taken(sim)
     play(sim, clock, 1.0)
@@ -132,7 +132,7 @@ def test_without_power_the_demand_is_where_the_slide_is() -> None:
 
 def test_nobody_who_takes_them_costs_nothing_and_a_late_one_has_the_last_eight_seconds() -> None:
     sim, clock = simulation()
-    sim.ports.spindle.run_at(600.0)
+    sim.ports.spindle.set_speed(600.0)
     play(sim, clock, 1.0)
     assert taken(sim).shape == (0, 14)
     play(sim, clock, 20.0)
@@ -171,13 +171,13 @@ def test_the_spindle_bears_its_bearings_its_speeding_up_and_the_cut() -> None:
     """By the speed up to 10 %, 70 % more while it speeds up, 30 % more while a slide feeds."""
     sim, clock = simulation()
     taken(sim)
-    sim.ports.spindle.run_at(900.0)
+    sim.ports.spindle.set_speed(900.0)
     play(sim, clock, 0.25)
     early = taken(sim)[-1]
     assert 70.0 < early[SPINDLE_LOAD] < 80.0
     play(sim, clock, 6.0)
     top = taken(sim)[-1]
-    share = 10.0 * 900.0 / sim.machine._plant.config.spindle.rpm_max
+    share = 10.0 * 900.0 / sim.machine._plant.config.spindle.max_rpm
     assert (top[SPEED], top[SPINDLE_LOAD]) == pytest.approx((900.0, share))
     sim.ports.axes.splice(ramp(clock.now() + 0.05, ZERO, 5.0, 0.5))
     play(sim, clock, 0.4)

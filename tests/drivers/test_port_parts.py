@@ -45,13 +45,13 @@ def test_a_fault_that_is_handed_on_keeps_its_code_also_to_another_process() -> N
 @pytest.mark.parametrize(
     ("order", "code", "reason"),
     [
-        (lambda: require_power(Fault("Z: drive fault", "following"), powered=True), "following", ""),
-        (lambda: require_power("cable out", powered=True), "axis", ""),
-        (lambda: require_power("", powered=False), "power-lost", ""),
+        (lambda: require_power(Fault("Z: drive fault", "following"), is_powered=True), "following", ""),
+        (lambda: require_power("cable out", is_powered=True), "axis", ""),
+        (lambda: require_power("", is_powered=False), "power-lost", ""),
         (lambda: require_no_homing("X"), "driver", "homing"),
         (lambda: require_axis("Q", "XZ"), "driver", "no-axis"),
-        (lambda: require_free_drive(enabled=False, turning=True), "c-coupling", "drives-off"),
-        (lambda: require_free_drive(enabled=True, turning=True), "c-coupling", "spindle-turns"),
+        (lambda: require_free_drive(is_enabled=False, is_turning=True), "c-coupling", "drives-off"),
+        (lambda: require_free_drive(is_enabled=True, is_turning=True), "c-coupling", "spindle-turns"),
         (lambda: find_output("lamp", {"collet": 1}), "output", ""),
         (lambda: require_output_allowed("lamp", True, "cable out"), "output", ""),
     ],
@@ -63,10 +63,10 @@ def test_what_is_refused_and_why(order: Callable[[], object], code: str, reason:
 
 
 def test_what_may_be_done_is_not_refused() -> None:
-    require_power("", powered=True)
+    require_power("", is_powered=True)
     require_no_homing("")
     require_axis("X", "XZ")
-    require_free_drive(enabled=True, turning=False)
+    require_free_drive(is_enabled=True, is_turning=False)
     require_output_allowed("lamp", False, "cable out")
     assert find_output("collet", {"collet": 1}) == 1
 

@@ -20,7 +20,7 @@ from tests.drivers.machines import CONFIG, play, ramp, simulation
 
 
 def broken(*faults: PlannedFault) -> tuple[Simulation, ManualClock]:
-    return simulation(dataclasses.replace(CONFIG, faults=faults))
+    return simulation(dataclasses.replace(CONFIG, planned_faults=faults))
 
 
 def test_a_jam_comes_in_the_middle_of_a_move() -> None:
@@ -44,7 +44,7 @@ def test_what_lasts_is_mended() -> None:
 
 def test_a_bogged_spindle_gets_its_speed_back() -> None:
     sim, clock = broken(PlannedFault(3.0, "spindle_bog", value=0.4, seconds=2.0))
-    sim.ports.spindle.run_at(1000.0)
+    sim.ports.spindle.set_speed(1000.0)
     play(sim, clock, 4.9)
     assert sim.ports.spindle.speed() == pytest.approx(400.0)
     play(sim, clock, 2.0)
@@ -58,7 +58,7 @@ def test_whatever_a_machine_file_may_name_the_simulation_can_break(what: str) ->
 
 
 def test_an_unknown_fault_is_refused() -> None:
-    config = dataclasses.replace(CONFIG, faults=(PlannedFault(1.0, "rust"),))
+    config = dataclasses.replace(CONFIG, planned_faults=(PlannedFault(1.0, "rust"),))
     with raises_code(DriverError, "driver", "'rust'"):
         build_simulation(config, ManualClock())
 
@@ -150,12 +150,12 @@ def test_in_estop_or_with_a_fault_the_spindle_neither_turns_nor_goes_to_an_angle
     orientation = sim.ports.orientation
     acts: tuple[Callable[[], None], ...] = (
         lambda: orientation.orient_spindle(0.0),
-        lambda: sim.ports.spindle.run_at(100.0),
+        lambda: sim.ports.spindle.set_speed(100.0),
     )
     for act in acts:
         with raises_code(DriverError, "spindle-off", why):
             act()
-    sim.ports.spindle.run_at(0.0)  # to stop is always taken
+    sim.ports.spindle.set_speed(0.0)  # to stop is always taken
     assert (sim.ports.spindle.read_fault() == "over-current") is broken
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.ports import DriverError, Segments
+from core.ports import DriverError, MotionSegments
 from drivers.setpoint_queue import JunctionTolerance, SetpointQueue
 from tests.coded import raises_code
 from tests.drivers.machines import ramp
@@ -21,64 +21,64 @@ def queue() -> SetpointQueue:
 
 def test_plays_what_was_queued_and_rests_after_it() -> None:
     q = queue()
-    q.splice(ramp(0.05, REST, 60.0, 0.2), now=0.0)
-    assert q.commanded_state_at(0.0) == (REST, (0.0, 0.0, 0.0))
-    p, v = q.commanded_state_at(0.05 + 0.02 + 0.1)
+    q.splice_segments(ramp(0.05, REST, 60.0, 0.2), now=0.0)
+    assert q.get_commanded_state(0.0) == (REST, (0.0, 0.0, 0.0))
+    p, v = q.get_commanded_state(0.05 + 0.02 + 0.1)
     assert v == pytest.approx((60.0, 0.0, 0.0))
     assert p[0] == pytest.approx(1.0 + 0.6 + 6.0)  # half of 60*0.02, then 60*0.1
-    p, v = q.commanded_state_at(9.0)
+    p, v = q.get_commanded_state(9.0)
     assert p == pytest.approx((1.0 + 1.2 + 12.0, 2.0, 3.0))
     assert v == (0.0, 0.0, 0.0)
-    assert q.queue_end(0.0) == pytest.approx(0.29)
-    assert q.queue_end(7.0) == 7.0
+    assert q.get_end_time(0.0) == pytest.approx(0.29)
+    assert q.get_end_time(7.0) == 7.0
 
 
 def test_a_splice_replaces_what_came_later() -> None:
     q = queue()
-    q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
-    p, v = q.commanded_state_at(0.5)
-    brake = Segments(
+    q.splice_segments(ramp(0.03, REST, 60.0, 1.0), now=0.0)
+    p, v = q.get_commanded_state(0.5)
+    brake = MotionSegments(
         np.array([0.5]), np.array([0.02]), np.array([p]), np.array([v]), np.array([[-3000.0, 0.0, 0.0]])
     )
-    q.splice(brake, now=0.47)
-    assert q.queue_end(0.47) == pytest.approx(0.52)
-    assert q.commanded_state_at(1.0)[0][0] == pytest.approx(p[0] + 0.6)
-    assert q.commanded_state_at(0.4)[1][0] == pytest.approx(60.0)
+    q.splice_segments(brake, now=0.47)
+    assert q.get_end_time(0.47) == pytest.approx(0.52)
+    assert q.get_commanded_state(1.0)[0][0] == pytest.approx(p[0] + 0.6)
+    assert q.get_commanded_state(0.4)[1][0] == pytest.approx(60.0)
 
 
 def test_splice_after_the_end_waits_at_rest() -> None:
     q = queue()
-    q.splice(ramp(0.03, REST, 60.0, 0.1), now=0.0)
-    rest = q.commanded_state_at(1.0)[0]
-    q.splice(ramp(2.0, (rest[0], rest[1], rest[2]), -60.0, 0.1), now=1.0)
-    assert q.commanded_state_at(1.9)[0] == pytest.approx(rest)
-    assert q.commanded_state_at(1.9)[1] == (0.0, 0.0, 0.0)
-    assert q.commanded_state_at(3.0)[0] == pytest.approx(REST)
+    q.splice_segments(ramp(0.03, REST, 60.0, 0.1), now=0.0)
+    rest = q.get_commanded_state(1.0)[0]
+    q.splice_segments(ramp(2.0, (rest[0], rest[1], rest[2]), -60.0, 0.1), now=1.0)
+    assert q.get_commanded_state(1.9)[0] == pytest.approx(rest)
+    assert q.get_commanded_state(1.9)[1] == (0.0, 0.0, 0.0)
+    assert q.get_commanded_state(3.0)[0] == pytest.approx(REST)
 
 
 def test_refuses_what_starts_before_commit() -> None:
     q = queue()
     with raises_code(DriverError, "late") as told:
-        q.splice(ramp(0.029, REST, 60.0, 0.1), now=0.0)
+        q.splice_segments(ramp(0.029, REST, 60.0, 0.1), now=0.0)
     assert told.value.reason == "too-early"
-    assert q.queue_end(0.0) == 0.0
+    assert q.get_end_time(0.0) == 0.0
 
 
-def in_slices(start: float, count: int) -> Segments:
+def in_slices(start: float, count: int) -> MotionSegments:
     """At rest in so many pieces of 2 ms."""
     t = start + 0.002 * np.arange(count, dtype=np.float64)
     zero = np.zeros((count, 3))
-    return Segments(t, np.full(count, 0.002), np.tile(REST, (count, 1)), zero, zero)
+    return MotionSegments(t, np.full(count, 0.002), np.tile(REST, (count, 1)), zero, zero)
 
 
 def test_a_long_path_gives_way_to_what_has_to_go_on() -> None:
     q = queue()
     asked: list[float] = []
-    q.yield_cpu = lambda: asked.append(q.queue_end(0.0))
-    q.splice(in_slices(0.05, 1000), now=0.0)
+    q.yield_cpu = lambda: asked.append(q.get_end_time(0.0))
+    q.splice_segments(in_slices(0.05, 1000), now=0.0)
     assert len(asked) == 10
     assert asked == [0.0] * 10  # nothing of it is played before all of it is there
-    assert q.queue_end(0.0) == pytest.approx(2.05)
+    assert q.get_end_time(0.0) == pytest.approx(2.05)
 
 
 def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
@@ -89,12 +89,12 @@ def test_a_long_path_that_is_overtaken_by_its_own_start_is_refused() -> None:
         fed[0] += 0.01
 
     q.yield_cpu, q.get_transferred_until = go_on, lambda: fed[0]
-    q.splice(in_slices(0.05, 400), now=0.0)
+    q.splice_segments(in_slices(0.05, 400), now=0.0)
     fed[0] = 0.0
     with raises_code(DriverError, "late", "10.0 ms") as error:
-        q.splice(in_slices(0.05, 600), now=0.0)
+        q.splice_segments(in_slices(0.05, 600), now=0.0)
     assert error.value.reason == "too-early"
-    assert q.queue_end(0.0) == pytest.approx(0.85)
+    assert q.get_end_time(0.0) == pytest.approx(0.85)
 
 
 @pytest.mark.parametrize(("off", "axis"), [(0.0011, 0), (-0.0011, 1), (0.0011, 2)])
@@ -102,23 +102,29 @@ def test_refuses_a_jump_in_position(off: float, axis: int) -> None:
     start = list(REST)
     start[axis] += off
     with raises_code(DriverError, "driver", f"{'XZC'[axis]}: ", "position") as told:
-        queue().splice(ramp(0.05, (start[0], start[1], start[2]), 60.0, 0.1), now=0.0)
+        queue().splice_segments(ramp(0.05, (start[0], start[1], start[2]), 60.0, 0.1), now=0.0)
     assert told.value.reason == "jump"
 
 
 def test_refuses_a_jump_in_velocity() -> None:
     good = ramp(0.05, REST, 60.0, 0.1)
-    moving = Segments(good.t[1:], good.dt[1:], good.p[1:] - good.p[1] + good.p[0], good.v[1:], good.a[1:])
+    moving = MotionSegments(
+        good.start_times_s[1:],
+        good.durations_s[1:],
+        good.positions[1:] - good.positions[1] + good.positions[0],
+        good.velocities[1:],
+        good.accelerations[1:],
+    )
     with raises_code(DriverError, "driver", "X: ", "velocity", "0.0000", "60.0000") as told:
-        queue().splice(moving, now=0.0)
+        queue().splice_segments(moving, now=0.0)
     assert told.value.reason == "jump"
 
 
 def test_refuses_a_queue_that_does_not_end_at_rest() -> None:
     good = ramp(0.05, REST, 60.0, 0.1)
-    endless = Segments(*(part[:2] for part in good))
+    endless = MotionSegments(*(part[:2] for part in good))
     with raises_code(DriverError, "broken-path", "X") as told:
-        queue().splice(endless, now=0.0)
+        queue().splice_segments(endless, now=0.0)
     assert told.value.reason == "moves-at-end"
 
 
@@ -127,55 +133,60 @@ def test_refuses_a_jump_between_its_own_pieces(part: int) -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
     bad[part][1, 1] += 5.0
     with raises_code(DriverError, "broken-path", "Z: ", "0.0700") as told:
-        queue().splice(bad, now=0.0)
+        queue().splice_segments(bad, now=0.0)
     assert told.value.reason == "jump"
 
 
 def test_refuses_a_gap_and_time_running_backwards() -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
-    bad.t[2] += 0.01
+    bad.start_times_s[2] += 0.01
     with raises_code(DriverError, "broken-path") as told:
-        queue().splice(bad, now=0.0)
+        queue().splice_segments(bad, now=0.0)
     assert told.value.reason == "gap"
-    bad.dt[1] = -0.1
+    bad.durations_s[1] = -0.1
     with raises_code(DriverError, "broken-path") as told:
-        queue().splice(bad, now=0.0)
+        queue().splice_segments(bad, now=0.0)
     assert told.value.reason == "backwards"
 
 
 def test_refuses_no_numbers_and_wrong_shapes() -> None:
     bad = ramp(0.05, REST, 60.0, 0.1)
-    bad.p[0, 0] = np.nan
+    bad.positions[0, 0] = np.nan
     with raises_code(DriverError, "broken-path") as told:
-        queue().splice(bad, now=0.0)
+        queue().splice_segments(bad, now=0.0)
     assert told.value.reason == "no-number"
     with raises_code(DriverError, "broken-path") as told:
-        queue().splice(Segments(bad.t, bad.dt, bad.p[:, :2], bad.v, bad.a), now=0.0)
+        queue().splice_segments(
+            MotionSegments(
+                bad.start_times_s, bad.durations_s, bad.positions[:, :2], bad.velocities, bad.accelerations
+            ),
+            now=0.0,
+        )
     assert told.value.reason == "shape"
     empty = np.zeros((0, 3))
     with raises_code(DriverError, "broken-path") as told:
-        queue().splice(Segments(np.zeros(0), np.zeros(0), empty, empty, empty), now=0.0)
+        queue().splice_segments(MotionSegments(np.zeros(0), np.zeros(0), empty, empty, empty), now=0.0)
     assert told.value.reason == "shape"
 
 
 def test_brake_needs_nobody() -> None:
     q = queue()
-    q.splice(ramp(0.03, REST, 60.0, 1.0), now=0.0)
-    before = q.commanded_state_at(0.5)[0][0]
+    q.splice_segments(ramp(0.03, REST, 60.0, 1.0), now=0.0)
+    before = q.get_commanded_state(0.5)[0][0]
     assert q.brake_to_rest(0.5, (3000.0, 3000.0, 3600.0)) == pytest.approx(0.52)
-    assert q.commanded_state_at(0.52)[1] == (0.0, 0.0, 0.0)
-    assert q.commanded_state_at(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
+    assert q.get_commanded_state(0.52)[1] == (0.0, 0.0, 0.0)
+    assert q.get_commanded_state(9.0)[0][0] == pytest.approx(before + 0.6)  # v²/2a
 
 
 def test_trimming_forgets_only_the_past() -> None:
     q, rest = queue(), REST
     for k in range(100):
-        q.splice(ramp(0.1 + k, rest, 60.0 if k % 2 else -60.0, 0.1), now=float(k))
-        after = q.commanded_state_at(k + 0.9)[0]
+        q.splice_segments(ramp(0.1 + k, rest, 60.0 if k % 2 else -60.0, 0.1), now=float(k))
+        after = q.get_commanded_state(k + 0.9)[0]
         rest = (after[0], after[1], after[2])
-    late = q.commanded_state_at(99.15)
-    q.discard_before(99.1)
-    assert q.commanded_state_at(99.15) == late
+    late = q.get_commanded_state(99.15)
+    q.discard_pieces_before(99.1)
+    assert q.get_commanded_state(99.15) == late
     assert len(q._pieces) < 20
 
 
@@ -194,11 +205,11 @@ def test_any_splices_leave_a_continuous_queue_that_ends_at_rest(
     for wait, speed, cruise in calls:
         now += wait
         try:
-            p, _ = q.commanded_state_at(now + 0.03)
-            q.splice(ramp(now + 0.03, (p[0], p[1], p[2]), speed, cruise), now)
+            p, _ = q.get_commanded_state(now + 0.03)
+            q.splice_segments(ramp(now + 0.03, (p[0], p[1], p[2]), speed, cruise), now)
         except DriverError:
             continue
-    assert q.commanded_state_at(q.queue_end(now) + 1e-9)[1] == (0.0, 0.0, 0.0)
-    times = np.arange(0.0, q.queue_end(now) + 0.01, 0.0005)
-    x = np.array([q.commanded_state_at(float(t))[0][0] for t in times])
+    assert q.get_commanded_state(q.get_end_time(now) + 1e-9)[1] == (0.0, 0.0, 0.0)
+    times = np.arange(0.0, q.get_end_time(now) + 0.01, 0.0005)
+    x = np.array([q.get_commanded_state(float(t))[0][0] for t in times])
     assert np.abs(np.diff(x)).max() <= 120.0 * 0.0005 + 0.0011

@@ -13,7 +13,7 @@ def test_turns_follow_the_swinging_speed() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
     sim.machine.spindle_wander(0.02, 2.0)
-    sim.ports.spindle.run_at(600.0)
+    sim.ports.spindle.set_speed(600.0)
     clock.advance(2.0)
     area, before, began = 0.0, sim.machine.get_spindle_rpm(), sim.machine.spindle_turns()
     speeds = []
@@ -34,7 +34,7 @@ def test_it_does_not_matter_how_often_one_looks() -> None:
         clock = ManualClock()
         sim = build_simulation(CONFIG, clock)
         sim.machine.spindle_wander(0.05, 0.7)
-        sim.ports.spindle.run_at(-900.0)
+        sim.ports.spindle.set_speed(-900.0)
         for _ in range(round(1.5 / step)):
             clock.advance(step)
             sim.ports.spindle.speed()
@@ -46,7 +46,7 @@ def test_it_does_not_matter_how_often_one_looks() -> None:
 def test_no_wander_is_an_even_spindle() -> None:
     clock = ManualClock()
     sim = build_simulation(CONFIG, clock)
-    sim.ports.spindle.run_at(600.0)
+    sim.ports.spindle.set_speed(600.0)
     clock.advance(1.0)
     began = sim.machine.spindle_turns()
     clock.advance(0.37)

@@ -98,7 +98,7 @@ def test_counts_that_are_missed_once_a_turn_are_a_step_of_that_size() -> None:
 def test_a_belt_slips_in_the_cut_alone_and_the_turns_are_the_area_under_the_speed() -> None:
     sim, clock = simulation()
     sim.machine.belt_slip(0.2)
-    sim.ports.spindle.run_at(1200.0)
+    sim.ports.spindle.set_speed(1200.0)
     play(sim, clock, 2.0)
     assert sim.ports.spindle.speed() == pytest.approx(1200.0)
     rows = moved(sim, clock, 10.0, 2.0)
@@ -114,7 +114,7 @@ def test_a_belt_slips_in_the_cut_alone_and_the_turns_are_the_area_under_the_spee
 
 def test_a_machine_file_may_plan_it_and_it_ends_in_time() -> None:
     fault = PlannedFault(0.0, "encoder_missed", "X", 0.03, 1.0, turn=2.0)
-    sim, clock = simulation(dataclasses.replace(CONFIG, faults=(fault,)))
+    sim, clock = simulation(dataclasses.replace(CONFIG, planned_faults=(fault,)))
     rows = moved(sim, clock, 50.0, 0.5)
     assert np.diff(np.flatnonzero(np.diff(error(rows)) > 0.02)) == pytest.approx(40, abs=2)
     play(sim, clock, 1.0)

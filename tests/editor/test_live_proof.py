@@ -27,7 +27,7 @@ def checker() -> Iterator[LiveProof]:
 
 def settled(checker: LiveProof) -> ProofFindings:
     checker.worker.wait_for_results(60.0)
-    return checker.current
+    return checker.current_findings
 
 
 def test_a_good_program_is_proved_and_drawn(checker: LiveProof) -> None:
@@ -82,7 +82,7 @@ def test_a_long_proof_gives_way_to_a_newer_text() -> None:
     checker = LiveProof(replace(workshop(), prove_job=prove))
     checker.submit_text("a.nc", "old")
     assert running.wait(60)
-    checker.worker.clock = lambda: time.monotonic() + 1000.0  # all patience is at its end
+    checker.worker.read_time_s = lambda: time.monotonic() + 1000.0  # all patience is at its end
     checker.submit_text("a.nc", "M30\n")
     assert settled(checker).number == 2
     assert tries == ["old", "M30\n"]
@@ -111,7 +111,7 @@ def test_a_prover_that_fails_is_told_and_the_next_text_is_proved() -> None:
     checker = LiveProof(replace(workshop(), make_job=make_job))
     checker.submit_text("a.nc", GOOD)
     assert settled(checker).error_text == text("editor.proving-failed", why="the store is damaged")
-    checker.steps = workshop()
+    checker.loading_steps = workshop()
     checker.submit_text("a.nc", GOOD)
     assert settled(checker).error_text == ""
     checker.close()

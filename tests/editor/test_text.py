@@ -8,7 +8,7 @@ from app.editor.edited_document import InvalidNameError, make_program_name
 from app.editor.question_view import TextSearch, find_preceding, following
 from app.editor.version_history import DifferenceRow as Row
 from app.editor.version_history import compare_texts
-from core.language.source import Dialect, default_extension, guess_dialect
+from core.language.source import Dialect, get_default_extension, guess_dialect
 from tests.texts import text as wording
 
 TEXT = "F100\nX1F1000\nf100(F100.)\nF100.5 F100X2\n"
@@ -89,7 +89,7 @@ def test_a_name_gets_the_usual_ending(typed: str, usual: str, name: str) -> None
 
 @pytest.mark.parametrize("dialect", Dialect)
 def test_the_usual_ending_of_a_language_is_read_as_that_language(dialect: Dialect) -> None:
-    assert guess_dialect(f"part{default_extension(dialect)}") is dialect
+    assert guess_dialect(f"part{get_default_extension(dialect)}") is dialect
 
 
 @pytest.mark.parametrize("typed", ["", "  ", ".pin", "a/b", "..", "a\\b", "pin.exe", "a:b", "x" * 300])

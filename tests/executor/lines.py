@@ -34,7 +34,7 @@ def line_job(rig: Rig, text: str, tools: Mapping[int, ToolOffset] = TOOLS) -> Jo
         start=shot.demand,
         begin=PassStart(point, is_mdi_line=True),
     )
-    return make_job(ProgramSource("MDI", text, Dialect(rig.machine.language)), setup)
+    return make_job(ProgramSource("MDI", text, Dialect(rig.machine.mdi_language)), setup)
 
 
 def errors(rig: Rig, text: str) -> list[Diagnostic]:

@@ -146,7 +146,7 @@ class ExecutorModel(RuleBasedStateMachine):
         assert self.machine.state not in MOVES or was not in MOVES or self._stopping()
 
     def _stopping(self) -> bool:
-        return self.machine.state in {MachineState.HOLDING, MachineState.JOG}
+        return self.machine.state in {MachineState.STOPPING, MachineState.JOG}
 
     @rule()
     def hold_button(self) -> None:

@@ -24,7 +24,7 @@ from core.executor.snapshot import (
     MachineState,
     Snapshot,
 )
-from core.executor.start_conditions import READING_TIME_S
+from core.executor.start_conditions import MIN_READING_TIME_S
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup
 from core.ports import UnknownPart
@@ -34,11 +34,11 @@ from tests.texts import pattern
 STARTS_FROM = {
     MachineState.IDLE,
     MachineState.HOLD,
-    MachineState.HOLDING,
-    MachineState.BLOCK_END,
+    MachineState.STOPPING,
+    MachineState.SINGLE_BLOCK_STOP,
     MachineState.PROGRAM_STOP,
 }
-MOVES = ACTIVE_STATES | {MachineState.JOG, MachineState.HOME}
+MOVES = ACTIVE_STATES | {MachineState.JOG, MachineState.HOMING}
 SETTLES = 0.6  # s: the drives' own braking from full speed, and the lag behind it
 LONGEST_JOG = 8.0  # s; the handwheel's way is long, and the host may be late by 5 s
 RUNS_OUT = 12.0  # s; the spindle's own ramp from full speed, bogged or not
@@ -111,7 +111,7 @@ class Machine(Rig):
     def _passes(self, job: Job, setup: Setup) -> ProgramPass:
         self.blocks: list[Block] = []
         whole = super()._passes(job, setup)
-        return whole._replace(blocks=self._kept(whole.blocks))
+        return whole._replace(block_iterator=self._kept(whole.block_iterator))
 
     def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
         for block in blocks:
@@ -164,7 +164,7 @@ class Machine(Rig):
             assert not at_rest or way < STILL or self.blind, f"{way} mm after TurnDesk was closed"
         assert not self.true_ports.axes.sample().enabled, "the drives are on after TurnDesk was closed"
         assert abs(hands.get_spindle_rpm()) < 1.0, "the spindle turns after TurnDesk was closed"
-        assert not self.true_ports.io.outputs()["coolant"], "the coolant is on"
+        assert not self.true_ports.io.get_outputs()["coolant"], "the coolant is on"
         self.left = self.notes[-1] if self.notes else None
         self.owed.clear()
         self._begin()
@@ -234,7 +234,7 @@ class Machine(Rig):
             return
         for axis, p0, p1, v0, v1 in zip(self.machine.axes, before[0], p, before[1], v, strict=True):
             assert abs(p1 - p0) < 1e-6, f"{axis.name} leaps by {p1 - p0}"
-            assert abs(v1 - v0) < 1e-3 * axis.vmax + 1e-6, (
+            assert abs(v1 - v0) < 1e-3 * axis.max_speed + 1e-6, (
                 f"{axis.name} changes its speed at once: {v0} to {v1}"
             )
 
@@ -249,11 +249,11 @@ class Machine(Rig):
         for (p0, v0), (p1, v1) in pairwise(looks):
             h = dt / steps
             for axis, a, b, va, vb in zip(self.machine.axes, p0, p1, v0, v1, strict=True):
-                assert abs(vb) <= axis.vmax * 1.001 + 1e-6, f"{axis.name} at {vb}"
-                assert abs(b - a) <= max(abs(va), abs(vb)) * h + axis.amax * h * h + 1e-6, (
+                assert abs(vb) <= axis.max_speed * 1.001 + 1e-6, f"{axis.name} at {vb}"
+                assert abs(b - a) <= max(abs(va), abs(vb)) * h + axis.max_acceleration * h * h + 1e-6, (
                     f"{axis.name} leaps"
                 )
-                assert abs(vb - va) <= axis.amax * 1.02 * (h + corner) + 1e-3 * axis.vmax, (
+                assert abs(vb - va) <= axis.max_acceleration * 1.02 * (h + corner) + 1e-3 * axis.max_speed, (
                     f"{axis.name} at {va} then {vb}"
                 )
 
@@ -285,14 +285,14 @@ class Machine(Rig):
         self, old: Snapshot, new: Snapshot, place: tuple[float, ...], dt: float
     ) -> None:
         begins = old.state not in ACTIVE_STATES or (
-            old.state is MachineState.HOLDING and new.state is not MachineState.HOLDING
+            old.state is MachineState.STOPPING and new.state is not MachineState.STOPPING
         )
         if new.state in ACTIVE_STATES and begins:
             assert self.pressed, f"{old.state} became {new.state} and nobody pressed a start"
             assert old.state in STARTS_FROM, f"a cycle was started from {old.state}"
         if new.state is MachineState.JOG and old.state is not MachineState.JOG:
             assert self.jogged, f"{old.state} became a jog and nobody asked for one"
-        if new.state is MachineState.HOME and old.state is not MachineState.HOME:
+        if new.state is MachineState.HOMING and old.state is not MachineState.HOMING:
             assert self.homed
         way = math.dist(self.sim.machine.get_true_position()[:2], place[:2])
         if new.state not in MOVES and new.t - self.stood > SETTLES + dt:
@@ -307,8 +307,8 @@ class Machine(Rig):
             new.state in ACTIVE_STATES or old.state in ACTIVE_STATES or self.pressed
         )
         word = any(code in new.block_text for code in ("M03", "M04")) and old.state in ACTIVE_STATES
-        announced = self.pressed and self.announced > READING_TIME_S - 1e-6
-        switched = self.switched and new.state in MANUAL_STATES and self.announced > READING_TIME_S - 1e-6
+        announced = self.pressed and self.announced > MIN_READING_TIME_S - 1e-6
+        switched = self.switched and new.state in MANUAL_STATES and self.announced > MIN_READING_TIME_S - 1e-6
         assert fresh or word or announced or switched, (
             f"the spindle starts by itself in {new.state}: {old.announced}"
         )
@@ -368,7 +368,7 @@ class Machine(Rig):
         frozen = "axes" in self.frozen_since and new.state in CYCLE_STATES | {
             MachineState.IDLE,
             MachineState.JOG,
-            MachineState.HOME,
+            MachineState.HOMING,
         }
         self.moved_unseen = self.moved_unseen + dt if frozen else 0.0
         assert self.moved_unseen <= UNHEARD + NO_NEWS + 2 * dt, f"{new.state} without news of the slides"

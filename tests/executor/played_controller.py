@@ -10,9 +10,9 @@ from app.compose.backends.simulated_backend import create_simulation
 from app.compose.machine.machine_files import load_machine
 from core.block_ports import BlockOperation, BlockState
 from core.executor.machine_context import MachineContext
-from core.executor.signals import CommandedOutputs, StationSignals
 from core.executor.snapshot import LogEvent
 from core.executor.spindle_control import SpindleControl
+from core.executor.station_signals import CommandedOutputs, StationSignals
 from core.machine.machine_model import Machine
 from drivers.wakeups import ManualClock
 
@@ -39,13 +39,13 @@ class PlayedController:
     def prepare_css(self, max_rpm: float) -> None:
         """Not used here."""
 
-    def max_line_speed(self, _dx: float, _dz: float) -> float:
+    def get_max_line_speed(self, _dx: float, _dz: float) -> float:
         return self.fast
 
-    def submit_block(self, operation: BlockOperation) -> int | None:
+    def submit_block(self, block: BlockOperation) -> int | None:
         if len(self.ops) >= self.room:
             return None
-        self.ops.append(operation)
+        self.ops.append(block)
         self.resting = False
         return len(self.ops)
 
@@ -74,7 +74,7 @@ class PlayedController:
         self.jogged.append((axis, velocity, lease_s, limits))
         return self.jogs
 
-    def step_to(self, axis: str, target: float, speed: float) -> None:
+    def move_by_step(self, axis: str, target: float, speed: float) -> None:
         self.steps.append((axis, target, speed))
 
     def stop_jog(self) -> None:
@@ -88,23 +88,23 @@ def context_of(controller: PlayedController | None, machine: Machine | None = No
     return MachineContext(
         machine=model,
         ports=ports,
-        on_event=events.append,
+        handle_event=events.append,
         spindle=SpindleControl(ports.spindle, model.spindle),
         now=clock.now(),
-        sample=ports.axes.sample(),
+        axis_sample=ports.axes.sample(),
         inputs=dict(ports.io.inputs()),
-        outputs=CommandedOutputs(ports.io, model.outputs),
+        commanded_outputs=CommandedOutputs(ports.io, model.outputs),
     )
 
 
 def turn_feed_pot(context: MachineContext, feed: float) -> None:
     """The pot of the feed stands at this fraction."""
     context.signals = StationSignals(
-        estop_pressed=False,
-        start_requested=False,
-        hold_requested=False,
+        is_estop_pressed=False,
+        is_start_requested=False,
+        is_hold_requested=False,
         feed_override=feed,
         spindle=1.0,
-        spindle_auto=True,
+        is_spindle_in_auto=True,
         station_fault="",
     )

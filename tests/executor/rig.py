@@ -161,5 +161,5 @@ def unhomed_machine() -> Machine:
     """The shipped lathe with a Z that only counts and has to be homed."""
     machine = load_machine()
     x, z, c = machine.axes
-    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    z = dataclasses.replace(z, is_position_absolute=False, home_speed=20.0, home_order=1)
     return dataclasses.replace(machine, axes=(x, z, c))

@@ -18,7 +18,7 @@ from core.language.source import ProgramSource
 from core.machine.machine_model import Machine
 from tests.executor.rig import Rig
 
-STOPPED = {MachineState.BLOCK_END, MachineState.PROGRAM_STOP}
+STOPPED = {MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP}
 _QUICK = 8.0  # times the feeds and through the dwells: steps and places are the same
 _LEAST_FEED = 1.0  # mm/s
 _TICK = 0.02
@@ -53,7 +53,7 @@ class QuickRig(Rig):
     def _passes(self, job: Job, setup: Setup) -> ProgramPass:
         self.blocks = []
         whole = start_program_pass(job, setup)
-        return whole._replace(blocks=self._kept(whole.blocks))
+        return whole._replace(block_iterator=self._kept(whole.block_iterator))
 
     def _kept(self, blocks: Iterator[Block]) -> Iterator[Block]:
         for block in blocks:

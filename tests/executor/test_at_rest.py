@@ -127,11 +127,11 @@ class Ringing:
     def __init__(self, rig: Rig) -> None:
         self._wakeup = rig.executor._ports.wakeup
         assert self._wakeup is not None
-        self._wakeup.wait(0.0)
+        self._wakeup.wait_for_wakeup(0.0)
         self.slept: list[float] = []
         self.rung: list[bool] = []
         self.meanwhile: Callable[[], None] = lambda: None
-        self.wait, self._wakeup.wait = self._wakeup.wait, self._sleep  # type: ignore[method-assign]
+        self.wait, self._wakeup.wait_for_wakeup = self._wakeup.wait_for_wakeup, self._sleep  # type: ignore[method-assign]
 
     def _sleep(self, seconds: float) -> bool:
         self.slept.append(seconds)
@@ -222,7 +222,7 @@ def test_a_driver_does_not_say_that_it_rests_before_it_does(
 
 def test_a_machine_on_which_something_is_planned_to_break_never_rests() -> None:
     faults = (PlannedFault(at=1000.0, what="estop"),)
-    config = replace(create_sim_config(load_machine()), faults=faults)
+    config = replace(create_sim_config(load_machine()), planned_faults=faults)
     ports, _hands = build_simulation(config, ManualClock())
     assert ports.wakeup is not None
     assert not ports.wakeup.is_settled()

@@ -15,7 +15,7 @@ from core.executor.commands import (
     StopSpindle,
     UseOffsets,
 )
-from core.executor.control_status import modal_after_cancel
+from core.executor.control_status import make_modal_state_after_cancel
 from core.executor.snapshot import MachineState, StartAction
 from core.interpreter.shared.job_setup import SecondaryOffset, ToolOffset
 from core.interpreter.shared.modal_state import ModalState
@@ -173,7 +173,7 @@ def test_the_collet_is_not_opened_by_hand_while_the_spindle_turns() -> None:
 def test_sinumerik_counts_x_in_diameters_at_power_up_and_behind_a_reset(machine: str, diameter: bool) -> None:
     rig = Rig(machine=load_shipped_machine(machine))
     assert rig.shot.modal.diameter is diameter
-    left = modal_after_cancel(ModalState(diameter=not diameter), rig.machine.language)
+    left = make_modal_state_after_cancel(ModalState(diameter=not diameter), rig.machine.mdi_language)
     assert left.diameter is diameter
 
 

@@ -124,7 +124,7 @@ def test_single_block_stops_at_every_corner_of_the_mill() -> None:
     rig.start(FLAT)
     stops = []
     for _ in range(20):
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
         if rig.state is MachineState.IDLE:
             break
         stops.append((rig.shot.line, round(rig.shot.demand[2], 3)))

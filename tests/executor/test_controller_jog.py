@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, JogLine
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN_MM, JogLine
 from core.executor.hand_motion.jogging import BlockJogger, Jogger, create_jogger
 from core.executor.machine_context import MachineContext
 from tests.executor.played_controller import PlayedController, context_of
@@ -51,23 +51,23 @@ def test_it_is_told_the_travel_less_a_margin_and_a_lease_of_a_second_at_most() -
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     low, high = context.machine.find_axis("X").travel or (0.0, 0.0)
-    assert jogger.jog("X", -5.0, 7.0)
-    assert controller.jogged == [("X", -5.0, 1.0, (low + SOFT_LIMIT_MARGIN, high - SOFT_LIMIT_MARGIN))]
+    assert jogger.start_or_renew_jog("X", -5.0, 7.0)
+    assert controller.jogged == [("X", -5.0, 1.0, (low + SOFT_LIMIT_MARGIN_MM, high - SOFT_LIMIT_MARGIN_MM))]
     assert jogger.axis_name == "X"
 
 
 def test_an_axis_that_is_not_homed_has_no_travel_and_goes_at_a_tenth() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
-    context.sample = context.sample._replace(homed=(False, False, False))
-    tenth = 0.1 * min(context.machine.find_axis("X").vmax, context.machine.limits.manual_rapid)
-    assert jogger.jog("X", 500.0, LEASE)
+    context.axis_sample = context.axis_sample._replace(homed=(False, False, False))
+    tenth = 0.1 * min(context.machine.find_axis("X").max_speed, context.machine.limits.manual_rapid)
+    assert jogger.start_or_renew_jog("X", 500.0, LEASE)
     assert controller.jogged == [("X", pytest.approx(tenth), LEASE, None)]
 
 
 def test_at_the_end_of_the_travel_nothing_is_jogged() -> None:
     jogger, _ = jogger_on(PlayedController(jogs=False))
-    assert not jogger.jog("X", 5.0, LEASE)
+    assert not jogger.start_or_renew_jog("X", 5.0, LEASE)
     assert not jogger.jog_to_target("X", 1.0, 5.0, LEASE)
     assert jogger.axis_name == ""
 
@@ -87,7 +87,7 @@ def test_towards_a_place_it_goes_no_further(
 def test_a_step_goes_from_where_the_axis_is_sent_to() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
-    context.sample = context.sample._replace(demand=(1.0, 2.0, 0.0))
+    context.axis_sample = context.axis_sample._replace(demand=(1.0, 2.0, 0.0))
     jogger.start_step("Z", -0.5, 5.0)
     assert controller.steps == [("Z", 1.5, 5.0)]
     assert jogger.find_step_refusal("Z", 0.1, 5.0) == text("executor.step-not-over", axis="Z")
@@ -104,7 +104,7 @@ def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
     controller = PlayedController()
     jogger, context = jogger_on(controller)
     said: list[str] = []
-    context.on_event = lambda event: said.append(event.text)
+    context.handle_event = lambda event: said.append(event.text)
     jogger.start_step("Z", -0.5, 5.0)
     jogger.stop()
     assert controller.asked == ["jog stop"]
@@ -118,10 +118,10 @@ def test_a_step_that_is_stopped_is_said_to_be_short() -> None:
 def let_go(controller: PlayedController) -> tuple[BlockJogger, MachineContext]:
     """X was jogged and let go, and is pressed the other way while it still ends."""
     jogger, context = jogger_on(controller)
-    jogger.jog("X", 5.0, LEASE)
+    jogger.start_or_renew_jog("X", 5.0, LEASE)
     controller.resting = False
     jogger.stop()
-    assert jogger.jog("X", -5.0, LEASE)
+    assert jogger.start_or_renew_jog("X", -5.0, LEASE)
     assert len(controller.jogged) == 1
     return jogger, context
 
@@ -176,7 +176,7 @@ def test_a_direction_that_is_none_is_refused(direction: tuple[float, float, floa
 def test_along_a_tilted_plane_every_axis_is_homed_first() -> None:
     context = three_axes()
     assert Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0)) == ""
-    context.sample = context.sample._replace(homed=(True, False, True))
+    context.axis_sample = context.axis_sample._replace(homed=(True, False, True))
     why = Jogger(context).find_jog_refusal("X", 5.0, LEASE, (0.6, 0.8, 0.0))
     assert why == text("executor.tilted-homed")
 
@@ -185,13 +185,13 @@ def test_a_line_of_three_goes_as_far_as_its_first_end_and_as_hard_as_its_weakest
     """X Y Z in .6, 0 and .8: 8 mm of Z are 10 mm of the line; 800 mm/s² of Z are 1000 along it."""
     x, z, y = three_axes().machine.axes
     axes = (
-        dataclasses.replace(x, travel=(-100.0, 100.0), amax=3000.0),
-        dataclasses.replace(z, travel=(-100.0, 8.0 + SOFT_LIMIT_MARGIN), amax=800.0),
+        dataclasses.replace(x, travel=(-100.0, 100.0), max_acceleration=3000.0),
+        dataclasses.replace(z, travel=(-100.0, 8.0 + SOFT_LIMIT_MARGIN_MM), max_acceleration=800.0),
         dataclasses.replace(y, travel=(0.0, 0.0)),
     )
     line = JogLine.from_direction(axes, (0.6, 1e-12, 0.8))
     assert [(axis.name, share) for _, axis, share in line.iter_moving_axes()] == [("X", 0.6), ("Z", 0.8)]
-    assert line.distance_to_limit((0.0, 0.0, 0.0), 1.0) == pytest.approx(10.0)
+    assert line.get_distance_to_limit((0.0, 0.0, 0.0), 1.0) == pytest.approx(10.0)
     assert line.max_acceleration == pytest.approx(1000.0)
     assert not line.has_same_direction(JogLine.from_axis(axes, 0))
     assert not line.has_same_direction(None)

@@ -8,9 +8,9 @@ import math
 import pytest
 
 from core.block_ports import ArcOperation, BlockOperation, LineOperation, RapidOperation, ThreadOperation
-from core.executor.job import ProgramPass, ReadAhead
+from core.executor.job import BlockReadAhead, ProgramPass
 from core.executor.program_motion.controller_motion import (
-    MAX_PART_S,
+    MAX_PART_DURATION_S,
     ControllerMotion,
     SpindleSpeed,
     split_block,
@@ -18,7 +18,7 @@ from core.executor.program_motion.controller_motion import (
 from core.executor.program_motion.path_section import SectionProgress
 from core.executor.raised_alarm import AlarmError
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
-from core.interpreter.shared.machine_requirements import find_requirements, remove_repeated_requirements
+from core.interpreter.shared.machine_requirements import list_requirements, remove_repeated_requirements
 from core.interpreter.shared.modal_state import ModalState
 from tests.coded import raises_code
 from tests.executor.played_controller import PlayedController, context_of, turn_feed_pot
@@ -55,9 +55,9 @@ def test_an_arc_stays_on_its_circle_and_ends_exactly() -> None:
     before = (1.0, 2.0)
     for op in ops:
         assert isinstance(op, ArcOperation)
-        assert (op.x0, op.z0) == before
-        assert math.hypot(op.x - op.cx, op.z - op.cz) == pytest.approx(10.0)
-        assert (op.cx, op.cz, op.clockwise) == (11.0, 2.0, False)
+        assert (op.start_x, op.start_z) == before
+        assert math.hypot(op.x - op.center_x, op.z - op.center_z) == pytest.approx(10.0)
+        assert (op.center_x, op.center_z, op.is_clockwise) == (11.0, 2.0, False)
         before = (op.x, op.z)
     assert before == (11.0, -8.0)
 
@@ -67,7 +67,7 @@ def test_a_slow_controller_makes_the_pieces_shorter() -> None:
     assert len(list(split_block(rapid, FULL))) == 4
     slow = list(split_block(rapid, FULL, lambda _: 10.0))
     assert len(slow) == 50
-    assert all(piece.min_duration_s <= MAX_PART_S + 1e-9 for piece in slow)
+    assert all(piece.min_duration_s <= MAX_PART_DURATION_S + 1e-9 for piece in slow)
     assert isinstance(slow[0].operation, RapidOperation)
 
 
@@ -83,7 +83,10 @@ def test_an_arc_goes_out_in_less_than_half_turns_however_quick_it_is() -> None:
     assert len(ops) == 2
     for op in ops:
         assert isinstance(op, ArcOperation)
-        start, end = complex(op.z0 - op.cz, op.x0 - op.cx), complex(op.z - op.cz, op.x - op.cx)
+        start, end = (
+            complex(op.start_z - op.center_z, op.start_x - op.center_x),
+            complex(op.z - op.center_z, op.x - op.center_x),
+        )
         assert cmath.phase(end / start) == pytest.approx(3 * math.pi / 4)
 
 
@@ -126,7 +129,7 @@ def test_needs_are_told_once_with_their_first_line() -> None:
         block(BlockKind.THREAD, z=-1.0, line=6),
         block(BlockKind.FEED, z=-1.0, css=100.0, rpm=500.0, line=7),
     ]
-    needs = remove_repeated_requirements(find_requirements(blocks))
+    needs = remove_repeated_requirements(list_requirements(blocks))
     assert [(need.function, need.line) for need in needs] == [
         ("arc", 3),
         ("thread", 5),
@@ -156,8 +159,8 @@ def motion_of(
     return motion
 
 
-def nothing_read() -> ReadAhead:
-    return ReadAhead(ProgramPass(iter(()), list), context_of(None).machine)
+def nothing_read() -> BlockReadAhead:
+    return BlockReadAhead(ProgramPass(iter(()), list), context_of(None).machine)
 
 
 def ends(ops: list[BlockOperation]) -> list[float]:
@@ -290,7 +293,7 @@ def test_single_block_turned_on_under_way_ends_behind_what_the_controller_has() 
 def test_what_was_read_meanwhile_goes_out_behind_the_rest() -> None:
     controller = PlayedController()
     motion = motion_of(controller, CUT)
-    feed = ReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
+    feed = BlockReadAhead(ProgramPass(iter([NEXT]), list), context_of(None).machine)
     feed.pending_blocks.append(NEXT)
     motion.update_progress(feed)
     assert not feed.pending_blocks

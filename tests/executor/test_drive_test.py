@@ -19,14 +19,14 @@ from core.executor.commands import (
     StopJog,
 )
 from core.executor.hand_motion.drive_test import (
-    PAUSE_S,
-    DriveTestPath,
-    Limits,
+    PAUSE_BETWEEN_MOVES_S,
+    AxisTestLimits,
+    DriveTestMotion,
     Shape,
+    compute_duration_s,
+    compute_position_range,
     make_braking_ramp,
     slice_ramps,
-    total_duration_s,
-    travel_range,
 )
 from core.executor.snapshot import MachineState
 from tests.executor.rig import FINE, INCH, TICK, Rig
@@ -35,10 +35,10 @@ from tests.texts import text
 
 AMAX = 120 * INCH
 LEASE = 0.2
-STEP = DriveTestPath("X", Shape.STEP, 0.5)
-RAMP = DriveTestPath("Z", Shape.RAMP, -5.0, speed=20.0)
-SINE = DriveTestPath("X", Shape.SINE, 0.5, frequencies=(5.0,))
-LIMITS = Limits(max_speed=100 * INCH / 60, max_acceleration=AMAX, sample_rate_hz=1000.0)
+STEP = DriveTestMotion("X", Shape.STEP, 0.5)
+RAMP = DriveTestMotion("Z", Shape.RAMP, -5.0, speed=20.0)
+SINE = DriveTestMotion("X", Shape.SINE, 0.5, frequencies_hz=(5.0,))
+LIMITS = AxisTestLimits(max_speed_mm_s=100 * INCH / 60, max_acceleration_mm_s2=AMAX, sample_rate_hz=1000.0)
 
 
 def ready() -> Rig:
@@ -47,7 +47,7 @@ def ready() -> Rig:
     return rig
 
 
-def hold(rig: Rig, path: DriveTestPath, most: float = 30.0) -> tuple[list[float], np.ndarray]:
+def hold(rig: Rig, path: DriveTestMotion, most: float = 30.0) -> tuple[list[float], np.ndarray]:
     """Held until it is over, or for ``most`` s: times and demand."""
     rig.post(RunDriveTest(path, LEASE))
     times, seen = [], []
@@ -63,7 +63,7 @@ def hold(rig: Rig, path: DriveTestPath, most: float = 30.0) -> tuple[list[float]
 
 
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
-def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestPath) -> None:
+def test_it_goes_its_size_and_comes_back_to_where_it_began(path: DriveTestMotion) -> None:
     rig = ready()
     _, seen = hold(rig, path)
     assert rig.state is MachineState.IDLE
@@ -84,14 +84,16 @@ def test_a_step_takes_the_time_that_its_acceleration_asks_for() -> None:
     """Speeding up over half of the way: s = 2·½·a·(t/2)², so t = 2·√(s/a), and no faster than the hand."""
     ramps = STEP.make_ramps(LIMITS)
     peak = math.sqrt(0.5 * AMAX)
-    assert peak < LIMITS.max_speed
-    assert total_duration_s(ramps) == pytest.approx(2.0 * (2.0 * math.sqrt(0.5 / AMAX) + PAUSE_S))
+    assert peak < LIMITS.max_speed_mm_s
+    assert compute_duration_s(ramps) == pytest.approx(
+        2.0 * (2.0 * math.sqrt(0.5 / AMAX) + PAUSE_BETWEEN_MOVES_S)
+    )
 
 
 def test_the_pieces_of_a_sine_lie_on_it() -> None:
     """s/2·(1 − cos ωt) and its velocity, at the ends of pieces; the place is short by (ω dt)²/12."""
     frequency, size = 2.0, 1.0
-    ramps = DriveTestPath("X", Shape.SINE, size, frequencies=(frequency,)).make_ramps(LIMITS)
+    ramps = DriveTestMotion("X", Shape.SINE, size, frequencies_hz=(frequency,)).make_ramps(LIMITS)
     omega, t, p = 2.0 * math.pi * frequency, 0.0, 0.0
     for dt, v, a in ramps[:-1]:
         assert v == pytest.approx(0.5 * size * omega * math.sin(omega * t), abs=1e-9)
@@ -104,18 +106,18 @@ def test_the_pieces_of_a_sine_lie_on_it() -> None:
 
 def test_a_sine_that_the_axis_cannot_do_whole_is_smaller() -> None:
     """An acceleration of s/2·ω² leaves s = 2a/ω² at 40 Hz."""
-    path = DriveTestPath("X", Shape.SINE, -2.0, frequencies=(2.0, 40.0))
-    assert path.sine_travel_mm(40.0, LIMITS) == pytest.approx(-2.0 * AMAX / (80.0 * math.pi) ** 2)
+    path = DriveTestMotion("X", Shape.SINE, -2.0, frequencies_hz=(2.0, 40.0))
+    assert path.compute_sine_travel_mm(40.0, LIMITS) == pytest.approx(-2.0 * AMAX / (80.0 * math.pi) ** 2)
     ramps = path.make_ramps(LIMITS)
     assert max(abs(a) for _, _, a in ramps) <= AMAX * (1.0 + 1e-9)
-    assert max(abs(v) for _, v, _ in ramps) <= LIMITS.max_speed
+    assert max(abs(v) for _, v, _ in ramps) <= LIMITS.max_speed_mm_s
 
 
 def test_wherever_it_is_cut_it_comes_to_rest_within_its_reach() -> None:
-    ramps = DriveTestPath("X", Shape.SINE, 2.0, frequencies=(2.0, 10.0)).make_ramps(LIMITS)
-    low, high = travel_range(ramps)
+    ramps = DriveTestMotion("X", Shape.SINE, 2.0, frequencies_hz=(2.0, 10.0)).make_ramps(LIMITS)
+    low, high = compute_position_range(ramps)
     ends = []
-    for begun in np.arange(0.0, total_duration_s(ramps), 0.0037):
+    for begun in np.arange(0.0, compute_duration_s(ramps), 0.0037):
         kept = slice_ramps(ramps, 0.0, float(begun))
         kept += make_braking_ramp(kept, AMAX)
         ends.append(sum((v + 0.5 * a * dt) * dt for dt, v, a in kept))
@@ -194,7 +196,7 @@ def test_a_slide_that_does_not_follow_trips_as_always() -> None:
         rig.post(RenewDriveTest(LEASE))
     assert rig.state is MachineState.FAULT
     assert "Z" in rig.shot.alarms[0].cause
-    assert rig.shot.drive_test.axis == "" or rig.state is MachineState.FAULT
+    assert rig.shot.drive_test.tested_axis == "" or rig.state is MachineState.FAULT
 
 
 def test_estop_in_the_middle_and_another_test_afterwards() -> None:
@@ -228,27 +230,27 @@ def test_whatever_else_is_asked_meanwhile_ends_it(other: Command) -> None:
 @pytest.mark.parametrize(
     ("path", "why"),
     [
-        (DriveTestPath("B", Shape.STEP, 0.5), text("executor.no-jog-axis", axis="B")),
-        (DriveTestPath("C", Shape.STEP, 0.5), text("executor.rotary", axis="C")),
-        (DriveTestPath("X", Shape.STEP, 0.0), text("executor.test-size", mm="2.54")),
-        (DriveTestPath("X", Shape.STEP, 2.6), text("executor.test-size", mm="2.54")),
-        (DriveTestPath("X", Shape.STEP, math.nan), text("executor.test-size", mm="2.54")),
-        (DriveTestPath("X", Shape.RAMP, 26.0, speed=5.0), text("executor.test-size", mm="25.4")),
-        (DriveTestPath("X", Shape.RAMP, 1.0), text("executor.ramp-speed", speed=42)),
-        (DriveTestPath("X", Shape.RAMP, 1.0, speed=1e4), text("executor.ramp-speed", speed=42)),
+        (DriveTestMotion("B", Shape.STEP, 0.5), text("executor.no-jog-axis", axis="B")),
+        (DriveTestMotion("C", Shape.STEP, 0.5), text("executor.rotary", axis="C")),
+        (DriveTestMotion("X", Shape.STEP, 0.0), text("executor.test-size", mm="2.54")),
+        (DriveTestMotion("X", Shape.STEP, 2.6), text("executor.test-size", mm="2.54")),
+        (DriveTestMotion("X", Shape.STEP, math.nan), text("executor.test-size", mm="2.54")),
+        (DriveTestMotion("X", Shape.RAMP, 26.0, speed=5.0), text("executor.test-size", mm="25.4")),
+        (DriveTestMotion("X", Shape.RAMP, 1.0), text("executor.ramp-speed", speed=42)),
+        (DriveTestMotion("X", Shape.RAMP, 1.0, speed=1e4), text("executor.ramp-speed", speed=42)),
         (
-            DriveTestPath("X", Shape.RAMP, 0.1, speed=20.0),
+            DriveTestMotion("X", Shape.RAMP, 0.1, speed=20.0),
             text("executor.test-too-short", mm="0.1", speed=20),
         ),
-        (DriveTestPath("X", Shape.SINE, 0.5), text("executor.sine-range")),
-        (DriveTestPath("X", Shape.SINE, 0.5, frequencies=(math.nan,)), text("executor.sine-range")),
+        (DriveTestMotion("X", Shape.SINE, 0.5), text("executor.sine-range")),
+        (DriveTestMotion("X", Shape.SINE, 0.5, frequencies_hz=(math.nan,)), text("executor.sine-range")),
         (
-            DriveTestPath("X", Shape.SINE, 0.5, frequencies=(150.0,)),
+            DriveTestMotion("X", Shape.SINE, 0.5, frequencies_hz=(150.0,)),
             text("executor.too-few-samples", rate=1000, hz=150),
         ),
     ],
 )
-def test_tests_without_sense_are_refused(path: DriveTestPath, why: str) -> None:
+def test_tests_without_sense_are_refused(path: DriveTestMotion, why: str) -> None:
     rig = ready()
     rig.post(RunDriveTest(path, LEASE))
     rig.run(0.3)
@@ -278,12 +280,12 @@ def test_the_whole_of_it_has_to_fit_with_its_braking() -> None:
     here = rig.shot.demand
     for size, fits in ((0.49, True), (0.52, False)):
         rig.events.clear()
-        hold(rig, DriveTestPath("X", Shape.STEP, size))
+        hold(rig, DriveTestMotion("X", Shape.STEP, size))
         assert (rig.said("refused") == []) is fits
         assert rig.shot.demand == pytest.approx(here, abs=1e-9)
     assert text("executor.test-travel", axis="X", mm="0.520", sign="+") in rig.said("refused")[0]
     rig.events.clear()
-    hold(rig, DriveTestPath("X", Shape.SINE, -2.0, frequencies=(5.0,)))
+    hold(rig, DriveTestMotion("X", Shape.SINE, -2.0, frequencies_hz=(5.0,)))
     assert rig.said("refused") == []
 
 

@@ -31,7 +31,7 @@ class PlayedDriverHost:
         return self.trip
 
     def acknowledge(self, trip: DriverHostTrip) -> None:
-        self.acknowledged.append(trip.number)
+        self.acknowledged.append(trip.trip_number)
         self.trip = None
 
 

@@ -130,7 +130,7 @@ def test_a_late_host_shows_the_block_in_which_the_slides_stand() -> None:
     assert z < -0.3 * INCH  # so it is the last way that they have begun
     assert (rig.shot.line, rig.shot.block_text) == (5, "Z-3")
     assert rig.shot.block_end[:2] == pytest.approx((0.2 * INCH, -3 * INCH))
-    assert [event.line for event in rig.events if event.kind == "stop"][-1:] == [5]
+    assert [event.line_number for event in rig.events if event.kind == "stop"][-1:] == [5]
     rig.post(CycleStart())
     rig.until(MachineState.IDLE)
     assert rig.shot.parts == 1
@@ -157,7 +157,7 @@ def test_a_hold_behind_which_the_host_is_late_shows_it_too() -> None:
     rig.start("G90G94F300\nG01F200\nZ-1.2\nX1.2Z-2.4\nM30\n")
     rig.until_true(lambda shot: shot.line == 3 and shot.actual[1] < -1.17 * INCH)
     rig.post(FeedHold())
-    assert (rig.state, rig.shot.line) == (MachineState.HOLDING, 3)
+    assert (rig.state, rig.shot.line) == (MachineState.STOPPING, 3)
     rig.clock.advance(10.0)
     rig.tick()
     assert rig.state is MachineState.HOLD
@@ -467,7 +467,7 @@ def test_hold_in_a_thread_waits_for_the_pull_out(how: str) -> None:
     in_thread(rig)
     if how == "button":
         rig.post(FeedHold())
-        assert rig.state is MachineState.HOLDING
+        assert rig.state is MachineState.STOPPING
         rig.until(MachineState.HOLD)
     else:
         rig.sim.machine.set_feed_pot(0.0)
@@ -486,7 +486,7 @@ def test_single_block_does_not_stop_in_the_groove() -> None:
     threading(rig, (11.9,))
     stops = []
     for _ in range(5):
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         stops.append(rig.shot.demand[:2])
         rig.run(0.4)
         rig.post(CycleStart())

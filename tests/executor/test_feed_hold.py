@@ -81,7 +81,7 @@ def test_hold_twice_and_start_twice_change_nothing() -> None:
     rig = moving_rig()
     rig.post(FeedHold(), FeedHold())
     rig.post(CycleStart())
-    assert rig.state is MachineState.HOLDING
+    assert rig.state is MachineState.STOPPING
     rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(CycleStart(), CycleStart())
@@ -206,10 +206,10 @@ def test_single_block_stops_behind_every_block() -> None:
     rig.start("G90G94F300\nX1\nG01F100Z-1\nM08\nX1.5\nM30\n")
     stops = []
     for _ in range(4):
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         stops.append((rig.shot.block, rig.shot.line, tuple(round(v / INCH, 4) for v in rig.shot.demand[:2])))
         rig.run(0.5)
-        assert rig.state is MachineState.BLOCK_END
+        assert rig.state is MachineState.SINGLE_BLOCK_STOP
         rig.post(CycleStart())
     rig.until(MachineState.IDLE)
     assert stops == [(1, 2, (1, 0)), (2, 3, (1, -1)), (3, 4, (1, -1)), (4, 5, (1.5, -1))]
@@ -221,7 +221,7 @@ def test_single_block_switched_on_in_motion_stops_at_the_end_of_the_block() -> N
     rig.start("G90G94F300\nG01F60Z-1\nX1\nZ-2\nM30\n")
     rig.until_true(lambda shot: shot.actual[1] < -0.5 * INCH)
     rig.post(SetSwitch("single_block", True))
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     assert rig.shot.demand[:2] == pytest.approx((0.0, -INCH))
     rig.run(0.5)
     rig.post(SetSwitch("single_block", False), CycleStart())
@@ -236,14 +236,14 @@ def test_single_block_too_late_for_this_block_takes_the_next() -> None:
     rig.until_true(lambda shot: shot.actual[1] < -0.5 * INCH)
     block = rig.shot.block
     rig.post(SetSwitch("single_block", True))
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     # 30 ms commit and v²/2a = 2.4 mm at 200 in/min: some blocks of .254 mm further, and exactly at an end
     assert block < rig.shot.block < block + 30
     assert rig.shot.demand[1] == pytest.approx(-0.254 * rig.shot.block)
     rig.run(0.4)
     rig.post(CycleStart())
     before = rig.shot.block
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     assert rig.shot.block == before + 1
 
 
@@ -253,7 +253,7 @@ def test_hold_then_single_block_then_on() -> None:
     rig.until(MachineState.HOLD)
     rig.run(0.4)
     rig.post(SetSwitch("single_block", True), CycleStart())
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     assert rig.shot.demand[:2] == pytest.approx(END)
 
 

@@ -59,7 +59,7 @@ def program_stop(rig: Rig) -> None:
 def block_end(rig: Rig) -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX.5\nX1\nM30\n")
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     rig.run(0.3)
 
 
@@ -238,9 +238,9 @@ def test_a_healthy_machine_is_left_alone() -> None:
 
 def test_limits_grow_with_the_commanded_speed_and_not_beyond_the_window() -> None:
     z = load_machine().axes[1]
-    assert z.max_following_error(0.0) == pytest.approx(0.2032)
-    assert z.max_following_error(-0.5 * z.vmax) == pytest.approx(0.5 * (0.2032 + 2.032))
-    assert z.max_following_error(3.0 * z.vmax) == pytest.approx(2.032)
+    assert z.compute_max_following_error(0.0) == pytest.approx(0.2032)
+    assert z.compute_max_following_error(-0.5 * z.max_speed) == pytest.approx(0.5 * (0.2032 + 2.032))
+    assert z.compute_max_following_error(3.0 * z.max_speed) == pytest.approx(2.032)
 
 
 def sample(t: float, demand: float, actual: float, *, enabled: bool = True) -> AxisSample:

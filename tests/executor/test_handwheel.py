@@ -178,7 +178,7 @@ def test_clicks_faster_than_the_axis_are_dropped_and_not_played_later() -> None:
 def test_an_axis_that_is_not_homed_goes_at_a_tenth() -> None:
     machine = wheeled()
     x, z, *rest = machine.axes
-    lost = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    lost = dataclasses.replace(z, is_position_absolute=False, home_speed=20.0, home_order=1)
     rig = WheelRig(dataclasses.replace(machine, axes=(x, lost, *rest)))
     rig.ready()
     rig.select("Z", 0.01 * INCH)

@@ -73,7 +73,7 @@ def test_single_block_stops_nowhere_in_the_hole(cycle: str) -> None:
     rig.post(SetSwitch("single_block", True))
     stops: list[float] = []
     for _ in range(40):
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
         if rig.state is MachineState.IDLE:
             break
         stops.append(height(rig))

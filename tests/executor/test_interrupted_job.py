@@ -26,8 +26,8 @@ from core.executor.snapshot import (
     RESET_REASON,
     MachineState,
     StartAction,
-    interrupted_job_from_json,
-    interrupted_job_to_json,
+    convert_interrupted_job_to_json,
+    parse_interrupted_job,
 )
 from tests.executor.lines import TOOLS, mdi, press
 from tests.executor.rig import INCH, Rig
@@ -351,8 +351,12 @@ def test_a_hold_is_noted_where_it_came_to_rest() -> None:
 def test_after_a_power_cut_the_job_stands_there_and_the_palms_are_asked() -> None:
     before = Rig()
     in_the_cut(before)
-    kept = json.loads(json.dumps(interrupted_job_to_json(before.notes[-1]))) if before.notes[-1] else None
-    rig = Rig(left=interrupted_job_from_json(kept))
+    kept = (
+        json.loads(json.dumps(convert_interrupted_job_to_json(before.notes[-1])))
+        if before.notes[-1]
+        else None
+    )
+    rig = Rig(left=parse_interrupted_job(kept))
     assert rig.shot.interrupted is not None
     assert rig.shot.interrupted.why == POWER_LOST_REASON
     rig.load(PART, TOOLS)
@@ -421,11 +425,11 @@ def test_cycle_repeat_counts_on_and_an_end_between_two_parts_interrupts_nothing(
     ],
 )
 def test_what_cannot_be_understood_is_no_job(change: dict[str, object]) -> None:
-    good = interrupted_job_to_json(made())
-    assert interrupted_job_from_json(good) == made()
-    assert interrupted_job_from_json(good | change) is None
-    assert interrupted_job_from_json([good]) is None
-    assert interrupted_job_from_json(None) is None
+    good = convert_interrupted_job_to_json(made())
+    assert parse_interrupted_job(good) == made()
+    assert parse_interrupted_job(good | change) is None
+    assert parse_interrupted_job([good]) is None
+    assert parse_interrupted_job(None) is None
 
 
 def test_the_log_says_which_job() -> None:

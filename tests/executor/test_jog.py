@@ -207,7 +207,7 @@ def test_an_axis_that_is_not_homed_jogs_slowly_and_homes() -> None:
     rig.until(MachineState.IDLE)
     assert max(fastest) == pytest.approx(0.1 * FAST, rel=0.05)
     rig.post(HomeAxes())
-    assert rig.state is MachineState.HOME
+    assert rig.state is MachineState.HOMING
     rig.until(MachineState.IDLE)
     assert rig.shot.homed == (True, True, True)
     assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.002)

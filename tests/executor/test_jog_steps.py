@@ -39,8 +39,8 @@ def nothing_homed() -> Machine:
     """A lathe that only counts: Z is homed before X."""
     machine = load_machine()
     x, z, *rest = machine.axes
-    x = dataclasses.replace(x, absolute=False, home_speed=20.0, home_order=2)
-    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    x = dataclasses.replace(x, is_position_absolute=False, home_speed=20.0, home_order=2)
+    z = dataclasses.replace(z, is_position_absolute=False, home_speed=20.0, home_order=1)
     return dataclasses.replace(machine, axes=(x, z, *rest))
 
 
@@ -275,5 +275,5 @@ def test_nothing_else_moves_while_it_is_homing(command: Jog | JogByStep | HomeAx
     rig.post(HomeAxes())
     rig.run(0.05)
     rig.post(command)
-    assert rig.state is MachineState.HOME
+    assert rig.state is MachineState.HOMING
     assert rig.said("refused")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from core.executor.lateness import CALM_PERIOD_S, LATE_THRESHOLD_S, QUEUE_DEPTH_STEPS_S, TickLateness
+from core.executor.tick_lateness import CALM_PERIOD_S, LATE_THRESHOLD_S, QUEUE_DEPTH_STEPS_S, TickLateness
 
 
 def test_a_punctual_computer_keeps_the_queue_of_the_machine_file() -> None:

@@ -172,11 +172,11 @@ def test_single_block_and_optional_stop_work_in_mdi() -> None:
     rig.until(MachineState.IDLE)
     rig.post(SetSwitch("single_block", True))
     press(rig, "G81Z-.1F50")
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     assert rig.shot.actual[1] == pytest.approx(-0.1 * INCH, abs=0.02)
     rig.run(0.4)
     rig.post(CycleStart())
-    rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+    rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
     assert rig.shot.actual[1] == pytest.approx(0.0, abs=0.006)
 
 

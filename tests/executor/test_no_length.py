@@ -15,7 +15,7 @@ from tests.executor.rig import INCH, Rig
 
 TOOLS = {1: ToolOffset(), 2: ToolOffset()}
 _PLACES = [(0.0, 0.0), (0.5, -0.2), (0.50005, -0.2), (0.5001, -0.20005), (0.7, -0.4)]  # in, some a step apart
-_STOPPED = {MachineState.BLOCK_END, MachineState.HOLD, MachineState.PROGRAM_STOP}
+_STOPPED = {MachineState.SINGLE_BLOCK_STOP, MachineState.HOLD, MachineState.PROGRAM_STOP}
 
 
 @st.composite
@@ -109,7 +109,7 @@ def test_it_stands_where_the_first_move_goes_and_single_block_is_switched_off() 
     rig.post(SetSwitch("single_block", True))
     for _ in range(2):
         rig.post(CycleStart())
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         rig.run(0.4)
     rig.post(SetSwitch("single_block", False))
     rig.post(CycleStart())

@@ -68,7 +68,7 @@ class OddRig(Rig):
 
 def all_off(rig: Rig) -> bool:
     """By the machine itself."""
-    on = {name for name, lit in rig.sim.ports.io.outputs().items() if lit}
+    on = {name for name, lit in rig.sim.ports.io.get_outputs().items() if lit}
     return (
         on <= {"collet"}
         and rig.sim.machine.get_spindle_rpm() == 0.0
@@ -87,7 +87,7 @@ def test_estop_with_a_driver_that_breaks_takes_every_other_step(port: str, call:
         odd.broken = True
         rig.sim.machine.press_estop()
         rig.run(4.0)
-        outputs = {name for name, lit in rig.sim.ports.io.outputs().items() if lit}
+        outputs = {name for name, lit in rig.sim.ports.io.get_outputs().items() if lit}
         if (port, call) not in {("io", "write"), ("io", "switch_to_safe_state")}:
             assert outputs <= {"collet"}
         assert rig.sim.machine.get_spindle_rpm() == 0.0

@@ -18,7 +18,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.machine_requirements import (
     SPINDLE_ORIENTATION,
-    find_requirements,
+    list_requirements,
     remove_repeated_requirements,
 )
 from core.language.source import ProgramSource
@@ -178,7 +178,7 @@ def test_no_bar_is_turned_to_an_angle_in_an_open_chuck() -> None:
 
 
 def test_a_driver_that_cannot_is_refused_before_the_start() -> None:
-    needs = remove_repeated_requirements(find_requirements(blocks_of()))
+    needs = remove_repeated_requirements(list_requirements(blocks_of()))
     assert SPINDLE_ORIENTATION in {need.function for need in needs}
     rig = Rig(machine=replace(MILL, spindle=replace(MILL.spindle, oriented=False)))
     context = rig.executor._context

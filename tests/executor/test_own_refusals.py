@@ -10,17 +10,17 @@ import re
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from core.executor.hand_motion.drive_test import DriveTester, DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import DriveTester, DriveTestMotion, Shape
 from core.executor.hand_motion.jogging import Jogger
 from core.executor.job import Job, Proof, check_block, find_outdated_setting, make_job
 from core.executor.program_motion.path_section import PathSection
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
 from core.executor.program_run import ChangedOffsets
 from core.executor.raised_alarm import AlarmError, ReportedAttempt
-from core.executor.signals import StationSignals
 from core.executor.snapshot import MachineState
 from core.executor.spindle_control import SpindleControl, SpindleRequest
 from core.executor.start_conditions import find_missing_function, find_state_refusal
+from core.executor.station_signals import StationSignals
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.machine_requirements import ARC_MOTION, THREADING, MachineRequirement
@@ -84,17 +84,17 @@ def test_nothing_asked_for_bars_no_next_part() -> None:
 def test_no_drive_test_under_feed_hold_or_with_the_guard_open(held: bool, guard: bool, why: str) -> None:
     context = context_of(None)
     context.signals = StationSignals(
-        estop_pressed=False,
-        start_requested=False,
-        hold_requested=held,
+        is_estop_pressed=False,
+        is_start_requested=False,
+        is_hold_requested=held,
         feed_override=1.0,
         spindle=1.0,
-        spindle_auto=True,
+        is_spindle_in_auto=True,
         station_fault="",
     )
     context.spindle.is_guard_open = guard
-    path = DriveTestPath("X", Shape.STEP, 1.0)
-    context.sample = context.sample._replace(demand=(50.0, -50.0, 0.0))
+    path = DriveTestMotion("X", Shape.STEP, 1.0)
+    context.axis_sample = context.axis_sample._replace(demand=(50.0, -50.0, 0.0))
     assert DriveTester(context, Jogger(context)).find_refusal(path, 0.5) == why
 
 
@@ -134,7 +134,7 @@ def test_a_section_forgets_no_block_that_it_does_not_hold() -> None:
     section.append_blocks(Maker().feed(0.0, -1.0, 5.0).feed(0.0, -2.0, 5.0).blocks)
     for n in (None, 7):
         section.drop_blocks_before(n)
-        assert [block.n for block in section.following_blocks(0)] == [1, 2]
+        assert [block.n for block in section.list_following_blocks(0)] == [1, 2]
 
 
 # --- the spindle --------------------------------------------------------------------------------------------
@@ -147,8 +147,8 @@ class PlayedLock:
         self.asked: list[tuple[bool, bool]] = []
         self.ready = False
 
-    def set_c_mode(self, enabled: bool, orient: bool = False) -> None:
-        self.asked.append((enabled, orient))
+    def set_c_mode(self, is_enabled: bool, should_orient: bool = False) -> None:
+        self.asked.append((is_enabled, should_orient))
 
     def is_c_ready(self) -> bool:
         return self.ready
@@ -161,10 +161,10 @@ def locked() -> tuple[SpindleControl, PlayedLock]:
 
 def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
     spindle, lock = locked()
-    assert not spindle.engage_c_axis(orient=True)
+    assert not spindle.engage_c_axis(should_orient=True)
     assert lock.asked == [(True, True)]
     lock.ready = True
-    assert spindle.engage_c_axis(orient=True)
+    assert spindle.engage_c_axis(should_orient=True)
     assert spindle.is_c_axis_ready
     assert lock.asked == [(True, True)]
     spindle.cancel_orientation()
@@ -175,7 +175,7 @@ def test_a_spindle_becomes_c_once_and_a_stop_lets_it_go() -> None:
 
 def test_a_hold_ends_a_change_over_that_is_under_way() -> None:
     spindle, lock = locked()
-    spindle.engage_c_axis(orient=False)
+    spindle.engage_c_axis(should_orient=False)
     spindle.cancel_orientation()
     assert lock.asked == [(True, False), (False, False)]
 
@@ -200,12 +200,12 @@ def test_why_a_spindle_is_not_started_is_told_in_the_order_of_what_hurts() -> No
 def test_an_encoder_that_counts_nothing_or_stands_carries_no_thread() -> None:
     angle = SpindleAnglePredictor()
     with raises_code(AlarmError, "thread-no-encoder", text("executor.counts-nothing")):
-        angle.predict_turning(1.0)
+        angle.predict_turning_angle(1.0)
     assert math.isnan(angle.latest_revolutions)
     for k in range(10):
         angle.add_reading((0.01 * k, 2.5))
     with raises_code(AlarmError, "thread-no-encoder", text("executor.does-not-turn")):
-        angle.predict_turning(0.1)
+        angle.predict_turning_angle(0.1)
     angle.add_reading((0.09, 9.0))  # not later than the last one
     assert angle.latest_revolutions == 2.5
     angle.add_reading(None)

@@ -62,7 +62,7 @@ def test_block_by_block_is_a_part() -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start(SHORT)
     for _ in range(10):
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
         if rig.state is MachineState.IDLE:
             break
         rig.run(0.4)

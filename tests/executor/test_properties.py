@@ -78,8 +78,8 @@ class Observer:
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
         axes = rig.machine.axes
-        self.vmax = [axis.vmax for axis in axes]
-        self.amax = [axis.amax for axis in axes]
+        self.vmax = [axis.max_speed for axis in axes]
+        self.amax = [axis.max_acceleration for axis in axes]
         self.before: tuple[float, tuple[float, ...], tuple[float, ...]] | None = None
 
     def look(self) -> None:
@@ -87,7 +87,7 @@ class Observer:
         now = self.rig.clock.now()
         p, v = sink.demand_at(now)
         for i, axis in enumerate(self.rig.machine.axes):
-            assert abs(v[i]) <= axis.vmax * 1.0001
+            assert abs(v[i]) <= axis.max_speed * 1.0001
             if axis.travel is not None:
                 assert axis.travel[0] - 0.01 <= p[i] <= axis.travel[1] + 0.01
         if self.before is not None:

@@ -14,14 +14,14 @@ import pytest
 from app.compose.machine.machine_files import load_machine
 from core.executor.commands import CycleStart, EnableDrives
 from core.executor.executor import Executor
-from core.executor.recorder import Recorder, delete_oldest_records, list_recorded_signals
+from core.executor.scope_recorder import ScopeRecorder, delete_oldest_records, list_recorded_signals
 from core.executor.snapshot import LogEvent, MachineState, TickData
 from core.machine.hardware_model import AnalogInputModel
 from core.ports import ALL_UNKNOWN_PARTS, DriverError, FloatArray, SampleSource, UnknownPart
 from core.records.record import RecordError
 from core.records.record_file import open_record
 from core.records.recordings import MAX_ALARM_RECORDS
-from core.records.ring_file import NOW, read_ring_file
+from core.records.ring_file import CURRENT_RING_NAME, read_ring_file
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import pattern
 
@@ -33,13 +33,13 @@ class Recorded(Rig):
 
     folder: Path | None = None
     own: bool = True  # whether the driver has samples of its own
-    recorder: Recorder
+    recorder: ScopeRecorder
 
     def __post_init__(self) -> None:
         self.every = FINE
         super().__post_init__()
         ports = self.sim.ports if self.own else dataclasses.replace(self.sim.ports, samples=None)
-        self.recorder = Recorder(list_recorded_signals(self.machine, ports), self.folder)
+        self.recorder = ScopeRecorder(list_recorded_signals(self.machine, ports), self.folder)
 
         def hear(event: LogEvent) -> None:
             self.events.append(self.recorder.assign_record_name(event))
@@ -133,8 +133,8 @@ def test_a_machine_at_rest_takes_ten_rows_a_second(own: bool) -> None:
     it = rig(own=own)
     it.run(10.0)
     it.recorder.store_queued_ticks()
-    assert it.recorder.ring.ticks.rows_completed == pytest.approx(100, abs=12)
-    assert it.recorder.ring.samples.rows_completed == pytest.approx(100, abs=12)
+    assert it.recorder.ring.ticks.completed_row_count == pytest.approx(100, abs=12)
+    assert it.recorder.ring.samples.completed_row_count == pytest.approx(100, abs=12)
 
 
 def test_a_late_tick_is_told_also_by_a_machine_at_rest() -> None:
@@ -241,7 +241,7 @@ def test_a_stop_has_no_record(tmp_path: Path) -> None:
     it.make_part()
     it.recorder.close()
     assert {event.record_name for event in it.events} == {""}
-    assert [each.name for each in tmp_path.iterdir()] == [NOW]
+    assert [each.name for each in tmp_path.iterdir()] == [CURRENT_RING_NAME]
 
 
 def test_the_oldest_records_of_alarms_go(tmp_path: Path) -> None:
@@ -262,7 +262,10 @@ def test_the_file_has_what_the_memory_has(tmp_path: Path) -> None:
     it = rig(tmp_path)
     it.make_part()
     it.recorder.close()
-    kept, found = it.recorder.get_record_between(-np.inf, np.inf), read_ring_file(tmp_path / NOW)
+    kept, found = (
+        it.recorder.get_record_between(-np.inf, np.inf),
+        read_ring_file(tmp_path / CURRENT_RING_NAME),
+    )
     np.testing.assert_array_equal(found.times_s, kept.times_s)
     for name in ("X demand", "Z actual", "line", "output coolant", "spindle turns"):
         np.testing.assert_array_equal(found.values_by_channel[name], kept.values_by_channel[name], name)
@@ -301,7 +304,7 @@ def test_a_disk_that_fails_later_ends_the_file_and_not_the_record(
     monkeypatch.undo()
     assert "now.ring: Input/output error" in it.recorder.storage_error
     assert it.recorder.get_record_between(-np.inf, np.inf).values_by_channel["X demand"].max() > 5.0
-    assert read_ring_file(tmp_path / NOW).times_s.size >= 10
+    assert read_ring_file(tmp_path / CURRENT_RING_NAME).times_s.size >= 10
 
 
 @pytest.mark.parametrize("own", [True, False])

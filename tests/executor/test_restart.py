@@ -118,7 +118,7 @@ def test_coolant_that_is_not_confirmed_stays_off() -> None:
     broken_off(rig)
     seen: list[Snapshot] = []
     rig.watch.append(seen.append)
-    restart(rig, 8, OperatorChoices(coolant=False))
+    restart(rig, 8, OperatorChoices(uses_coolant=False))
     rig.until(MachineState.IDLE)
     assert not any("coolant" in shot.outputs for shot in seen)
 
@@ -272,7 +272,7 @@ def test_single_block_stops_on_each_leg_of_the_way_and_goes_on() -> None:
     restart(rig, 4)  # so early that the way has more blocks than the program before it
     texts = []
     for _ in range(20):
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE)
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
         texts.append(rig.shot.block_text)
         if rig.shot.line == 6:
             break
@@ -289,7 +289,7 @@ def test_no_restart_of_a_program_with_a_tool_that_nobody_has_set() -> None:
     job = restart_job(rig, 8)
     whole = rig.executor._control.status.job
     assert whole is not None
-    bare = replace(whole, tools_set=frozenset())
+    bare = replace(whole, set_tool_numbers=frozenset())
     rig.post(LoadJob(bare, Proof(bare.digest, (), tool_numbers=(1,))))
     prepare(rig, job)
     assert refused(rig) == text("executor.tool-offset-unset", tools="T1")

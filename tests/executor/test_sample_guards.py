@@ -28,8 +28,8 @@ CUT = "G90G94F50\nM03S1000\nX.5Z.2\nG01F10Z-2.\nM30\n"
 
 def sample(name: str) -> Machine:
     """The machine of the file, with slides that are homed at power-on, on the simulated lathe."""
-    machine = parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
-    axes = tuple(dataclasses.replace(axis, absolute=True, home_order=0) for axis in machine.axes)
+    machine = parse_machine(resources.read_machine_file(f"{name}.toml"), f"{name}.toml")
+    axes = tuple(dataclasses.replace(axis, is_position_absolute=True, home_order=0) for axis in machine.axes)
     return dataclasses.replace(machine, axes=axes)
 
 

@@ -35,7 +35,9 @@ def with_lamps(lamps: str = ALL, also: str = "") -> Machine:
 
 def tower(rig: Rig) -> set[str]:
     """What is really on, at the machine."""
-    return {name[5:] for name, on in rig.sim.ports.io.outputs().items() if on and name.startswith("lamp_")}
+    return {
+        name[5:] for name, on in rig.sim.ports.io.get_outputs().items() if on and name.startswith("lamp_")
+    }
 
 
 def times(rig: Rig, seconds: float) -> dict[str, int]:

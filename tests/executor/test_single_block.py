@@ -95,8 +95,8 @@ def stops_of(rig: Rig, most: int = 40) -> list[int]:
     """Start after start: the line of each stop."""
     lines: list[int] = []
     while rig.state not in {MachineState.IDLE, MachineState.FAULT}:
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT, limit=20.0)
-        if rig.state is MachineState.BLOCK_END:
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE, MachineState.FAULT, limit=20.0)
+        if rig.state is MachineState.SINGLE_BLOCK_STOP:
             lines.append(rig.shot.line)
             assert len(lines) < most, lines
             rig.run(0.4)
@@ -124,7 +124,7 @@ def test_the_same_place_is_shown_block_by_block_and_nothing_moves() -> None:
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nX.3Z.3\nX.3\nX.3\nX.3\nG01X.4F10\nM30\n")
     for line in (2, 3, 4, 5):
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         assert rig.shot.line == line
         assert rig.shot.demand[:2] == pytest.approx((0.3 * INCH, 0.3 * INCH))
         rig.run(0.4)
@@ -159,10 +159,10 @@ def test_single_block_is_switched_off_and_on_again_at_any_block(off: int) -> Non
     rig.post(SetSwitch("single_block", True))
     rig.start(NOWHERE)
     for _ in range(off):
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         rig.run(0.4)
         rig.post(CycleStart())
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     rig.run(0.4)
     rig.post(SetSwitch("single_block", False), CycleStart(), SetSwitch("single_block", True))
     stops_of(rig)
@@ -189,7 +189,7 @@ def test_a_thread_begins_behind_a_moment_in_which_the_control_was_away() -> None
     rig.post(SetSwitch("single_block", True))
     rig.start("G90G94F300\nM03S600\nX.5Z.1\nG33X.49Z-.2I.05K.05\nG00X1\nM30\n")
     while rig.state is not MachineState.IDLE:
-        rig.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT)
+        rig.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE, MachineState.FAULT)
         assert rig.state is not MachineState.FAULT, rig.shot.alarms
         rig.run(0.4)
         rig.tick(0.9)

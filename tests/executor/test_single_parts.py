@@ -19,7 +19,7 @@ from core.executor.commands import (
     SetSpindleLimit,
     SetSwitch,
 )
-from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.drive_test import AxisTestLimits, DriveTestMotion, Shape
 from core.executor.hand_motion.jog_ramps import plan_jog_ramps
 from core.executor.hand_motion.touch_off import Homing
 from core.executor.machine_context import MachineContext
@@ -95,8 +95,10 @@ def test_a_wave_has_forty_pieces_none_shorter_than_two_milliseconds_and_twelve_a
     frequency: float, waves: int, pieces: int
 ) -> None:
     """20 Hz: a wave takes 50 ms. Five waves at least, and .8 s."""
-    path = DriveTestPath("X", Shape.SINE, 0.1, frequencies=(frequency,))
-    ramps = path.make_ramps(Limits(max_speed=42.3, max_acceleration=3048.0, sample_rate_hz=1000.0))
+    path = DriveTestMotion("X", Shape.SINE, 0.1, frequencies_hz=(frequency,))
+    ramps = path.make_ramps(
+        AxisTestLimits(max_speed_mm_s=42.3, max_acceleration_mm_s2=3048.0, sample_rate_hz=1000.0)
+    )
     assert len(ramps) == waves * pieces + 1  # and the rest behind it
     assert [dt for dt, _, _ in ramps[:-1]] == pytest.approx([1.0 / frequency / pieces] * waves * pieces)
 
@@ -158,7 +160,7 @@ def test_an_encoder_that_is_read_along_a_cubic_is_that_cubic() -> None:
     for n in range(21):
         t = 0.01 * n
         angle.add_reading((t, t**3 + 2.0 * t * t + 3.0 * t))
-    turns, speed = angle.predict(0.21) or (math.nan, math.nan)
+    turns, speed = angle.predict_angle(0.21) or (math.nan, math.nan)
     assert turns == pytest.approx(0.21**3 + 2.0 * 0.21**2 + 3.0 * 0.21, abs=1e-9)
     assert speed == pytest.approx(3.0 * 0.21**2 + 4.0 * 0.21 + 3.0, abs=1e-6)
 
@@ -171,7 +173,7 @@ def test_readings_of_4096_steps_tell_45_ms_ahead_within_three_steps(rpm: float) 
         for n in range(60):
             t = 0.01 * n
             angle.add_reading((t, round((rpm / 60.0 * t + first) * 4096.0) / 4096.0))
-            told = angle.predict(t + 0.045)
+            told = angle.predict_angle(t + 0.045)
             if n > 30 and told is not None:
                 assert abs(told[0] - rpm / 60.0 * (t + 0.045) - first) < 3.0 / 4096.0
 
@@ -182,10 +184,10 @@ class _Port:
 
     told: list[float] = field(default_factory=list)
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         self.told.append(rpm)
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         self.told.append(0.0)
 
     def speed(self) -> float:
@@ -262,7 +264,7 @@ def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> No
     port = _Held()
     held = OrientationControl(port, 100.0)
     assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
-    held.release()
+    held.release_spindle()
     assert port.told == []
     assert not held.request_angle(90.0, 1)
     assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, True, 100.0)
@@ -272,7 +274,7 @@ def test_an_angle_counts_from_when_the_drive_holds_it_until_it_is_let_go() -> No
     port.there = False
     assert not held.request_angle(90.0, -1)  # the same angle from the other side is another
     assert held.angle_deg is None
-    held.release()
+    held.release_spindle()
     assert (held.angle_deg, held.is_moving, held.max_rpm) == (None, False, 0.0)
     assert port.told == [(90.0, 1), (90.0, -1), "release"]
 
@@ -309,34 +311,34 @@ def homing(monkeypatch: pytest.MonkeyPatch) -> tuple[Homing, MachineContext, _As
     context, asked = context_of(None), _Asked()
     monkeypatch.setattr(context.ports.axes, "home", asked.homed.append)
     monkeypatch.setattr(context.ports.axes, "stop", asked.stopped.append)
-    context.sample = sample(context, LOST)
+    context.axis_sample = sample(context, LOST)
     return Homing(context), context, asked
 
 
 def sample(context: MachineContext, homed: tuple[bool, ...], *, moving: bool = False) -> AxisSample:
     """What the axes say of themselves."""
-    return context.sample._replace(homed=homed, moving=moving)
+    return context.axis_sample._replace(homed=homed, moving=moving)
 
 
 def test_the_next_axis_waits_until_the_one_before_stands(monkeypatch: pytest.MonkeyPatch) -> None:
     order, context, asked = homing(monkeypatch)
     assert order.start_homing("") == ""
-    assert not order.advance()
+    assert not order.home_next_axis()
     first = asked.homed[0]
     for n in range(5):
-        context.now, context.sample = 0.01 * n, sample(context, LOST, moving=True)
-        assert not order.advance()
+        context.now, context.axis_sample = 0.01 * n, sample(context, LOST, moving=True)
+        assert not order.home_next_axis()
     found = {"X": (True, False, True), "Z": (False, True, True)}[first]
-    context.now, context.sample = 0.06, sample(context, found, moving=True)
-    assert not order.advance()
+    context.now, context.axis_sample = 0.06, sample(context, found, moving=True)
+    assert not order.home_next_axis()
     assert len(asked.homed) == 1  # found, and still braking
-    context.now, context.sample = 0.07, sample(context, found)
-    assert not order.advance()
+    context.now, context.axis_sample = 0.07, sample(context, found)
+    assert not order.home_next_axis()
     assert sorted(asked.homed) == ["X", "Z"]
-    context.now, context.sample = 0.08, sample(context, FOUND, moving=True)
-    assert not order.advance()
-    context.sample = sample(context, FOUND)
-    assert order.advance()
+    context.now, context.axis_sample = 0.08, sample(context, FOUND, moving=True)
+    assert not order.home_next_axis()
+    context.axis_sample = sample(context, FOUND)
+    assert order.home_next_axis()
 
 
 def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_stops(
@@ -344,15 +346,15 @@ def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_
 ) -> None:
     order, context, asked = homing(monkeypatch)
     assert order.start_homing("Q") == text("executor.no-home-axis", axis="Q")
-    context.sample = sample(context, FOUND)
+    context.axis_sample = sample(context, FOUND)
     assert order.start_homing("") == text("executor.all-homed")
-    context.sample = sample(context, LOST)
+    context.axis_sample = sample(context, LOST)
     order.start_homing("X")
-    order.advance()
+    order.home_next_axis()
     order.stop()
     assert (asked.homed, asked.stopped) == (["X"], [StopMode.RAMP_HOLD])
-    context.sample = sample(context, (True, False, True))
-    assert order.advance()
+    context.axis_sample = sample(context, (True, False, True))
+    assert order.home_next_axis()
     assert asked.homed == ["X"]
 
 
@@ -361,5 +363,5 @@ def test_homing_of_what_is_not_lost_or_not_there_does_not_begin_and_given_up_it_
 
 def test_who_writes_through_the_remembered_outputs_reads_the_drivers_inputs() -> None:
     context = context_of(None)
-    assert dict(context.outputs.inputs()) == dict(context.ports.io.inputs())
-    assert context.outputs.inputs()
+    assert dict(context.commanded_outputs.inputs()) == dict(context.ports.io.inputs())
+    assert context.commanded_outputs.inputs()

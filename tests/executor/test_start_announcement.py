@@ -19,7 +19,7 @@ from core.executor.commands import (
 )
 from core.executor.job import Proof
 from core.executor.snapshot import MachineState, StartAction
-from core.executor.start_conditions import READING_TIME_S
+from core.executor.start_conditions import MIN_READING_TIME_S
 from tests.executor.rig import TICK, Rig
 from tests.texts import pattern, text
 
@@ -82,7 +82,7 @@ def test_a_start_that_came_before_the_announcement_could_be_read_is_refused() ->
     switched_off(rig)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick()
-    rig.run(READING_TIME_S - 2 * TICK)
+    rig.run(MIN_READING_TIME_S - 2 * TICK)
     rig.post(CycleStart())
     assert rig.state is MachineState.HOLD
     assert rig.shot.start_refusal == text("executor.look-first", what=SAID)
@@ -270,7 +270,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
     rig.sim.machine.set_spindle_pot(1.0)
     never_turns(rig)
     switched_off(rig)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.sim.machine.set_spindle_auto(True)
     rig.until_true(lambda shot: shot.rpm_actual == pytest.approx(1500.0))
 
@@ -278,7 +278,7 @@ def test_a_pot_raised_from_0_between_programs_turns_nothing() -> None:
 def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_programs() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.sim.machine.station_silent(True)
     rig.run(1.0)
     rig.sim.machine.set_spindle_auto(True)
@@ -290,7 +290,7 @@ def test_the_switch_turned_while_the_station_was_silent_starts_nothing_between_p
 def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.sim.machine.set_spindle_auto(True)
     rig.tick(0.5)
     never_turns(rig)
@@ -299,7 +299,7 @@ def test_the_switch_turned_behind_a_stall_starts_nothing() -> None:
 def test_the_switch_does_not_start_it_with_the_collet_open() -> None:
     rig = left_turning()
     switched_off(rig)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.sim.machine.collet_sensor_stuck()
     rig.sim.machine.set_input("collet_closed", False)
     rig.sim.machine.set_spindle_auto(True)
@@ -406,7 +406,7 @@ def test_what_was_warned_of_is_read_before_the_first_start() -> None:
     assert rig.state is MachineState.IDLE
     assert rig.shot.start_refusal == text("executor.look-first", what=said)
     assert rig.shot.announced == (said,)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())
     assert rig.state in {MachineState.RUN, MachineState.WAIT}
     assert rig.shot.announced == ()
@@ -426,10 +426,10 @@ def test_it_is_read_while_the_drives_are_off_too() -> None:
 
 def test_it_stands_again_between_two_parts_and_keeps_nobody_from_the_next() -> None:
     rig = warned(WARNED)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())
     rig.until(MachineState.IDLE)
-    rig.run(READING_TIME_S + TICK)
+    rig.run(MIN_READING_TIME_S + TICK)
     assert rig.shot.announced == (text("executor.warning", what=WARNED),)
     rig.post(CycleStart())
     assert rig.state in {MachineState.RUN, MachineState.WAIT}
@@ -447,7 +447,7 @@ def test_it_is_no_matter_of_a_line_of_mdi_nor_of_another_program() -> None:
 
 def test_going_on_after_a_hold_announces_nothing_of_it() -> None:
     rig = warned(WARNED)
-    rig.run(READING_TIME_S)
+    rig.run(MIN_READING_TIME_S)
     rig.post(CycleStart())
     rig.until_true(lambda shot: shot.actual[1] < -0.5)
     rig.post(FeedHold())

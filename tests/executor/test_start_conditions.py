@@ -21,7 +21,7 @@ from core.executor.commands import (
     SupplyProof,
 )
 from core.executor.job import Proof, make_job
-from core.executor.snapshot import TRANSITIONS, MachineState, TransitionError, require_transition
+from core.executor.snapshot import STATE_TRANSITIONS, MachineState, TransitionError, require_transition
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.interpreter.shared.machine_requirements import THREADING, MachineRequirement
 from core.language.source import Dialect, ProgramSource
@@ -264,11 +264,13 @@ def test_a_hold_is_never_too_late() -> None:
     rig.executor.post(FeedHold())
     rig.clock.advance(0.8)
     rig.tick()
-    assert rig.state is MachineState.HOLDING
+    assert rig.state is MachineState.STOPPING
 
 
-ALLOWED = sorted((old, new) for old, after in TRANSITIONS.items() for new in after)
-FORBIDDEN = sorted((old, new) for old in MachineState for new in MachineState if new not in TRANSITIONS[old])
+ALLOWED = sorted((old, new) for old, after in STATE_TRANSITIONS.items() for new in after)
+FORBIDDEN = sorted(
+    (old, new) for old in MachineState for new in MachineState if new not in STATE_TRANSITIONS[old]
+)
 
 
 @pytest.mark.parametrize(("old", "new"), ALLOWED)
@@ -283,17 +285,23 @@ def test_forbidden_transitions(old: MachineState, new: MachineState) -> None:
 
 
 def test_nothing_leads_from_dead_states_into_motion() -> None:
-    moving = {MachineState.RUN, MachineState.WAIT, MachineState.HOLDING, MachineState.JOG, MachineState.HOME}
+    moving = {
+        MachineState.RUN,
+        MachineState.WAIT,
+        MachineState.STOPPING,
+        MachineState.JOG,
+        MachineState.HOMING,
+    }
     for dead in (MachineState.ESTOP, MachineState.DISABLED, MachineState.FAULT):
-        assert not TRANSITIONS[dead] & moving
-    assert TRANSITIONS[MachineState.ESTOP] == {MachineState.DISABLED}
+        assert not STATE_TRANSITIONS[dead] & moving
+    assert STATE_TRANSITIONS[MachineState.ESTOP] == {MachineState.DISABLED}
 
 
 def test_a_forbidden_transition_inside_is_an_alarm(monkeypatch: pytest.MonkeyPatch) -> None:
     rig = Rig()
     rig.start("G90G94F300\nX3\nM30\n")
     rig.run(0.3)
-    monkeypatch.setitem(TRANSITIONS, MachineState.RUN, frozenset())
+    monkeypatch.setitem(STATE_TRANSITIONS, MachineState.RUN, frozenset())
     rig.until(MachineState.FAULT)
     assert rig.shot.alarms[0].code == "internal"
     rig.run(0.5)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from core.alarms import CATALOGUE, Reaction
+from core.alarms import CATALOG, Reaction
 from core.executor.commands import CycleStart, FeedHold, Jog, Reset, SetSwitch
 from core.executor.raised_alarm import HOLD_CODES, find_hold_code
 from core.executor.snapshot import MachineState
-from core.ports import DriverError, Segments
+from core.ports import DriverError, MotionSegments
 from tests.executor.rig import Rig
 from tests.texts import text
 
@@ -98,7 +98,7 @@ def test_stops_of_the_program_and_single_block_are_told_apart() -> None:
     assert stop_of(rig)[0] == "program-stop"
     rig.post(SetSwitch("single_block", True))
     rig.post(CycleStart())
-    rig.until(MachineState.BLOCK_END)
+    rig.until(MachineState.SINGLE_BLOCK_STOP)
     assert stop_of(rig)[0] == "single-block"
     rig.post(SetSwitch("single_block", False))
     rig.run(0.5)
@@ -113,7 +113,7 @@ def test_blocks_stepped_through_are_one_line_of_the_log_and_each_is_shown() -> N
     rig.start("G90G94F300\nX0Z0\nG01F20X.1\nX.2\nX.3\nX.4\nM30\n")
     lines = []
     for _ in range(4):
-        rig.until(MachineState.BLOCK_END)
+        rig.until(MachineState.SINGLE_BLOCK_STOP)
         assert rig.shot.stop is not None
         lines.append((rig.shot.stop.code, rig.shot.stop.line))
         rig.run(0.5)
@@ -146,7 +146,7 @@ def test_a_silent_station_is_a_hold_of_its_own() -> None:
 def too_late(monkeypatch: pytest.MonkeyPatch) -> Callable[[Rig, bool], None]:
     """Every setpoint comes too late, as on a computer that is busy with something else."""
 
-    def refuse(_segments: Segments) -> None:
+    def refuse(_segments: MotionSegments) -> None:
         raise DriverError("setpoints start 349.4 ms too early to be changed any more; splice later", "late")
 
     def turn(rig: Rig, late: bool) -> None:
@@ -182,14 +182,14 @@ def test_a_computer_that_is_late_within_a_tick_does_not_go_on_by_itself(
     rig = cutting()
     cycle = rig.executor._control.cycle
     assert cycle is not None
-    step = cycle.advance
+    step = cycle.advance_one_tick
 
     def late() -> None:
-        monkeypatch.setattr(cycle, "advance", step)
+        monkeypatch.setattr(cycle, "advance_one_tick", step)
         rig.clock.advance(3.0)
         step()
 
-    monkeypatch.setattr(cycle, "advance", late)
+    monkeypatch.setattr(cycle, "advance_one_tick", late)
     rig.tick()
     stood = rig.sim.machine.get_true_position()
     rig.until(MachineState.HOLD, limit=0.1)
@@ -255,5 +255,5 @@ def test_every_reason_of_a_hold_is_in_the_catalogue() -> None:
 
 
 def test_holds_are_found_by_their_words() -> None:
-    holds = [entry for entry in CATALOGUE.values() if entry.reaction is Reaction.HOLD]
+    holds = [entry for entry in CATALOG.values() if entry.reaction is Reaction.HOLD]
     assert len(HOLD_CODES) == len(holds)

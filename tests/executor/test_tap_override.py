@@ -32,5 +32,7 @@ def test_a_tap_follows_the_spindle_alone() -> None:
         section = PathSection(MotionLimits.of(MILL.axes, MILL.timing.setpoint), rpm_max=MILL.spindle.max_rpm)
         section.append_blocks([block])
         assert section.scale_path(OverrideFactors(), None).pieces.rate.max() == pytest.approx(plain)
-        rates = section.scale_path(OverrideFactors(feed=0.5, rapid=0.5, spindle=0.8), None).pieces.rate
+        rates = section.scale_path(
+            OverrideFactors(feed_factor=0.5, rapid_factor=0.5, spindle_factor=0.8), None
+        ).pieces.rate
         assert np.max(rates) == pytest.approx(changed)

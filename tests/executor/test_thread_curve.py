@@ -17,7 +17,7 @@ from core.executor.spindle_control import SpindleRequest
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.modal_state import ModalState
 from core.motion.axis_limits import MotionLimits
-from core.ports import Segments
+from core.ports import MotionSegments
 from tests.coded import raises_code
 from tests.executor.played_controller import context_of
 from tests.texts import text
@@ -41,11 +41,11 @@ def thread(n: int, z0: float, z: float, lead: float, **words: object) -> Block:
     return Block(**{**values, "n": n, "z0": z0, "z": z, "feed": lead, **words})  # type: ignore[arg-type]
 
 
-def place(way: Segments, t: float) -> tuple[float, float]:
+def place(way: MotionSegments, t: float) -> tuple[float, float]:
     """X and Z at a time."""
-    i = max(int(np.searchsorted(way.t, t, side="right")) - 1, 0)
-    u = min(t - float(way.t[i]), float(way.dt[i]))
-    x, z, _ = way.p[i] + (way.v[i] + 0.5 * way.a[i] * u) * u
+    i = max(int(np.searchsorted(way.start_times_s, t, side="right")) - 1, 0)
+    u = min(t - float(way.start_times_s[i]), float(way.durations_s[i]))
+    x, z, _ = way.positions[i] + (way.velocities[i] + 0.5 * way.accelerations[i] * u) * u
     return float(x), float(z)
 
 
@@ -56,18 +56,18 @@ OUT = thread(3, -8.0, -8.0, 40.0, kind=BlockKind.RAPID, x=9.0, per_rev=False, co
 
 def test_behind_a_joint_z_goes_as_the_next_lead_says() -> None:
     curve = build_thread_curve(CHAIN, LIMITS)
-    assert curve.length == pytest.approx(6.0)
+    assert curve.length_mm == pytest.approx(6.0)
     for s, z, lead in ((2.0, -2.0, -1.0), (5.0, -6.0, -2.0)):
         assert curve.evaluate(s) == pytest.approx((5.0, z, 0.0, lead))
         assert curve.find_s(z) == pytest.approx(s)
-    assert curve.max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
+    assert curve.compute_max_acceleration(A, A) == pytest.approx(A / 2)  # Z goes twice as fast as s
 
 
 def test_a_joint_is_rounded_off_as_far_as_half_of_the_acceleration_takes() -> None:
     """From 1 to 2 mm/s at A/2 takes 2/A s, so 1/A mm of s on each side; in its middle Z is 1/4A behind."""
     curve = build_thread_curve(CHAIN, LIMITS)
-    assert curve.s[1] == pytest.approx(4.0 - 1.0 / A)
-    assert curve.s[-2] == pytest.approx(4.0 + 1.0 / A)
+    assert curve.s_mm[1] == pytest.approx(4.0 - 1.0 / A)
+    assert curve.s_mm[-2] == pytest.approx(4.0 + 1.0 / A)
     assert curve.evaluate(4.0)[1] == pytest.approx(-4.0 - 0.25 / A, abs=1e-9)
 
 
@@ -75,21 +75,21 @@ def test_where_x_changes_its_speed_more_than_z_x_says_how_far_a_joint_is_rounded
     """A cylinder goes over into 45 degrees outwards: from 0 to 1 mm/s of X at half of A/4 takes 8/A s."""
     cone = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -8.0, 1.0, x=9.0)]
     curve = build_thread_curve(cone, MotionLimits(vmax=(127.0, 127.0, 1200.0), amax=(A / 4.0, A, 12000.0)))
-    assert curve.s[1] == pytest.approx(4.0 - 4.0 / A)
-    assert curve.s[-2] == pytest.approx(4.0 + 4.0 / A)
+    assert curve.s_mm[1] == pytest.approx(4.0 - 4.0 / A)
+    assert curve.s_mm[-2] == pytest.approx(4.0 + 4.0 / A)
     assert curve.evaluate(4.0)[0] == pytest.approx(5.0 + 1.0 / A, abs=1e-9)
 
 
 def test_a_joint_that_changes_nothing_stays_as_it_is() -> None:
     same = [thread(1, 0.0, -4.0, 1.0), thread(2, -4.0, -6.0, 1.0)]
-    assert build_thread_curve(same, LIMITS).s.tolist() == [0.0, 4.0, 6.0]
+    assert build_thread_curve(same, LIMITS).s_mm.tolist() == [0.0, 4.0, 6.0]
 
 
 def test_a_lead_that_grows_is_followed_turn_by_turn() -> None:
     """From 1 mm on .5 mm more a turn: (1 + q/4)·q, 1.25 mm in a turn and 3 mm in two; 1.5 on average."""
     curve = build_thread_curve([thread(1, 0.0, -3.0, 1.5, growth=0.5)], LIMITS)
-    assert len(curve.s) == 33  # sixteen a turn
-    assert curve.length == pytest.approx(2.0)
+    assert len(curve.s_mm) == 33  # sixteen a turn
+    assert curve.length_mm == pytest.approx(2.0)
     assert curve.evaluate(1.0)[1] == pytest.approx(-1.25)
     assert curve.evaluate(2.0)[1] == pytest.approx(-3.0)
 

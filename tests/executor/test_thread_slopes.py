@@ -180,7 +180,7 @@ def test_a_pot_turned_up_is_no_lost_spindle(z: float, gear: bool) -> None:
 def test_a_drive_that_turns_the_wrong_way_is_a_lost_spindle(gear: bool) -> None:
     rig, _ = begun(300, 0.1, "P", gear=gear)
     rig.until_true(at_z(-0.2))
-    rig.sim.ports.spindle.run_at(-300.0)  # an inverter gone mad: nobody asked for it
+    rig.sim.ports.spindle.set_speed(-300.0)  # an inverter gone mad: nobody asked for it
     rig.until(MachineState.FAULT)
     rig.run(0.5)
     assert rig.shot.alarms[0].code == "thread-lost"

@@ -343,20 +343,20 @@ def test_an_even_spindle_is_foretold_exactly() -> None:
     turns = SpindleAnglePredictor()
     for i in range(20):
         turns.add_reading((0.01 * i, -3.0 - 0.1 * i))
-    assert turns.predict(0.5) == pytest.approx((-8.0, -10.0))
+    assert turns.predict_angle(0.5) == pytest.approx((-8.0, -10.0))
 
 
 def test_nothing_is_foretold_from_too_little() -> None:
     turns = SpindleAnglePredictor()
-    assert turns.predict(0.0) is None
+    assert turns.predict_angle(0.0) is None
     for i in range(30):
         turns.add_reading((1.0, 5.0 + i))  # the same moment again says nothing
-    assert turns.predict(1.0) is None
+    assert turns.predict_angle(1.0) is None
     for i in range(30):
         turns.add_reading((1.0 + 0.01 * i, 5.0 + 0.1 * i))
-    assert turns.predict(1.0) is not None
+    assert turns.predict_angle(1.0) is not None
     turns.add_reading(None)
-    assert turns.predict(2.0) is None
+    assert turns.predict_angle(2.0) is None
 
 
 def test_a_swinging_speed_is_foretold_within_a_fifth_of_a_degree() -> None:
@@ -368,7 +368,7 @@ def test_a_swinging_speed_is_foretold_within_a_fifth_of_a_degree() -> None:
     for i in range(400):
         t = 0.01 * i
         turns.add_reading((t, round(truth(t) * 4096) / 4096))
-        found = turns.predict(t + 0.045)
+        found = turns.predict_angle(t + 0.045)
         if found is not None and i > 25:
             worst = max(worst, abs(found[0] - truth(t + 0.045)))
     assert worst * 360.0 < 0.2

@@ -12,7 +12,7 @@ from core.executor.commands import EnableDrives, Jog, JogByStep, Reset, SelectHa
 from core.executor.snapshot import MachineState, TouchPhase
 from core.machine.hardware_model import AnalogInputModel
 from core.machine.machine_model import InputModel, Machine
-from core.machine.setter_table import SetterModel, stopping_distance
+from core.machine.setter_table import SetterModel, compute_stopping_distance
 from drivers.simulated.simulated_table import SimulatedTable
 from tests.executor.rig import FINE, INCH, Rig
 from tests.texts import text
@@ -102,14 +102,14 @@ def test_the_place_of_the_touch(x: float, z: float, axis: str, sign: int, face: 
     touched = rig.shot.touched
     assert touched is not None
     assert touched.why == ""
-    assert touched.touch_position is not None
+    assert touched.touch_position_mm is not None
     index = "XZ".index(axis)
-    assert touched.touch_position == pytest.approx(
+    assert touched.touch_position_mm == pytest.approx(
         face + TIP[index], abs=0.0013 + 0.0003
     )  # a count, and 1 ms of way
-    assert SETTER.touch_position(axis, sign) == face
+    assert SETTER.compute_touch_position(axis, sign) == face
     assert touched.uncertainty_mm == pytest.approx(0.25 * 0.001 / 2 + 0.00127 / 2)  # .00005 in is a count
-    assert abs(rig.shot.actual[index] - (touched.touch_position - sign * 1.0)) < 0.005  # it stands off
+    assert abs(rig.shot.actual[index] - (touched.touch_position_mm - sign * 1.0)) < 0.005  # it stands off
     assert rig.deepest < SETTER.overtravel
     assert "probe" not in rig.shot.inputs
 
@@ -123,13 +123,13 @@ def test_its_phases_come_in_their_order_and_it_is_slow_at_last() -> None:
         phase = rig.shot.touch_phase
         if phase is not None and (not seen or seen[-1] is not phase):
             seen.append(phase)
-        if phase is TouchPhase.SLOW and "probe" in rig.shot.inputs:
+        if phase is TouchPhase.SLOW_TOUCH and "probe" in rig.shot.inputs:
             slow.append(rig.shot.velocity)
 
     rig.watch.append(note)
     rig.hold()
     rig.until(MachineState.IDLE)
-    assert seen == [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW, TouchPhase.RETREAT]
+    assert seen == [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW_TOUCH, TouchPhase.RETREAT]
     assert max(slow) == pytest.approx(0.25, rel=0.6)  # in counts a tick
 
 
@@ -142,7 +142,7 @@ def test_without_a_driver_that_keeps_the_place_a_tick_is_what_it_may_be_off() ->
     touched = rig.shot.touched
     assert touched is not None
     assert touched.uncertainty_mm == pytest.approx(0.25 * 0.01 / 2 + 0.00127 / 2)
-    assert touched.touch_position == pytest.approx(13.0 + TIP[0], abs=touched.uncertainty_mm + 0.0013)
+    assert touched.touch_position_mm == pytest.approx(13.0 + TIP[0], abs=touched.uncertainty_mm + 0.0013)
 
 
 # --- what stops it ----------------------------------------------------------------------------------------
@@ -157,10 +157,10 @@ def test_letting_go_stops_in_every_phase(phase: TouchPhase) -> None:
     before = rig.shot.actual[0]
     rig.let_go()
     rig.until(MachineState.IDLE)
-    assert abs(rig.shot.actual[0] - before) < stopping_distance(8.0, 120 * INCH, 0.03)
+    assert abs(rig.shot.actual[0] - before) < compute_stopping_distance(8.0, 120 * INCH, 0.03)
     touched = rig.shot.touched
     assert touched is not None
-    assert (touched.touch_position, touched.why) == (None, text("executor.let-go"))
+    assert (touched.touch_position_mm, touched.why) == (None, text("executor.let-go"))
 
 
 def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
@@ -172,7 +172,7 @@ def test_a_screen_that_has_died_stops_it_within_the_lease() -> None:
     rig.until(MachineState.IDLE)
     assert before - rig.shot.actual[0] < 8.0 * (LEASE + 0.05)
     assert rig.shot.touched is not None
-    assert rig.shot.touched.touch_position is None
+    assert rig.shot.touched.touch_position_mm is None
 
 
 def test_a_key_that_is_still_held_begins_nothing_again() -> None:
@@ -196,7 +196,7 @@ def test_nothing_there_is_told_and_the_slide_goes_back() -> None:
     rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
     assert rig.shot.touched.why == text("executor.not-touched", distance="0.472 in")
-    assert rig.shot.touched.touch_position is None
+    assert rig.shot.touched.touch_position_mm is None
     assert rig.shot.actual[0] == pytest.approx(begin, abs=0.005)
     assert rig.shot.alarms == ()
 
@@ -209,14 +209,14 @@ def test_an_input_that_stays_on_while_backing_off_stops_there() -> None:
     rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
     assert text("executor.input-stays", distance="0.039 in") in rig.shot.touched.why
-    assert rig.shot.touched.touch_position is None
+    assert rig.shot.touched.touch_position_mm is None
 
 
 def test_a_setter_that_gives_way_is_told() -> None:
     """The second touch does not come: the stylus is loose, or it was a chip."""
     rig = ready()
     rig.hold()
-    rig.until_true(lambda shot: shot.touch_phase is TouchPhase.SLOW)
+    rig.until_true(lambda shot: shot.touch_phase is TouchPhase.SLOW_TOUCH)
     rig.sim.ports.axes._plant.terminals.setter = None  # type: ignore[attr-defined]
     rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
@@ -253,7 +253,7 @@ def test_a_button_that_comes_up_ends_it_though_the_screen_goes_on_asking() -> No
     rig.sim.machine.set_input("jog_x_minus", False)
     rig.until(MachineState.IDLE)
     assert rig.shot.touched is not None
-    assert rig.shot.touched.touch_position is None
+    assert rig.shot.touched.touch_position_mm is None
 
 
 def test_a_jog_into_the_setter_stops_and_the_next_leads_away() -> None:
@@ -315,7 +315,7 @@ def test_the_spindle_turns() -> None:
 
 def test_an_axis_that_is_not_homed() -> None:
     machine = with_setter()
-    x = dataclasses.replace(machine.find_axis("X"), absolute=False, home_order=1, home_speed=10.0)
+    x = dataclasses.replace(machine.find_axis("X"), is_position_absolute=False, home_order=1, home_speed=10.0)
     rig = TouchRig(dataclasses.replace(machine, axes=(x, *machine.axes[1:])))
     rig.post(EnableDrives())
     rig.hold()

@@ -11,10 +11,10 @@ import pytest
 from core.executor.commands import EnableDrives
 from core.executor.executor import Executor
 from core.executor.safety.watchdog import (
+    BUSY_STUCK_CHECK_COUNT,
     CHECKS_BETWEEN_HALTS,
-    CHECKS_PER_THREAD_CHECK,
-    PATIENT_STUCK_CHECKS,
-    STUCK_CHECKS,
+    EXECUTOR_CHECKS_PER_THREAD_CHECK,
+    STUCK_CHECK_COUNT,
     WATCHDOG_THREAD_NAME,
     ExecutorThread,
     Watchdog,
@@ -69,10 +69,10 @@ def away(rig: Rig, seconds: float, look: Callable[[], None] | None = None) -> No
 def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, dead: bool) -> None:
     rig, control = cutting(name)
     dog, thread = watched(control.executor, control.executor.halt_function)
-    dog.check()
+    dog.check_threads()
     thread.is_alive = not dead
     place = control.world.place()[1]
-    away(rig, 6.0, dog.check)
+    away(rig, 6.0, dog.check_threads)
     # a second to be sure that it is stuck, what was queued meanwhile, and the ramp
     assert abs(control.world.place()[1] - place) < 12.7 * (
         0.5 if dead and not name.startswith("fed") else 3.5
@@ -95,10 +95,10 @@ def test_whose_executor_is_gone_stops_with_spindle_and_coolant_off(name: str, de
 def test_an_executor_that_comes_back_begins_with_the_alarm() -> None:
     rig, control = cutting("simulated")
     dog, _ = watched(control.executor, control.executor.halt_function)
-    away(rig, 2.0, dog.check)
+    away(rig, 2.0, dog.check_threads)
     for _ in range(100):
         control.tick()
-        dog.check()
+        dog.check_threads()
     assert control.state is MachineState.FAULT
     assert [alarm.code for alarm in control.shot.alarms] == ["control-silent"]
     assert not rig.ports.axes.sample().enabled
@@ -110,10 +110,10 @@ def test_a_process_that_stood_still_is_not_blamed() -> None:
     dog, _ = watched(control.executor, control.executor.halt_function)
     for _ in range(5):
         away(rig, 5.0)  # both stood
-        for _ in range(STUCK_CHECKS - 2):
-            dog.check()  # and the watchdog is the first to be woken
+        for _ in range(STUCK_CHECK_COUNT - 2):
+            dog.check_threads()  # and the watchdog is the first to be woken
         control.tick()
-        dog.check()
+        dog.check_threads()
     assert control.shot.alarms == ()
 
 
@@ -124,8 +124,8 @@ def test_a_wait_for_drives_is_no_stuck_thread() -> None:
     waited: list[bool] = []
 
     def slow(on: bool) -> None:
-        for _ in range(PATIENT_STUCK_CHECKS - 5):
-            dog.check()
+        for _ in range(BUSY_STUCK_CHECK_COUNT - 5):
+            dog.check_threads()
         waited.append(True)
         enable(on)
 
@@ -151,7 +151,7 @@ def test_a_controller_is_held_first_and_then_reset() -> None:
     thread.is_alive = False
     for _ in range(3 * CHECKS_BETWEEN_HALTS):
         away(rig, 0.1)
-        dog.check()
+        dog.check_threads()
     assert sent[0] == bytes([grblhal_codes.JOG_CANCEL, grblhal_codes.HOLD])
     assert set(sent[1:]) == {bytes([grblhal_codes.RESET])}
     rig.close()
@@ -182,13 +182,13 @@ def test_a_thread_that_is_killed_leaves_nothing_on(error: type[BaseException]) -
         if rig.executor.snapshot.alarms:
             break
         Waiting.pause()
-        dog.check()
+        dog.check_threads()
     assert rig.executor.snapshot.alarms
     thread.close()
     assert not thread.is_alive
     rig.clock.advance(3.0)
     assert rig.sim.machine.get_spindle_rpm() == 0.0
-    assert {name for name, on in rig.sim.ports.io.outputs().items() if on} == {"collet"}
+    assert {name for name, on in rig.sim.ports.io.get_outputs().items() if on} == {"collet"}
     assert not rig.sim.ports.axes.sample().enabled
 
 
@@ -201,8 +201,8 @@ class Waiting:
     def now(self) -> float:
         return self._rig.clock.now()
 
-    def sleep_until(self, t: float) -> None:
-        self._rig.clock.advance(max(t - self.now(), 0.0))
+    def sleep_until(self, time_s: float) -> None:
+        self._rig.clock.advance(max(time_s - self.now(), 0.0))
         self.pause()
 
     @staticmethod
@@ -219,8 +219,8 @@ class Noting:
     def now(self) -> float:
         return 5.0
 
-    def sleep_until(self, t: float) -> None:
-        self.until.append(t)
+    def sleep_until(self, time_s: float) -> None:
+        self.until.append(time_s)
 
 
 def test_between_two_ticks_it_sleeps_only_where_the_executor_has_not_rested(
@@ -251,13 +251,13 @@ def test_another_thread_that_ends_is_told_once() -> None:
     other.start()
     told: list[str] = []
     dog = Watchdog(Ticked(rig.executor), None, (name, "never-there"), told.append)  # type: ignore[arg-type]
-    dog.check()
+    dog.check_threads()
     assert told == []
     ending.set()
     other.join()
     assert not is_thread_running(name)
-    for _ in range(3 * CHECKS_PER_THREAD_CHECK):
-        dog.check()
+    for _ in range(3 * EXECUTOR_CHECKS_PER_THREAD_CHECK):
+        dog.check_threads()
     assert told == [name]
 
 
@@ -265,17 +265,17 @@ def test_a_thread_that_starts_after_the_watchdog_is_supervised() -> None:
     """In whatever order they are started; one that is announced also when it ends before the next look."""
     rig, ending, told = Simulated(), threading.Event(), list[str]()
     dog = Watchdog(Ticked(rig.executor), None, ("late-in-this-test",), told.append)  # type: ignore[arg-type]
-    for _ in range(CHECKS_PER_THREAD_CHECK):
-        dog.check()
+    for _ in range(EXECUTOR_CHECKS_PER_THREAD_CHECK):
+        dog.check_threads()
     late = threading.Thread(target=ending.wait, name="late-in-this-test", daemon=True)
     late.start()
-    for _ in range(CHECKS_PER_THREAD_CHECK):
-        dog.check()
+    for _ in range(EXECUTOR_CHECKS_PER_THREAD_CHECK):
+        dog.check_threads()
     ending.set()
     late.join()
     dog.watch_thread("gone-before-the-next-look")
-    for _ in range(CHECKS_PER_THREAD_CHECK):
-        dog.check()
+    for _ in range(EXECUTOR_CHECKS_PER_THREAD_CHECK):
+        dog.check_threads()
     assert sorted(told) == ["gone-before-the-next-look", "late-in-this-test"]
 
 
@@ -292,7 +292,7 @@ def test_drivers_that_block_while_they_are_halted_keep_no_alarm_back() -> None:
 
     def look() -> None:
         for _ in range(3 * CHECKS_BETWEEN_HALTS):
-            dog.check()
+            dog.check_threads()
 
     looking = threading.Thread(target=look, daemon=True)
     looking.start()
@@ -312,8 +312,8 @@ def test_the_executor_reports_a_watchdog_that_looks_no_more(looks: bool) -> None
     watch = WatchdogSupervisor(dog, told.append)
     for tick in range(1000):
         if looks and tick % 10 == 0:
-            dog.check()
-        watch.check(tick * TICK)
+            dog.check_threads()
+        watch.check_watchdog(tick * TICK)
     assert told == ([] if looks else [WATCHDOG_THREAD_NAME])
 
 
@@ -322,7 +322,7 @@ def test_a_computer_that_was_late_is_no_dead_watchdog() -> None:
     dog, _ = watched(rig.executor, None)
     watch = WatchdogSupervisor(dog, told.append)
     for minute in range(10):
-        watch.check(minute * 60.0)
+        watch.check_watchdog(minute * 60.0)
     assert told == []
 
 
@@ -376,6 +376,6 @@ def test_a_watchdog_whose_driver_breaks_still_says_so() -> None:
     dog, thread = watched(control.executor, broken)
     thread.is_alive = False
     for _ in range(20):
-        dog.check()
+        dog.check_threads()
     assert control.shot.alarms[0].code == "control-silent"
     rig.close()

@@ -89,8 +89,8 @@ def _machine(data: bytes) -> Iterable[str]:
 
 
 def _machine_files() -> Iterator[bytes]:
-    for name in resources.machine_names():
-        yield resources.machine_file(f"{name}.toml").encode()
+    for name in resources.list_machine_names():
+        yield resources.read_machine_file(f"{name}.toml").encode()
 
 
 def _other_value(data: bytes, chance: random.Random) -> bytes:
@@ -190,9 +190,9 @@ def _rings() -> Iterator[bytes]:
     ring = ScopeRing.from_layout(recorded)
     file = RingFile(path, ring)
     rows = np.linspace(0.0, 0.2, 20)[:, None] * np.ones(recorded.sample_width)
-    file.write_rows(ring.samples, ring.samples.write(rows))
+    file.write_rows(ring.samples, ring.samples.append_rows(rows))
     ticks = np.linspace(0.0, 0.2, 10)[:, None] * np.ones(recorded.tick_width)
-    file.write_rows(ring.ticks, ring.ticks.write(ticks))
+    file.write_rows(ring.ticks, ring.ticks.append_rows(ticks))
     file.close()
     yield path.read_bytes()
 
@@ -231,7 +231,7 @@ def _setups() -> Iterator[bytes]:
     yield path.read_bytes()
 
 
-_OWN_MACHINE = resources.machine_file("gt75.toml").encode()
+_OWN_MACHINE = resources.read_machine_file("gt75.toml").encode()
 
 
 def _manifest(members: dict[str, bytes]) -> bytes:

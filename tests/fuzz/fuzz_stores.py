@@ -11,7 +11,7 @@ from contextlib import closing, suppress
 from functools import cache, partial
 from pathlib import Path
 
-from app.production.parts_book import read_production
+from app.production.parts_book import read_production_data
 from core.store import backup
 from core.store.production import measured_parts, part_cycles, tool_lives
 from core.store.production.measured_parts import FeatureRow, ReadingRow
@@ -98,7 +98,7 @@ def _measured(store: Store) -> None:
         part_cycles.read_corrections(connection, "part.nc", 1000)
         part_cycles.read_cycle_times_since(connection, "2026-01-01T00:00:00Z")
     for tools in (OffsetKind.TOOL, OffsetKind.MILL_TOOL):
-        read_production(store, "part.nc", tools, {})
+        read_production_data(store, "part.nc", tools, {})
 
 
 def _read(data: bytes) -> Iterator[str]:

@@ -7,7 +7,7 @@ from math import cos, sin
 
 from hypothesis import strategies as st
 
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, center_from_radius
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, find_arc_center
 
 
 def polyline(*points: Point) -> list[Element]:
@@ -17,7 +17,7 @@ def polyline(*points: Point) -> list[Element]:
 
 def arc(start: Point, end: Point, radius: float, *, clockwise: bool) -> Arc:
     """The arc of at most half a circle between two points."""
-    return Arc(start, end, center_from_radius(start, end, radius, clockwise=clockwise), clockwise)
+    return Arc(start, end, find_arc_center(start, end, radius, is_clockwise=clockwise), clockwise)
 
 
 _STEP = st.tuples(
@@ -47,5 +47,5 @@ CONTOURS = st.lists(_STEP, min_size=1, max_size=9).map(follow)
 
 def sampled(element: Element, count: int = 41) -> list[Point]:
     """Points along an element, its ends included."""
-    inner = [element.point_at(element.length * k / (count - 1)) for k in range(1, count - 1)]
+    inner = [element.get_point(element.length * k / (count - 1)) for k in range(1, count - 1)]
     return [element.start, *inner, element.end]

@@ -4,27 +4,29 @@ import math
 
 import pytest
 
-from core.geometry.lines_and_arcs import arc_extent, arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_extent, compute_arc_sweep
 
 
 def test_convex_corner_of_a_shaft_is_a_clockwise_quarter() -> None:
-    start, sweep = arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=True)
+    start, sweep = compute_arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, is_clockwise=True)
     assert start == pytest.approx(0.0)
     assert sweep == pytest.approx(math.pi / 2)
 
 
 def test_the_other_way_round_is_three_quarters_backwards() -> None:
-    _, sweep = arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=False)
+    _, sweep = compute_arc_sweep(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, is_clockwise=False)
     assert sweep == pytest.approx(-3 * math.pi / 2)
 
 
 def test_start_and_end_in_one_point_is_a_full_circle() -> None:
-    assert arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=True)[1] == pytest.approx(2 * math.pi)
-    assert arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=False)[1] == pytest.approx(-2 * math.pi)
+    assert compute_arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, is_clockwise=True)[1] == pytest.approx(2 * math.pi)
+    assert compute_arc_sweep(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, is_clockwise=False)[1] == pytest.approx(
+        -2 * math.pi
+    )
 
 
 def test_a_quarter_reaches_no_further_than_its_ends() -> None:
-    assert arc_extent(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, clockwise=True) == pytest.approx(
+    assert compute_arc_extent(0.1, 0.0, 0.25, -0.15, 0.1, -0.15, is_clockwise=True) == pytest.approx(
         (0.1, 0.25, -0.15, 0.0)
     )
 
@@ -32,12 +34,14 @@ def test_a_quarter_reaches_no_further_than_its_ends() -> None:
 def test_a_barrel_bulges_past_both_ends() -> None:
     # R .635 over a chord of .3 from (.2, -.2) to (.2, -.5): centre r .2 - sqrt(.635² - .15²), crown at +.635.
     cx = 0.2 - math.sqrt(0.635**2 - 0.15**2)
-    box = arc_extent(0.2, -0.2, 0.2, -0.5, cx, -0.35, clockwise=True)
+    box = compute_arc_extent(0.2, -0.2, 0.2, -0.5, cx, -0.35, is_clockwise=True)
     assert box == pytest.approx((0.2, cx + 0.635, -0.5, -0.2))
 
 
 def test_a_full_circle_reaches_its_four_quadrants() -> None:
-    assert arc_extent(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, clockwise=False) == pytest.approx((0.0, 2.0, -1.0, 1.0))
+    assert compute_arc_extent(2.0, 0.0, 2.0, 0.0, 1.0, 0.0, is_clockwise=False) == pytest.approx(
+        (0.0, 2.0, -1.0, 1.0)
+    )
 
 
 @pytest.mark.parametrize("quadrant", range(4))
@@ -48,14 +52,16 @@ def test_an_arc_between_two_points_of_a_quadrant_is_short_or_reaches_all_quadran
     # Angles of 20 and 70 degrees in the quadrant: the arc the other way around passes all four axes.
     angles = [math.radians(90.0 * quadrant + each) for each in (20.0, 70.0)]
     (x0, z0), (x, z) = ((3.0 + 2.0 * math.sin(a), -1.0 + 2.0 * math.cos(a)) for a in angles)
-    box = arc_extent(x0, z0, x, z, 3.0, -1.0, clockwise=clockwise)
+    box = compute_arc_extent(x0, z0, x, z, 3.0, -1.0, is_clockwise=clockwise)
     short = (min(x0, x), max(x0, x), min(z0, z), max(z0, z))
     assert box == pytest.approx(short if clockwise else (1.0, 5.0, -3.0, 1.0))
-    back = arc_extent(x, z, x0, z0, 3.0, -1.0, clockwise=not clockwise)
+    back = compute_arc_extent(x, z, x0, z0, 3.0, -1.0, is_clockwise=not clockwise)
     assert back == pytest.approx(box)
 
 
 def test_equal_ends_within_a_quadrant_are_a_full_circle() -> None:
     at = math.radians(30.0)
     x, z = 2.0 * math.sin(at), 2.0 * math.cos(at)
-    assert arc_extent(x, z, x + 5e-7, z, 0.0, 0.0, clockwise=True) == pytest.approx((-2.0, 2.0, -2.0, 2.0))
+    assert compute_arc_extent(x, z, x + 5e-7, z, 0.0, 0.0, is_clockwise=True) == pytest.approx(
+        (-2.0, 2.0, -2.0, 2.0)
+    )

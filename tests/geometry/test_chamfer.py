@@ -15,7 +15,7 @@ from core.geometry.chamfer_and_rounding import (
     chamfer,
     make_rounding,
 )
-from core.geometry.lines_and_arcs import Line, distance_to_point, turn_angle
+from core.geometry.lines_and_arcs import Line, compute_distance_to_point, compute_turn_angle
 from tests.coded import raises_code
 from tests.geometry.contours import follow
 
@@ -99,9 +99,9 @@ def test_a_fillet_touches_both_lines(angle: float, radius: float) -> None:
     except CornerTooLargeError:
         assume(radius * tan(abs(angle) / 2) < 50)
         raise
-    assert abs(turn_angle(first.end_direction, round_.start_direction)) < 1e-5
-    assert abs(turn_angle(round_.end_direction, last.start_direction)) < 1e-5
+    assert abs(compute_turn_angle(first.end_direction, round_.start_direction)) < 1e-5
+    assert abs(compute_turn_angle(round_.end_direction, last.start_direction)) < 1e-5
     assert round_.radius == pytest.approx(radius)
     assert dist(round_.end, round_.center) == pytest.approx(radius, abs=1e-6)
-    assert distance_to_point(before, round_.center) == pytest.approx(radius, abs=1e-6)
-    assert distance_to_point(after, round_.center) == pytest.approx(radius, abs=1e-6)
+    assert compute_distance_to_point(before, round_.center) == pytest.approx(radius, abs=1e-6)
+    assert compute_distance_to_point(after, round_.center) == pytest.approx(radius, abs=1e-6)

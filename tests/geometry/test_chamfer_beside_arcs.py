@@ -14,12 +14,12 @@ from core.geometry.chamfer_and_rounding import (
     chamfer,
     find_chamfer_leg,
 )
-from core.geometry.lines_and_arcs import Arc, Element, Line, make_arc, turn_angle
+from core.geometry.lines_and_arcs import Arc, Element, Line, compute_turn_angle, make_arc
 from tests.coded import raises_code
 
 LONG = Line((0.0, 90.0), (0.0, 10.0))
 LINE = Line((0.0, 30.0), (0.0, 10.0))
-BALL = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+BALL = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), is_clockwise=True)
 
 
 def test_two_lines_are_cut_as_ever() -> None:
@@ -41,7 +41,7 @@ def test_a_line_onto_a_ball_worked_out() -> None:
 def test_random_pairs() -> None:
     dice, made = random.Random(7), 0
     for _ in range(3000):
-        before, after = _way(dice).reversed(), _way(dice)
+        before, after = _way(dice).make_reversed(), _way(dice)
         leg = dice.uniform(0.01, 3.0)
         try:
             first, cut, last = chamfer(before, after, leg)
@@ -53,18 +53,18 @@ def test_random_pairs() -> None:
         for part, whole in ((first, before), (last, after)):
             if isinstance(part, Arc) and isinstance(whole, Arc):
                 assert part.radius == pytest.approx(whole.radius, abs=1e-9)
-                assert abs(part.sweep) < abs(whole.sweep)
-        corner = turn_angle(before.end_direction, after.start_direction)
+                assert abs(part.sweep_rad) < abs(whole.sweep_rad)
+        corner = compute_turn_angle(before.end_direction, after.start_direction)
         if first.length > 1e-3 and last.length > 1e-3:
-            assert turn_angle(first.end_direction, cut.start_direction) * corner > 0
-            assert turn_angle(cut.end_direction, last.start_direction) * corner > 0
+            assert compute_turn_angle(first.end_direction, cut.start_direction) * corner > 0
+            assert compute_turn_angle(cut.end_direction, last.start_direction) * corner > 0
     assert made > 1000
 
 
 def test_the_leg_of_a_length_makes_it() -> None:
     dice, made = random.Random(11), 0
     for _ in range(1000):
-        before, after = _way(dice).reversed(), _way(dice)
+        before, after = _way(dice).make_reversed(), _way(dice)
         length = dice.uniform(0.01, 2.0)
         try:
             _, cut, _ = chamfer(before, after, find_chamfer_leg(before, after, length))

@@ -10,14 +10,21 @@ from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
 from core.geometry.contour_offset import (
+    GOUGE_CHECK_ELEMENT_COUNT,
     JOIN_TOLERANCE_MM,
-    WINDOW_ELEMENTS,
     GougeError,
     OffsetBuilder,
     offset_element,
     offset_known_contour,
 )
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance_to_point, min_distance
+from core.geometry.lines_and_arcs import (
+    Arc,
+    Element,
+    Line,
+    Point,
+    compute_distance_to_point,
+    compute_min_distance,
+)
 from tests.geometry.contours import CONTOURS, arc, follow, polyline, sampled
 
 pytestmark = pytest.mark.long
@@ -135,7 +142,7 @@ def check(contour: list[Element], path: list[Element], apart: float) -> None:
     """No point too near to any element; where it runs along elements, exactly the distance."""
     for piece in path:
         for point in sampled(piece):
-            nearest = min(distance_to_point(element, point) for element in contour)
+            nearest = min(compute_distance_to_point(element, point) for element in contour)
             assert apart - 0.002 <= nearest <= apart + 0.001
     for before, after in pairwise(path):
         assert dist(before.end, after.start) < 1e-6
@@ -157,7 +164,7 @@ def test_no_point_is_nearer_than_the_distance(contour: list[Element], apart: flo
 @given(CONTOURS, st.floats(0.05, 1.5), st.booleans())
 def test_forth_and_back_are_the_same_offset(contour: list[Element], apart: float, left: bool) -> None:
     side = apart if left else -apart
-    turned = [element.reversed() for element in reversed(contour)]
+    turned = [element.make_reversed() for element in reversed(contour)]
     try:
         path, back = offset_contour(contour, side), offset_contour(turned, -side)
     except GougeError:
@@ -177,23 +184,23 @@ def test_the_clearance_of_two_elements_is_the_least_distance(contour: list[Eleme
     a, b = contour[0], contour[-1]
     measured = min(dist(p, q) for p in sampled(a, 61) for q in sampled(b, 61))
     longest = max(a.length, b.length) / 60
-    assert measured - longest <= min_distance(a, b) <= measured + 1e-9
+    assert measured - longest <= compute_min_distance(a, b) <= measured + 1e-9
 
 
 @given(CONTOURS, st.floats(0, 1))
 def test_the_place_of_a_point_along_an_element(contour: list[Element], share: float) -> None:
     for element in contour:
         at = share * element.length
-        assert element.distance_from_start(element.point_at(at)) == pytest.approx(at, abs=1e-6)
-        assert distance_to_point(element, element.point_at(at)) < 1e-6
+        assert element.get_distance_from_start(element.get_point(at)) == pytest.approx(at, abs=1e-6)
+        assert compute_distance_to_point(element, element.get_point(at)) < 1e-6
 
 
 def test_a_long_contour_comes_out_while_it_goes_in() -> None:
     offset, out = OffsetBuilder(0.2), 0
     for k in range(1000):
         out += len(list(offset.add(Line((10.0, -k), (10.0, -k - 1)))))
-    assert out == 1000 - 1 - WINDOW_ELEMENTS
-    assert len(list(offset.finish())) == WINDOW_ELEMENTS + 1
+    assert out == 1000 - 1 - GOUGE_CHECK_ELEMENT_COUNT
+    assert len(list(offset.finish_contour())) == GOUGE_CHECK_ELEMENT_COUNT + 1
 
 
 def test_the_inside_of_a_cone() -> None:

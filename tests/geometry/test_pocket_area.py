@@ -8,14 +8,14 @@ from itertools import pairwise
 
 import pytest
 
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance_to_point
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, compute_distance_to_point
 from core.geometry.pocket_area import (
     AreaError,
     ElementLoop,
-    Winding,
+    WindingCalculator,
     find_boundary,
-    inset_loops,
     is_counterclockwise,
+    make_inset_loops,
 )
 
 
@@ -34,7 +34,7 @@ def enclosed(loops: list[ElementLoop]) -> float:
     for loop in loops:
         for element in loop:
             steps = 1 if isinstance(element, Line) else 400
-            points = [element.point_at(element.length * at / steps) for at in range(steps + 1)]
+            points = [element.get_point(element.length * at / steps) for at in range(steps + 1)]
             total += sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(points)) / 2.0
     return total
 
@@ -44,11 +44,17 @@ SQUARE = polygon((0.0, 0.0), (60.0, 0.0), (60.0, 40.0), (0.0, 40.0))
 
 def area(
     pockets: list[ElementLoop], islands: list[ElementLoop]
-) -> tuple[list[ElementLoop], list[Winding], list[Winding]]:
-    within, stay = [Winding(loop) for loop in pockets], [Winding(loop) for loop in islands]
+) -> tuple[list[ElementLoop], list[WindingCalculator], list[WindingCalculator]]:
+    within, stay = (
+        [WindingCalculator(loop) for loop in pockets],
+        [WindingCalculator(loop) for loop in islands],
+    )
     found = find_boundary(
         [*pockets, *islands],
-        lambda p: any(w.winding_number(p) for w in within) and not any(w.winding_number(p) for w in stay),
+        lambda p: (
+            any(w.compute_winding_number(p) for w in within)
+            and not any(w.compute_winding_number(p) for w in stay)
+        ),
     )
     return found, within, stay
 
@@ -56,8 +62,8 @@ def area(
 def test_a_rectangle_shrinks_by_its_closed_formula_until_nothing_is_left() -> None:
     loops, _, _ = area([SQUARE], [])
     for by in (1.0, 7.5, 19.9):
-        assert enclosed(inset_loops(loops, by)) == pytest.approx((60 - 2 * by) * (40 - 2 * by), abs=1e-6)
-    assert inset_loops(loops, 20.001) == []
+        assert enclosed(make_inset_loops(loops, by)) == pytest.approx((60 - 2 * by) * (40 - 2 * by), abs=1e-6)
+    assert make_inset_loops(loops, 20.001) == []
 
 
 def test_an_island_grows_round_and_eats_its_pocket() -> None:
@@ -65,10 +71,10 @@ def test_an_island_grows_round_and_eats_its_pocket() -> None:
     loops, _, _ = area([SQUARE], [circle((30.0, 20.0), 8.0)])
     for by in (1.0, 5.0):
         expected = (60 - 2 * by) * (40 - 2 * by) - math.pi * (8 + by) ** 2
-        assert enclosed(inset_loops(loops, by)) == pytest.approx(expected, abs=1e-2)
-    assert len(inset_loops(loops, 5.0)) == 2
-    assert len(inset_loops(loops, 7.0)) == 2  # fallen apart into a left and a right room
-    assert all(is_counterclockwise(loop) for loop in inset_loops(loops, 7.0))
+        assert enclosed(make_inset_loops(loops, by)) == pytest.approx(expected, abs=1e-2)
+    assert len(make_inset_loops(loops, 5.0)) == 2
+    assert len(make_inset_loops(loops, 7.0)) == 2  # fallen apart into a left and a right room
+    assert all(is_counterclockwise(loop) for loop in make_inset_loops(loops, 7.0))
 
 
 def test_two_circles_come_to_one_and_an_island_that_crosses_a_wall_cuts_in() -> None:
@@ -86,7 +92,7 @@ def test_edges_that_lie_on_one_another_are_no_boundary() -> None:
 
 
 def _nearest(loops: list[ElementLoop], point: Point) -> float:
-    return min(distance_to_point(element, point) for loop in loops for element in loop)
+    return min(compute_distance_to_point(element, point) for loop in loops for element in loop)
 
 
 def _random_loop(dice: random.Random) -> ElementLoop:
@@ -110,19 +116,19 @@ def test_a_point_is_inside_the_inset_just_where_no_boundary_is_nearer() -> None:
                                    [_random_loop(dice) for _ in range(dice.randint(0, 2))])  # fmt: skip
         by = dice.choice((0.5, 2.0, 4.0))
         try:
-            inner = [Winding(loop) for loop in inset_loops(loops, by)]
+            inner = [WindingCalculator(loop) for loop in make_inset_loops(loops, by)]
         except AreaError:
             given_up += 1
             continue
         for _ in range(80):
             point = dice.uniform(-20, 60), dice.uniform(-20, 60)
-            inside = any(w.winding_number(point) for w in within) and not any(
-                w.winding_number(point) for w in stay
+            inside = any(w.compute_winding_number(point) for w in within) and not any(
+                w.compute_winding_number(point) for w in stay
             )
             away = _nearest(loops, point) if loops else 0.0
             if inside and abs(away - by) > 0.002:
                 judged += 1
-                assert (sum(w.winding_number(point) for w in inner) == 1) == (away > by)
+                assert (sum(w.compute_winding_number(point) for w in inner) == 1) == (away > by)
     assert judged > 100
     assert given_up <= 1
 

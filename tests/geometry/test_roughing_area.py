@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from core.geometry.contour_offset import RoughingArea, TrimError, trim_offset
-from core.geometry.lines_and_arcs import Arc, Element, Line, distance_to_point
+from core.geometry.lines_and_arcs import Arc, Element, Line, compute_distance_to_point
 from tests.geometry.contours import arc, polyline, sampled
 
 STEP = polyline((10, 1), (6, 1), (6, 20), (2, 20))
@@ -36,7 +36,7 @@ def test_nothing_left_is_the_contour_itself() -> None:
 
 def test_a_rise_divides_a_pass_in_two() -> None:
     bump = [*polyline((6, 0), (6, 10)), arc((6, 10), (6, 14), 2, clockwise=True), *polyline((6, 14), (6, 30))]
-    assert bump[1].point_at(bump[1].length / 2) == pytest.approx((4, 12))
+    assert bump[1].get_point(bump[1].length / 2) == pytest.approx((4, 12))
     area = RoughingArea(bump, 1)
     half = sqrt(3**2 - 1**2)  # the offset circle of radius 3 about (6, 12), cut at depth 5
     assert area.find_spans(2.9) == [(0, 30)]
@@ -166,7 +166,7 @@ def test_the_way_along_is_unbroken_and_never_too_near(contour: list[Element], le
         assert dist(before.end, after.start) < 0.0051
     for element in path:
         for point in sampled(element, 21):
-            assert min(distance_to_point(each, point) for each in contour) >= left - 0.002
+            assert min(compute_distance_to_point(each, point) for each in contour) >= left - 0.002
 
 
 @settings(max_examples=150, deadline=None)
@@ -180,7 +180,7 @@ def test_stretches_are_far_from_the_contour_and_reach_it(
         for k in range(21):
             way = start + (end - start) * k / 20
             for level in (depth, depth * 0.7, depth * 0.3):
-                assert min(distance_to_point(each, (level, way)) for each in contour) >= left - 0.002
+                assert min(compute_distance_to_point(each, (level, way)) for each in contour) >= left - 0.002
     if left > 0:
         for start, end in area.find_spans(depth):
             at_wall = [start] * (start > 0) + [end] * (end < area.path[-1].end[1] - 1e-6)
@@ -188,7 +188,9 @@ def test_stretches_are_far_from_the_contour_and_reach_it(
                 if way == pytest.approx(area.path[0].start[1]):
                     continue
                 nearest = min(
-                    distance_to_point(each, (depth * k / 200, way)) for each in contour for k in range(201)
+                    compute_distance_to_point(each, (depth * k / 200, way))
+                    for each in contour
+                    for k in range(201)
                 )
                 assert nearest <= left + 0.1
 

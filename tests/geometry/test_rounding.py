@@ -27,7 +27,7 @@ def check(before: Element, after: Element, radius: float) -> None:
     assert near(first.end, arc.start)
     assert near(arc.end, last.start)
     assert arc.radius == pytest.approx(radius, abs=1e-6)
-    assert abs(arc.sweep) < pi
+    assert abs(arc.sweep_rad) < pi
     for one, other in ((first, arc), (arc, last)):
         assert near(one.end_direction, other.start_direction)
     for part, whole in ((first, before), (last, after)):
@@ -41,7 +41,7 @@ def test_from_a_cylinder_into_a_ball_worked_out() -> None:
     the middle of the ball.
     """
     line = Line((0.0, 30.0), (0.0, 10.0))
-    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), is_clockwise=True)
     first, arc, last = make_rounding(line, ball, 2.0)
     assert arc.center == pytest.approx((2.0, math.sqrt(12.0**2 - 2.0**2)))
     assert first.end == pytest.approx((0.0, math.sqrt(140.0)))
@@ -58,7 +58,7 @@ def test_random_pairs() -> None:
     dice, made = random.Random(3), 0
     for _ in range(3000):
         corner = (dice.uniform(-5, 5), dice.uniform(-5, 5))
-        before, after = _way(dice, corner).reversed(), _way(dice, corner)
+        before, after = _way(dice, corner).make_reversed(), _way(dice, corner)
         radius = dice.uniform(0.05, 1.5)
         try:
             check(before, after, radius)
@@ -78,12 +78,12 @@ def _way(dice: random.Random, start: Point) -> Element:
     centre = start[0] + radius * sin(angle), start[1] + radius * cos(angle)
     turned = angle + pi + (1 if clockwise else -1) * dice.uniform(0.6, 2.5)
     end = centre[0] + radius * sin(turned), centre[1] + radius * cos(turned)
-    return make_arc(start, end, centre, clockwise=clockwise)
+    return make_arc(start, end, centre, is_clockwise=clockwise)
 
 
 def test_what_goes_on_smoothly_has_no_corner() -> None:
     line = Line((10.0, 20.0), (10.0, 0.0))
-    arc = make_arc((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), clockwise=True)
+    arc = make_arc((10.0, 0.0), (0.0, -10.0), (0.0, 0.0), is_clockwise=True)
     with pytest.raises(NoCornerError):
         make_rounding(line, arc, 1.0)
 
@@ -91,7 +91,7 @@ def test_what_goes_on_smoothly_has_no_corner() -> None:
 def test_one_that_is_longer_than_the_line() -> None:
     """r 45 would touch the axis at sqrt(55² - 45²) = 31.6; the line begins at 30, where r 40 does."""
     line = Line((0.0, 30.0), (0.0, 10.0))
-    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), clockwise=True)
+    ball = make_arc((0.0, 10.0), (10.0, 0.0), (0.0, 0.0), is_clockwise=True)
     check(line, ball, 39.9)
     with raises_code(CornerError, "no-touching-arc"):
         make_rounding(line, ball, 45.0)
@@ -101,7 +101,7 @@ def test_one_that_is_longer_than_the_line() -> None:
 def test_one_that_is_too_large_for_the_inside_of_an_arc(radius: float) -> None:
     """From the middle of a bowl of 5 out to its rim: r 2.5 is the largest that lies between both."""
     spoke = Line((0.0, 0.0), (0.0, 5.0))
-    bowl = make_arc((0.0, 5.0), (5.0, 0.0), (0.0, 0.0), clockwise=True)
+    bowl = make_arc((0.0, 5.0), (5.0, 0.0), (0.0, 0.0), is_clockwise=True)
     check(spoke, bowl, 2.4)
     with pytest.raises(CornerError):
         make_rounding(spoke, bowl, radius)
@@ -112,4 +112,4 @@ def test_a_rounding_that_takes_a_whole_arc_would_leave_a_full_circle() -> None:
     line = Line((0.0, 30.0), (0.0, 10.0))
     touch = 10.0 / 12.0 * 2.0, 10.0 / 12.0 * math.sqrt(140.0)
     with raises_code(CornerError, "no-touching-arc"):
-        make_rounding(line, make_arc((0.0, 10.0), touch, (0.0, 0.0), clockwise=True), 2.0)
+        make_rounding(line, make_arc((0.0, 10.0), touch, (0.0, 0.0), is_clockwise=True), 2.0)

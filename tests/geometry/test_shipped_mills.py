@@ -45,7 +45,7 @@ def about(direction: str, point: Any, degrees: float) -> Any:
 
 def on_workpiece(name: str, angles: dict[str, float], slides: Any, length: float) -> Any:
     """Where the tip is on the workpiece and the tool's direction there; from the file alone."""
-    table = tomllib.loads(resources.machine_file(f"{name}.toml"))["kinematics"]
+    table = tomllib.loads(resources.read_machine_file(f"{name}.toml"))["kinematics"]
     chain = sorted((each for each in table if each in _COLUMN), key=lambda axis: table[axis]["order"])
     to_tip = moved(slides)
     for axis in chain:
@@ -83,10 +83,10 @@ def test_points_and_tool_lie_where_the_matrices_have_them(name: str) -> None:
     for _ in range(200):
         (angles, slides), length = some_place(machine, dice), dice.uniform(0, 150)
         tip, along = on_workpiece(name, angles, slides, length)
-        assert machine.make_transform(angles, tool_length=length).to_frame_point(slides) == pytest.approx(
-            tuple(tip), abs=1e-9
-        )
-        frame = machine.tool_frame(angles)
+        assert machine.make_transform(angles, tool_length=length).convert_to_frame_point(
+            slides
+        ) == pytest.approx(tuple(tip), abs=1e-9)
+        frame = machine.compute_tool_frame(angles)
         assert [row[2] for row in frame] == pytest.approx(list(along), abs=1e-12)
 
 
@@ -96,6 +96,6 @@ def test_another_angle_or_length_is_another_place(name: str) -> None:
     angles = {axis.name: 10.0 for axis in machine.rotary_axes}
     tip, _ = on_workpiece(name, angles, (0.0, 0.0, 0.0), 80.0)
     for wrong, length in (({**angles, "C": 11.0}, 80.0), (angles, 80.1)):
-        assert machine.make_transform(wrong, tool_length=length).to_frame_point(
+        assert machine.make_transform(wrong, tool_length=length).convert_to_frame_point(
             (0.0, 0.0, 0.0)
         ) != pytest.approx(tuple(tip), abs=1e-3)

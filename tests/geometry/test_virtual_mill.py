@@ -20,7 +20,7 @@ angle = st.floats(-720.0, 720.0)
 
 def at(move: PlaneMove, share: float) -> list[float]:
     """Lathe X, Z, C at a fraction of the way."""
-    row: list[float] = move.machine_positions(np.array([share]))[0].tolist()
+    row: list[float] = move.compute_machine_positions(np.array([share]))[0].tolist()
     return row
 
 
@@ -42,7 +42,7 @@ def test_a_tool_above_the_axis_stands_at_its_height_at_the_entry() -> None:
 def test_the_side_is_unrolled_at_its_diameter() -> None:
     """Half the circumference up is 180 degrees back; right is towards the spindle; Z counts outwards."""
     move = PlaneMove(
-        SidePlane(c_start_deg=5.0, z_start_mm=-2.0, diameter=20.0),
+        SidePlane(c_start_deg=5.0, z_start_mm=-2.0, diameter_mm=20.0),
         (0.0, 0.0, 12.0),
         (7.0, math.pi * 10.0, 9.0),
     )
@@ -52,7 +52,7 @@ def test_the_side_is_unrolled_at_its_diameter() -> None:
 
 def test_clockwise_is_clockwise_with_y_up() -> None:
     quarter = PlaneMove(FacePlane(0.0), (-2.0, 0.0, 0.0), (0.0, 2.0, 0.0), center=(0.0, 0.0), clockwise=True)
-    assert quarter.mill_points(np.array([0.5]))[0].tolist() == pytest.approx(
+    assert quarter.compute_mill_points(np.array([0.5]))[0].tolist() == pytest.approx(
         [-math.sqrt(2), math.sqrt(2), 0.0]
     )
     assert quarter.length == pytest.approx(math.pi)
@@ -71,19 +71,21 @@ def test_an_arc_that_ends_where_it_starts_is_a_full_circle() -> None:
 
 def test_a_rounded_centre_is_moved_so_that_the_arc_meets_its_end() -> None:
     move = PlaneMove(SidePlane(0.0, 0.0, 20.0), (0.0, 0.0, 1.0), (3.0, 3.0, 1.0), center=(3.0, 0.01))
-    assert move.mill_points(ENDS)[1].tolist() == pytest.approx([3.0, 3.0, 1.0])
+    assert move.compute_mill_points(ENDS)[1].tolist() == pytest.approx([3.0, 3.0, 1.0])
 
 
 def test_nearest_to_the_axis() -> None:
     line = PlaneMove(FacePlane(0.0), (8.0, -6.0, 0.0), (8.0, 2.0, 0.0))
-    assert line.critical_fraction() == pytest.approx(0.75)
-    assert line.distance_from_axis(line.critical_fraction()) == pytest.approx(8.0)
+    assert line.get_critical_fraction() == pytest.approx(0.75)
+    assert line.compute_distance_from_axis(line.get_critical_fraction()) == pytest.approx(8.0)
     behind = PlaneMove(FacePlane(0.0), (8.0, 1.0, 0.0), (8.0, 2.0, 0.0))
-    assert behind.critical_fraction() == 0.0
+    assert behind.get_critical_fraction() == 0.0
     arc = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0), clockwise=True)
-    assert arc.distance_from_axis(arc.critical_fraction()) == pytest.approx(2.0)
+    assert arc.compute_distance_from_axis(arc.get_critical_fraction()) == pytest.approx(2.0)
     away = PlaneMove(FacePlane(0.0), (5.0, -3.0, 0.0), (5.0, 3.0, 0.0), center=(5.0, 0.0))
-    assert away.distance_from_axis(away.critical_fraction()) == pytest.approx(math.hypot(5.0, 3.0))
+    assert away.compute_distance_from_axis(away.get_critical_fraction()) == pytest.approx(
+        math.hypot(5.0, 3.0)
+    )
 
 
 def test_reach_of_a_chord_holds_its_nearest_point() -> None:
@@ -99,7 +101,7 @@ def test_the_face_and_back(x: float, y: float, z: float, c0: float, h: float) ->
     if rho < abs(h) + 0.01:
         return
     point = np.array([[x, y, z]])
-    back = face.to_mill(face.to_lathe(point, np.array([math.atan2(y, x)])))
+    back = face.convert_to_mill(face.convert_to_lathe(point, np.array([math.atan2(y, x)])))
     assert back[0].tolist() == pytest.approx([x, y, z], abs=1e-9)
 
 
@@ -107,7 +109,7 @@ def test_the_face_and_back(x: float, y: float, z: float, c0: float, h: float) ->
 @given(size, size, size, angle, st.floats(0.5, 100.0))
 def test_the_side_and_back(x: float, y: float, z: float, c0: float, diameter: float) -> None:
     side = SidePlane(c0, 3.0, diameter)
-    back = side.to_mill(side.to_lathe(np.array([[x, y, z]])))
+    back = side.convert_to_mill(side.convert_to_lathe(np.array([[x, y, z]])))
     assert back[0].tolist() == pytest.approx([x, y, z], abs=1e-9)
 
 
@@ -121,11 +123,11 @@ def test_c_goes_on_without_a_jump(
     move = PlaneMove(FacePlane(0.0), start, (i, j, 0.0), math.atan2(y, x))
     if round_:
         move = PlaneMove(FacePlane(0.0), start, start, math.atan2(y, x), (i, j), clockwise)
-    if move.length < 1.0 or move.distance_from_axis(move.critical_fraction()) < 0.05:
+    if move.length < 1.0 or move.compute_distance_from_axis(move.get_critical_fraction()) < 0.05:
         return
-    points, machine = move.mill_points(MANY), move.machine_positions(MANY)
+    points, machine = move.compute_mill_points(MANY), move.compute_machine_positions(MANY)
     step = move.length / (len(MANY) - 1)
     nearest = np.minimum(np.hypot(points[:-1, 0], points[:-1, 1]), np.hypot(points[1:, 0], points[1:, 1]))
     most = 2.0 * np.degrees(np.arcsin(np.minimum(step / np.maximum(nearest, step), 1.0)))
     assert (np.abs(np.diff(machine[:, 2])) <= most + 1e-6).all()
-    assert move.frame.to_mill(machine) == pytest.approx(points, abs=1e-8)
+    assert move.frame.convert_to_mill(machine) == pytest.approx(points, abs=1e-8)

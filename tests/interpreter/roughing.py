@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, distance_to_point, make_arc
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, compute_distance_to_point, make_arc
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
 
@@ -13,7 +13,7 @@ def element_of(block: Block) -> Element:
     """The way of a block in the program's frame."""
     start, end = (block.x0, block.z0), (block.x, block.z)
     if block.kind is BlockKind.ARC:
-        return make_arc(start, end, (block.cx, block.cz), clockwise=block.clockwise)
+        return make_arc(start, end, (block.cx, block.cz), is_clockwise=block.clockwise)
     return Line(start, end)
 
 
@@ -27,14 +27,14 @@ def along(element: Element, step: float) -> list[Point]:
     if element.length == 0:
         return [element.start]
     count = int(element.length / step) + 2
-    inner = [element.point_at(element.length * k / count) for k in range(1, count)]
+    inner = [element.get_point(element.length * k / count) for k in range(1, count)]
     return [element.start, *inner, element.end]
 
 
 def nearest(blocks: Iterable[Block], contour: list[Element], step: float = 0.2) -> float:
     """The least distance between the moves and the contour, mm."""
     points = {point for block in blocks for point in along(element_of(block), step)}
-    return min(distance_to_point(element, point) for element in contour for point in points)
+    return min(compute_distance_to_point(element, point) for element in contour for point in points)
 
 
 class Bar:

@@ -14,7 +14,7 @@ from core.interpreter.shared.machine_requirements import (
     THREAD_CHAIN,
     THREADING,
     MachineRequirement,
-    find_requirements,
+    list_requirements,
     remove_repeated_requirements,
 )
 from core.interpreter.sinumerik.setup.programmed_frame import ProgrammedFrame
@@ -59,8 +59,8 @@ def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once(
     turns = replace(still, line=2, rpm=500.0)
     thread = replace(turns, line=3, kind=BlockKind.THREAD, per_rev=True)
     chain = replace(turns, line=4, kind=BlockKind.THREAD, continues=True, css=None)
-    assert list(find_requirements([still])) == []
-    assert remove_repeated_requirements(find_requirements([still, turns, turns, thread, chain])) == (
+    assert list(list_requirements([still])) == []
+    assert remove_repeated_requirements(list_requirements([still, turns, turns, thread, chain])) == (
         MachineRequirement(SURFACE_SPEED, 2),
         MachineRequirement(THREADING, 3),
         MachineRequirement(SURFACE_SPEED_THREAD, 3),
@@ -75,10 +75,10 @@ def test_constant_surface_speed_is_needed_while_the_spindle_turns_and_told_once(
     "frame",
     [
         ProgrammedFrame(),
-        ProgrammedFrame().rotate(30.0),
-        ProgrammedFrame().scale(2.0, 0.5),
-        ProgrammedFrame().rotate(-75.0).scale(1.0, -1.0).rotate(20.0),
-        ProgrammedFrame().scale(3.0, 1.5).rotate(40.0),
+        ProgrammedFrame().add_rotation(30.0),
+        ProgrammedFrame().add_scaling(2.0, 0.5),
+        ProgrammedFrame().add_rotation(-75.0).add_scaling(1.0, -1.0).add_rotation(20.0),
+        ProgrammedFrame().add_scaling(3.0, 1.5).add_rotation(40.0),
     ],
 )
 def test_what_is_turned_into_the_machine_turns_back(frame: ProgrammedFrame) -> None:
@@ -88,15 +88,15 @@ def test_what_is_turned_into_the_machine_turns_back(frame: ProgrammedFrame) -> N
 
 def test_a_frame_turns_from_z_towards_x() -> None:
     """By 90 degrees Z of the program is X of the machine, and X its -Z."""
-    frame = ProgrammedFrame().rotate(90.0)
+    frame = ProgrammedFrame().add_rotation(90.0)
     assert frame.transform_distance(0.0, 1.0) == pytest.approx((1.0, 0.0), abs=1e-12)
     assert frame.invert_distance(1.0, 0.0) == pytest.approx((0.0, 1.0), abs=1e-12)
     assert frame.invert_distance(0.0, 1.0) == pytest.approx((-1.0, 0.0), abs=1e-12)
     assert not frame.is_shift_only
     assert frame.is_uniform
     assert not frame.is_mirrored
-    assert ProgrammedFrame().scale(-1.0, 1.0).is_mirrored
-    assert not ProgrammedFrame().scale(2.0, 1.0).is_uniform
+    assert ProgrammedFrame().add_scaling(-1.0, 1.0).is_mirrored
+    assert not ProgrammedFrame().add_scaling(2.0, 1.0).is_uniform
 
 
 # --- a program without a line to execute --------------------------------------------------------------------

@@ -70,7 +70,7 @@ def test_oval() -> None:
     assert way[-1].c - way[0].c == pytest.approx(-360.0)
     for block in way[1:-1]:
         assert block.plane is not None
-        x, y, _ = (block.plane.mill_points(np.linspace(0.0, 1.0, 50)) / INCH).T
+        x, y, _ = (block.plane.compute_mill_points(np.linspace(0.0, 1.0, 50)) / INCH).T
         off = np.hypot(x - np.clip(x, -0.1875, 0.1875), y)
         assert off == pytest.approx(np.full(50, 0.1875))
 

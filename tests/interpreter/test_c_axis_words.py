@@ -176,7 +176,7 @@ def test_a_drive_that_tells_needs_no_dwell() -> None:
 
 # --- refusals -----------------------------------------------------------------------------------------------
 
-NO_C = ControlLimits(c_enabled=False)
+NO_C = ControlLimits(is_c_enabled=False)
 REFUSED: list[tuple[tuple[str, ...], tuple[int, int, str]]] = [
     (("CA90",), (2, 1, "c-unlocked")),
     (("CI90",), (2, 1, "c-unlocked")),

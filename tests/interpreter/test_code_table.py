@@ -49,7 +49,7 @@ from tests.interpreter.programs import passed
 CODES = [code for _, codes in CODE_CHAPTERS for code in codes]
 PAGE = Path(__file__).parents[2] / "docs" / "language.md"
 ROOM = Path(__file__).parents[2] / "core" / "interpreter" / "omniturn"
-SHARED = ROOM.parent / "shared" / "c_turn_at_centerline.py"  # what all languages say alike
+SHARED = ROOM.parent / "shared" / "centerline_rotation.py"  # what all languages say alike
 REFUSAL = re.compile(r'"([a-z0-9]+(?:-[a-z0-9]+)+)"')
 NOSE = 0.015 * 25.4
 
@@ -71,7 +71,7 @@ def test_an_entry_is_whole(code: CodeEntry) -> None:
     assert code.description.endswith(".")
     assert code.name.strip("()") in code.example + code.subroutine
     assert callable(load_handler(code))
-    assert code.action_kind is ActionKind.WORD or not code.rules.keys() - code.allowed_words
+    assert code.action_kind is ActionKind.WORD or not code.word_rules.keys() - code.allowed_words
     # Either it may stand alone, or something says why not: nothing falls through in MDI.
     assert bool(code.mdi_error_text) or code.action_kind not in {ActionKind.FLOW, ActionKind.CONTOUR}
 
@@ -126,7 +126,7 @@ def spoilt(letter: str, rule: WordRule) -> Iterator[tuple[str | None, ErrorTempl
 REFUSED = [
     pytest.param(code, letter, number, refusal, id=f"{code.name}-{letter}{number}-{refusal.diagnostic_code}")
     for code in CODES
-    for letter, rule in code.rules.items()
+    for letter, rule in code.word_rules.items()
     for number, refusal in spoilt(letter, rule)
     if refusal is not None and not (code.action_kind is ActionKind.WORD and number == "")
 ]
@@ -150,7 +150,7 @@ def test_a_rule_refuses_what_it_says(
 
 
 def test_a_rule_in_the_entry_is_what_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
-    strict = replace(G_CODES[4], rules={"F": replace(G_CODES[4].rules["F"], maximum=1.0)})
+    strict = replace(G_CODES[4], word_rules={"F": replace(G_CODES[4].word_rules["F"], maximum=1.0)})
     assert passed(program("G04F2")).errors == []
     monkeypatch.setitem(G_CODES, 4, strict)
     assert [code for _, _, code in passed(program("G04F2")).errors] == ["dwell-range"]
@@ -220,7 +220,7 @@ def test_a_code_whose_f_means_nothing_is_none() -> None:
             handler="setup.spindle_and_dwell:execute_dwell",
         )  # type: ignore[call-arg]
     with raises_code(CodeEntryError, "rule-without-word", "G05"):
-        replace(TRIAL, rules={"K": WordRule("a lead")})
+        replace(TRIAL, word_rules={"K": WordRule("a lead")})
     with raises_code(CodeEntryError, "no-group", "G05"):
         replace(TRIAL, action_kind=ActionKind.MODE)
 

@@ -16,7 +16,7 @@ from core.interpreter.shared.job_setup import ControlLimits, Setup, ToolOffset
 from core.language.diagnostics import Diagnostic
 from core.language.source import ProgramSource
 
-SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)}, limits=ControlLimits(max_feed=300 * 25.4 / 60))
+SETUP = Setup(tools={1: ToolOffset(0.0, 0.0)}, limits=ControlLimits(max_feed_mm_s=300 * 25.4 / 60))
 HEAD = ["G90G94F300G72", "M03S2000", "T1", "X1Z.1", "G95F.003"]
 # What stands between the moves, and changes what the next F means; what is refused, or needs more beside it.
 MEANT = ["G94F5", "G95F.004", "G00", "G01", "G00 (TITLE)", "G04F1", "(noted)", "M03S900", "X.5Z-.1"]
@@ -105,7 +105,7 @@ def test_what_is_no_feed_or_a_strange_one_is_told_of_its_line(feed: str, code: s
 
 def test_the_feed_over_what_the_slides_reach_at_that_speed_is_refused() -> None:
     """.05 in a turn at 2000 rpm are 100 in/min, where the slides reach 90."""
-    slow = replace(SETUP, limits=ControlLimits(max_feed=90 * 25.4 / 60))
+    slow = replace(SETUP, limits=ControlLimits(max_feed_mm_s=90 * 25.4 / 60))
     text = "\n".join(["G90G94F80G72", *HEAD[1:], "X.5Z0", "Z-.1F.004", "Z-.2F.045", "Z-.3F.05", "M30"])
     found = [(each.line, each.code) for each in gone_through(text, slow)[1]]
     assert (len(HEAD) + 4, "feed-over-speed") in found

@@ -38,7 +38,7 @@ def at_once(least: int, most: int = 20_000) -> Iterator[None]:
     """Series from ``least`` moves on, of ``most`` at most; lines are read all at once, or each alone."""
     long = NEVER if least == NEVER else 1
     with (
-        patch("core.interpreter.omniturn.omniturn_interpreter.LONG_PROGRAM_LINES", long),
+        patch("core.interpreter.omniturn.omniturn_interpreter.LONG_PROGRAM_LINE_COUNT", long),
         patch("core.interpreter.omniturn.motion.move_series.MIN_SERIES_LENGTH", least),
         patch("core.interpreter.omniturn.motion.move_series.MAX_RUN_LENGTH", most),
         patch("core.interpreter.omniturn.motion.plain_moves.MAX_RUN_LENGTH", most),
@@ -118,7 +118,7 @@ def test_any_lines(moves: list[str], most: int) -> None:
 @settings(max_examples=60, deadline=None)
 @given(st.lists(MOVE, min_size=1, max_size=30))
 def test_numbers_are_those_of_single_lines(moves: list[str]) -> None:
-    read, alone = LineColumns.empty(len(moves)), LineColumns.empty(len(moves))
+    read, alone = LineColumns.make_empty(len(moves)), LineColumns.make_empty(len(moves))
     with patch("core.interpreter.omniturn.motion.plain_moves._FEW", 1):
         parse_columns("\n".join(moves), read)
     for at, text in enumerate(moves):
@@ -215,10 +215,10 @@ def test_words_off_the_step_are_told_until_there_are_too_many() -> None:
 
 
 def test_the_bounds_of_a_run_are_those_of_single_lines(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_BLOCKS", 77)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_BLOCK_COUNT", 77)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
-    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_LINES", 50)
+    monkeypatch.setattr("core.interpreter.omniturn.omniturn_interpreter.MAX_LINE_COUNT", 50)
     assert_same(body("G94F20", "X1Z1", "LS1000", "X1", "X2", "LF"))
     assert_same(body("G94F20", "X1Z1", *["X1", "X2"] * 100))
 

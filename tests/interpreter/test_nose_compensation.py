@@ -7,7 +7,7 @@ from math import sqrt
 
 import pytest
 
-from core.geometry.contour_offset import WINDOW_ELEMENTS
+from core.geometry.contour_offset import GOUGE_CHECK_ELEMENT_COUNT
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
 from core.interpreter.omniturn.omniturn_program import read_program
 from core.interpreter.shared.actions import Dwell, ProgramStop
@@ -363,4 +363,4 @@ def test_a_long_contour_is_never_held_whole() -> None:
         most = max(most, len(contour._held) if contour is not None else 0)
     assert not interpreter.has_errors
     assert count > 6000
-    assert 64 < most < 2 * WINDOW_ELEMENTS
+    assert 64 < most < 2 * GOUGE_CHECK_ELEMENT_COUNT

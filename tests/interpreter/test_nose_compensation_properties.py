@@ -9,7 +9,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
-from core.geometry.lines_and_arcs import Element, Point, center_from_radius, distance_to_point
+from core.geometry.lines_and_arcs import Element, Point, compute_distance_to_point, find_arc_center
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.geometry.contours import sampled
@@ -55,7 +55,7 @@ class Writer:
             round(self.at[1] + length * cos(self.heading), 4),
         )
         if kind in {"02", "03"}:
-            centre = center_from_radius(self.at, end, share * length, clockwise=kind == "02")
+            centre = find_arc_center(self.at, end, share * length, is_clockwise=kind == "02")
             i, k = centre[0] - self.at[0] * self._diameter, centre[1] - self.at[1] * self._diameter
             self.lines.append(f"G{kind}{self.words(end)}I{number(i)}K{number(k)}")
         else:
@@ -115,7 +115,7 @@ def test_the_path_keeps_the_nose_off_the_contour(
         for point in sampled(piece, 21):
             assert (
                 radius - 0.002
-                <= min(distance_to_point(element, point) for element in contour)
+                <= min(compute_distance_to_point(element, point) for element in contour)
                 <= radius + 0.001
             )
     for before, after in pairwise(result.blocks):

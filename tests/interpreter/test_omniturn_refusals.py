@@ -188,7 +188,7 @@ def test_no_block_comes_after_an_error_and_all_errors_are_told() -> None:
 
 def test_what_runs_a_program_gets_no_more_after_the_first_error() -> None:
     program = passed(body("X1", "X2F999", "S9000")).program
-    from_run = list(Interpreter(program, setup()).generate_blocks(to_first_error=True))
+    from_run = list(Interpreter(program, setup()).generate_blocks(stops_at_first_error=True))
     assert [block.line for block in from_run] == [2, 3]
 
 

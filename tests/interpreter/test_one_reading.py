@@ -9,13 +9,13 @@ import pytest
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.omniturn import omniturn_program
 from core.interpreter.omniturn.motion.plain_moves import parse_lines, parse_plain_move
-from core.interpreter.omniturn.omniturn_interpreter import LONG_PROGRAM_LINES
+from core.interpreter.omniturn.omniturn_interpreter import LONG_PROGRAM_LINE_COUNT
 from core.interpreter.omniturn.omniturn_statement import make_statement
 from core.interpreter.shared.job_setup import Setup, ToolOffset
 from core.language.omniturn import lex_line
 from core.language.source import ProgramSource
 
-MOVES = [f"X{0.5 + k % 3 * 0.01:.2f}Z{-0.001 * k:.3f}" for k in range(LONG_PROGRAM_LINES + 50)]
+MOVES = [f"X{0.5 + k % 3 * 0.01:.2f}Z{-0.001 * k:.3f}" for k in range(LONG_PROGRAM_LINE_COUNT + 50)]
 # Lines that no column holds: an increment (G91), a word with a comment, a corner that looks ahead.
 RARE = ["G91", "X.01", "G90", "(turned)", "X1Z-1,C.02", "Z-2"]
 TEXT = "\n".join(["G90G94F300G72", "T1", *MOVES[:-20], *RARE, *MOVES[-20:], "M30"])
@@ -32,7 +32,7 @@ def test_two_passes_side_by_side_are_as_one_alone() -> None:
     reading = SharedProgram(ProgramSource("part", TEXT))
     first, second = reading.start_pass(SETUP).generate_blocks(), reading.start_pass(SETUP).generate_blocks()
     pairs = list(zip_longest(first, second))
-    assert len(alone) > LONG_PROGRAM_LINES
+    assert len(alone) > LONG_PROGRAM_LINE_COUNT
     assert [repr(a) for a, _ in pairs] == alone
     assert [repr(b) for _, b in pairs] == alone
 
@@ -40,7 +40,7 @@ def test_two_passes_side_by_side_are_as_one_alone() -> None:
 def test_a_pass_that_was_given_up_leaves_nothing() -> None:
     reading = SharedProgram(ProgramSource("part", TEXT))
     given_up = reading.start_pass(SETUP).generate_blocks()
-    for _ in range(LONG_PROGRAM_LINES):
+    for _ in range(LONG_PROGRAM_LINE_COUNT):
         next(given_up)
     assert told(reading) == told(SharedProgram(ProgramSource("part", TEXT)))
 
@@ -68,8 +68,10 @@ def test_what_is_wrong_with_the_text_is_told_by_every_pass() -> None:
 
 
 def test_what_a_pass_notes_of_a_line_is_its_own() -> None:
-    steps = parse_lines(["X1Z0", "X1Z-1", "X1Z-2"], lambda _, text: parse_plain_move(text), in_order=False)
-    own = steps.copy()
+    steps = parse_lines(
+        ["X1Z0", "X1Z-1", "X1Z-2"], lambda _, text: parse_plain_move(text), reads_every_line=False
+    )
+    own = steps.copy_lines()
     own[1] = make_statement(lex_line(2, "X1Z-1"))
     assert not isinstance(own[1], tuple)
     assert steps[1] == (1.0, -1.0, None, -1, False)

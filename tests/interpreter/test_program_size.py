@@ -49,7 +49,7 @@ def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) ->
     answers = iter([False])  # when counted; afterwards the input is on
     text = lines("G90F300", "M95", "M30", "}1", "LS200", "X1", "LF", "M99")
     given = setup(inputs=lambda _terminal: next(answers, True))
-    monkeypatch.setattr(omniturn_interpreter, "MAX_BLOCKS", 50)
+    monkeypatch.setattr(omniturn_interpreter, "MAX_BLOCK_COUNT", 50)
     interpreter = Interpreter(read_program(ProgramSource("A", text)), given)
     blocks = list(interpreter.generate_blocks())
     assert len(blocks) == 50
@@ -57,7 +57,7 @@ def test_the_bound_is_kept_while_running_too(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_lines_without_blocks_are_bounded_while_running(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(omniturn_interpreter, "MAX_LINES", 50)
+    monkeypatch.setattr(omniturn_interpreter, "MAX_LINE_COUNT", 50)
     result = passed(lines("G90F300", "LS100", "F20", "LF", "M30"))
     assert [code for _, _, code in result.errors] == ["too-many-blocks"]
 

@@ -184,7 +184,7 @@ def test_short_run_up_warns() -> None:
     run = "M03S3000"
     assert (5, 1, "thread-run-up") in passed(body(run, "X.3Z.1", "G33X.29Z-.5I.01K.1")).warnings
     assert passed(body(run, "X.3Z.11", "G33X.29Z-.5I.01K.1")).warnings == []
-    weak = setup(limits=ControlLimits(z_acceleration=60 * INCH))
+    weak = setup(limits=ControlLimits(z_acceleration_mm_s2=60 * INCH))
     assert (5, 1, "thread-run-up") in passed(body(run, "X.3Z.11", "G33X.29Z-.5I.01K.1"), weak).warnings
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.jog.held_jog import CONTINUOUS_STEP, HeldJog, JogSpeeds
+from app.jog.held_jog import CONTINUOUS_STEP_INDEX, HeldJog, JogSpeeds
 from core.executor.commands import Command, Jog, JogByStep, StopJog
 from core.executor.snapshot import MachineState, Snapshot
 from core.interpreter.shared.modal_state import ModalState
@@ -94,7 +94,7 @@ def test_a_release_that_never_arrives_is_noticed_by_the_silence_of_the_key(scene
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(20):
         scene.frames(0.032)
-        scene.hold.note_repeat("Left")
+        scene.hold.record_repeat("Left")
     scene.frames(0.48)
     assert scene.hold.active_jog is not None
     scene.frames(0.05)
@@ -170,7 +170,7 @@ def test_shift_that_comes_up_means_nothing_to_a_slow_jog(scene: Scene) -> None:
 def test_the_pairs_that_a_repeating_key_makes_are_no_presses(scene: Scene) -> None:
     held(scene)
     for _ in range(10):
-        scene.hold.note_repeat("Left")
+        scene.hold.record_repeat("Left")
         scene.frames(0.03)
     assert scene.hold.active_jog is not None
     assert StopJog() not in scene.posted
@@ -231,7 +231,7 @@ def test_a_step_is_not_repeated_by_holding_and_not_ended_by_the_release(scene: S
     scene.hold.jog_speeds.step_index = 1
     scene.hold.press_direction("Left", "Z", -1, is_rapid=False)
     for _ in range(30):
-        scene.hold.note_repeat("Left")
+        scene.hold.record_repeat("Left")
         scene.frames(0.03)
     scene.hold.release_key("Left")
     assert len(scene.posted) == 1
@@ -252,7 +252,7 @@ def test_steps_and_speeds_go_round(scene: Scene) -> None:
     for _ in range(6):
         seen.append(speeds.step_index)
         speeds.select_next_step()
-    assert seen == [CONTINUOUS_STEP, 0, 1, 2, 3, CONTINUOUS_STEP]
+    assert seen == [CONTINUOUS_STEP_INDEX, 0, 1, 2, 3, CONTINUOUS_STEP_INDEX]
     speeds.speed_index = 3
     speeds.select_next_speed()
     assert speeds.speed_index == 0

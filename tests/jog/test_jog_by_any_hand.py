@@ -26,7 +26,7 @@ def do(scene: Scene, event: tuple[str, str | None, bool | None], state: MachineS
     elif what == "release" and source is not None:
         scene.hold.release_key(source)
     elif what == "repeat" and source is not None:
-        scene.hold.note_repeat(source)
+        scene.hold.record_repeat(source)
     elif what == "other":
         scene.hold.stop_for_other_key()
     elif what == "shift":
@@ -66,7 +66,7 @@ def test_one_direction_at_a_time_and_nothing_without_a_hand(
         count = len(scene.posted)
         do(scene, event, state)
         assert len(moving_after(scene.posted)) <= 1
-        if len(scene.hold.keys_down) != 1:
+        if len(scene.hold.pressed_keys) != 1:
             assert scene.hold.active_jog is None
             assert not any(isinstance(command, Jog) for command in scene.posted[count:])
         if event[0] != "press":

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from app.compose.machine.machine_files import load_machine
-from app.jog.held_jog import CONTINUOUS_STEP, HeldJog, JogSpeeds
+from app.jog.held_jog import CONTINUOUS_STEP_INDEX, HeldJog, JogSpeeds
 from app.jog.jog_handwheel import JogHandwheel
 from core.executor.commands import Command, DeselectHandwheel, Jog, SelectHandwheel, StopJog
 from core.executor.snapshot import MachineState, Snapshot
@@ -129,7 +129,7 @@ def test_another_step_lets_go_first() -> None:
     assert len(scene.posted) > off + 1
 
 
-@pytest.mark.parametrize("step", [CONTINUOUS_STEP, 0])
+@pytest.mark.parametrize("step", [CONTINUOUS_STEP_INDEX, 0])
 def test_steps_that_are_none_for_a_wheel_let_it_go_for_good(step: int) -> None:
     scene = chosen(Scene())
     scene.hold.jog_speeds.step_index = step

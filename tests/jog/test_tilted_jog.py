@@ -14,7 +14,7 @@ from app.jog.tilted_jog import JogFrame, TiltedJog, make_jog_frame
 from core.executor.commands import Jog, JogByStep, StopJog
 from core.executor.hand_motion.jog_line import JogLine
 from core.executor.snapshot import MachineState, Snapshot
-from core.geometry.rotation_frames import IDENTITY, X_AXIS, rotation_about
+from core.geometry.rotation_frames import IDENTITY, X_AXIS, make_rotation
 from core.interpreter.shared.working_plane import PlanePosition, PlaneSystem
 from tests.executor.rig import Rig
 from tests.machine.mill import MILL
@@ -71,9 +71,9 @@ def test_the_first_axis_at_its_end_ends_the_way(rig: Rig) -> None:
     ]
     slanted = (0.0, sqrt(0.5), sqrt(0.5))
     line = JogLine.from_direction(axes, slanted)
-    assert line.distance_to_limit(rig.shot.demand, 1.0) == pytest.approx(0.5 * sqrt(2.0))
-    assert line.distance_to_limit(rig.shot.demand, -1.0) == pytest.approx((499.99) * sqrt(2.0))
-    assert line.max_acceleration == pytest.approx(machine.axes[1].amax * sqrt(2.0))
+    assert line.get_distance_to_limit(rig.shot.demand, 1.0) == pytest.approx(0.5 * sqrt(2.0))
+    assert line.get_distance_to_limit(rig.shot.demand, -1.0) == pytest.approx((499.99) * sqrt(2.0))
+    assert line.max_acceleration == pytest.approx(machine.axes[1].max_acceleration * sqrt(2.0))
 
 
 def test_no_axis_goes_beyond_its_travel(rig: Rig) -> None:
@@ -119,7 +119,7 @@ def test_a_lathe_has_no_plane_to_jog_in() -> None:
 # --- which way ------------------------------------------------------------------------------------------
 
 
-PLANE = rotation_about(X_AXIS, 30.0)
+PLANE = make_rotation(X_AXIS, 30.0)
 
 
 def shot(machine: str, *at: float, tilted: bool = False) -> Snapshot:
@@ -142,7 +142,7 @@ def test_once_the_table_has_turned_z_of_the_plane_is_z_of_the_machine() -> None:
     assert isinstance(frame, JogFrame)
     assert frame.find_direction("Z") == pytest.approx((0.0, 0.0, 1.0))
     assert frame.find_direction("A") is None
-    assert frame.frame_text == text("screen.tilted-plane", line=7)
+    assert frame.frame_name == text("screen.tilted-plane", line=7)
 
 
 def test_a_head_that_stands_in_its_plane_leans_the_keys() -> None:
@@ -197,5 +197,5 @@ def test_it_ends_with_the_plane_and_is_refused_where_nothing_is_tilted() -> None
 
 
 def test_a_frame_is_that_of_the_keys() -> None:
-    frame = JogFrame(rotation_about(X_AXIS, 90.0), "")
+    frame = JogFrame(make_rotation(X_AXIS, 90.0), "")
     assert frame.find_direction("Y") == pytest.approx((0.0, 0.0, 1.0))

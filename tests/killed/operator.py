@@ -89,7 +89,7 @@ class Operator:
             yield False
 
     def _set_tool_nine(self) -> Iterator[bool]:
-        if 9 in self._frame.desk.offset_book.tools:
+        if 9 in self._frame.desk.offset_book.tool_offsets:
             return  # before he was killed
         self._key(Key.Key_F8)
         for _ in range(8):
@@ -99,7 +99,7 @@ class Operator:
             QTest.keyClicks(self._focus, words)
             self._key(Key.Key_Return)
         book = self._frame.desk.offset_book
-        while book is None or 9 not in book.tools:
+        while book is None or 9 not in book.tool_offsets:
             yield False
         self._key(Key.Key_Escape)
         while self._frame.current_page is not self._frame.automatic_page or not self._ready:

@@ -79,7 +79,7 @@ def moving(shop: Shop, control: Process) -> None:
         return shop.place[0] > 6.0
 
     shop.until(so, lambda: (control.lines[-3:], shop.place, control.popen.poll()))
-    assert shop.peers.plant.terminals.outputs["coolant"]
+    assert shop.peers.plant.terminals.output_states["coolant"]
 
 
 @pytest.mark.parametrize("command", [SCREEN, HEADLESS], ids=["screen", "headless"])
@@ -109,8 +109,8 @@ def test_a_killed_control_stops_on_the_path_with_everything_off(
         shop.until(lambda: shop.clock.now() >= later, lambda: "")
     assert max(off) < 0.01  # mm off the diagonal
     assert shop.place == pytest.approx(stands, abs=1e-6)
-    assert not shop.peers.plant.terminals.outputs["coolant"]
-    assert shop.peers.plant.terminals.outputs["collet"]
+    assert not shop.peers.plant.terminals.output_states["coolant"]
+    assert shop.peers.plant.terminals.output_states["collet"]
     if command is HEADLESS:  # a job is interrupted: nothing begins over it that was not meant
         with process(home, *words(command, machine, tmp_path)) as unasked:
             shop.until(lambda: unasked.popen.poll() is not None, lambda: shop.place)

@@ -22,7 +22,7 @@ PROGRAM = "G90G94\nM03S600\nM08\nG01X2.Z2.F30\nX0.Z0.\nM30\n"
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Path:
-    text = resources.machine_file("gt75-grblhal.toml")
+    text = resources.read_machine_file("gt75-grblhal.toml")
     port = f"tcp://127.0.0.1:{free_port()}"
     for old, new in (("/dev/ttyACM0", port), ("two_hand_start = true", "two_hand_start = false")):
         assert old in text, old

@@ -12,9 +12,9 @@ import pytest
 
 import resources
 from app.compose.runs.journal import Journal
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.records.record import ScopeRecord
-from core.records.ring_file import LAST, NOW, read_ring_file
+from core.records.ring_file import CURRENT_RING_NAME, PREVIOUS_RING_NAME, read_ring_file
 from core.store.store import Store
 from tests.killed.bench import Process, process, until
 from tests.late_computer import tell
@@ -26,14 +26,14 @@ pytestmark = [
 ]
 PROGRAM = "G90G94\nM03S600\nM08\nG01X.2Z-.2F20\nX0.Z0.\nM30\n"  # 2 s of motion a part
 OPERATOR = "tests.killed.operator"
-_LATE = opening("executor.control-trip"), CATALOGUE["low-queue"].text.upper()
+_LATE = opening("executor.control-trip"), CATALOG["low-queue"].text.upper()
 
 
 @pytest.fixture
 def files(tmp_path: Path) -> tuple[str, str]:
     """The simulated lathe with its drivers in the driver host, and a program of which many parts are made."""
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
-    text = resources.machine_file("gt75.toml")
+    text = resources.read_machine_file("gt75.toml")
     machine.write_text(text.replace("[machine]\n", "[machine]\nfeeder = true\n", 1))
     program.write_text(PROGRAM)
     return str(machine), str(program)
@@ -87,7 +87,7 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         made = kept_parts(home)
         desk.kill_all()
         until(lambda: not desk.family(), lambda: "the driver host has not ended")
-    assert parts_in(read_ring_file(home / "records" / NOW)) >= made
+    assert parts_in(read_ring_file(home / "records" / CURRENT_RING_NAME)) >= made
     with Store.open(home) as store:
         assert store.offsets.tool_offsets.read_rows()[9].offset == (-0.5 * 25.4, -3.25 * 25.4)
         assert store.runs.read_part_count("part.nc") >= made
@@ -100,7 +100,9 @@ def test_a_killed_screen_and_control_keep_what_was_entered_and_leave_nobody(
         cutting(again, 1)
         assert again.lines[-1]["alarms"] == []
         again.kill_all()
-        assert parts_in(read_ring_file(home / "records" / LAST)) >= made  # of the control before
+        assert (
+            parts_in(read_ring_file(home / "records" / PREVIOUS_RING_NAME)) >= made
+        )  # of the control before
         until(lambda: not again.family(), lambda: "the driver host has not ended")
     with Store.open(home, read_only=True) as store:
         assert store.runs.read_part_count("part.nc") > counted
@@ -125,7 +127,7 @@ def test_a_killed_driver_host_stops_the_program_and_says_so(files: tuple[str, st
         cutting(desk, 0)
         os.kill(desk.host(), signal.SIGKILL)
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
-        assert CATALOGUE["feeder-gone"].text.upper() in str(desk.lines[-1]["alarms"])
+        assert CATALOG["feeder-gone"].text.upper() in str(desk.lines[-1]["alarms"])
         # The screen goes on: offsets and editor stay at hand.
         until(lambda: desk.family() == {desk.popen.pid, desk.control()}, desk.family)
 
@@ -155,7 +157,7 @@ def test_a_killed_control_is_an_alarm_and_the_screen_stays(files: tuple[str, str
         cutting(desk, 0)
         os.kill(desk.control(), signal.SIGKILL)
         until(lambda: desk.says("state", "ALARM"), lambda: desk.lines[-3:])
-        assert CATALOGUE["control-silent"].text.upper() in str(desk.lines[-1]["alarms"])
+        assert CATALOG["control-silent"].text.upper() in str(desk.lines[-1]["alarms"])
         until(lambda: desk.family() == {desk.popen.pid}, desk.family)  # its driver host stops what is left
 
 
@@ -179,7 +181,7 @@ def test_reset_starts_another_control_from_the_window(files: tuple[str, str], tm
 
 def test_a_killed_screen_that_does_not_come_back_is_closed_in_order(tmp_path: Path) -> None:
     machine, program = tmp_path / "lathe.toml", tmp_path / "part.nc"
-    machine.write_text(resources.machine_file("gt75.toml"))
+    machine.write_text(resources.read_machine_file("gt75.toml"))
     program.write_text(PROGRAM)
     home = tmp_path / "home"
     with process(home, OPERATOR, str(machine), str(program), "--idle") as desk:

@@ -16,9 +16,9 @@ from core.geometry.rotation_frames import (
     Y_AXIS,
     Z_AXIS,
     Vector,
-    frame_from_points,
+    make_frame_from_points,
+    make_rotation,
     multiply_matrices,
-    rotation_about,
 )
 from core.geometry.swivel_angles import SolutionSide, choose_solution, find_all_solutions
 from tests.klartext.table import AC, CHAMFERS, ORIGIN, SLIDES, A, C
@@ -57,15 +57,16 @@ def test_forward_of_inverse_is_the_frame(name: str) -> None:
     chain, dice = CHAINS[name], random.Random(7)
     for _ in range(300):
         frame = multiply_matrices(
-            rotation_about(Z_AXIS, dice.uniform(-180, 180)),
-            rotation_about(X_AXIS, dice.uniform(0.0, 179.0)),
-            rotation_about(Z_AXIS, dice.uniform(-180, 180)),
+            make_rotation(Z_AXIS, dice.uniform(-180, 180)),
+            make_rotation(X_AXIS, dice.uniform(0.0, 179.0)),
+            make_rotation(Z_AXIS, dice.uniform(-180, 180)),
         )
         found = find_all_solutions(chain, frame)
         assert len(found) == 2
         for solution in found:
             back = multiply_matrices(
-                chain.tool_frame(solution.axis_angles), rotation_about(Z_AXIS, solution.tool_rotation_deg)
+                chain.compute_tool_frame(solution.axis_angles),
+                make_rotation(Z_AXIS, solution.tool_rotation_deg),
             )
             assert np.abs(np.array(back) - np.array(frame)).max() < 1e-9
 
@@ -74,7 +75,7 @@ def test_forward_of_inverse_is_the_frame(name: str) -> None:
 def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
     """The tool axis as the machine sees it, and the plane's normal carried along by the tables, are one."""
     chain = CHAINS[name]
-    frame = frame_from_points(*CHAMFERS[2])
+    frame = make_frame_from_points(*CHAMFERS[2])
     found = choose_solution(chain, frame, {})
     assert found is not None
     table = np.eye(3)
@@ -85,23 +86,23 @@ def test_the_tool_stands_square_to_the_plane_in_the_machine(name: str) -> None:
         else:
             tool = rotation(axis.direction, found.axis_angles[axis.name]) @ tool
     assert np.allclose(table @ np.array(frame)[:, 2], tool, atol=1e-12)
-    assert np.allclose(chain.tool_direction(found.axis_angles), tool, atol=1e-12)
+    assert np.allclose(chain.compute_tool_direction(found.axis_angles), tool, atol=1e-12)
 
 
 def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
     """A fork head, a tool of 80 mm: the tip, carried from the nose about both lines, is where it should."""
     chain = CHAINS["C fork head, A at the tool"]
-    frame = frame_from_points(*CHAMFERS[2])
+    frame = make_frame_from_points(*CHAMFERS[2])
     found = choose_solution(chain, frame, {})
     assert found is not None
     a, c = found.axis_angles["A"], found.axis_angles["C"]
     q = np.array((50.0, -7.0, 3.0))
     slides = np.array(
-        chain.make_transform(found.axis_angles, frame, (90.0, 0.0, 0.0), 80.0).to_machine_position(
+        chain.make_transform(found.axis_angles, frame, (90.0, 0.0, 0.0), 80.0).convert_to_machine_position(
             (50.0, -7.0, 3.0)
         )
     )
-    pivot_a, pivot_c = np.array(A_HEAD.point), np.array(C_HEAD.point)
+    pivot_a, pivot_c = np.array(A_HEAD.point_on_axis), np.array(C_HEAD.point_on_axis)
     tip = pivot_a + rotation(X_AXIS, a) @ (np.array((0, 0, -80.0)) - pivot_a)
     tip = pivot_c + rotation(Z_AXIS, c) @ (tip - pivot_c)
     wanted = np.array(ORIGIN) + np.array((90.0, 0.0, 0.0)) + np.array(frame) @ q
@@ -110,13 +111,16 @@ def test_a_head_keeps_the_tip_where_it_is_programmed() -> None:
 
 def test_a_longer_tool_lifts_the_slides_of_a_table_machine() -> None:
     short, long = AC.make_transform({"A": 45.0}), AC.make_transform({"A": 45.0}, tool_length=80.0)
-    low, high = short.to_machine_position((1.0, 2.0, 3.0)), long.to_machine_position((1.0, 2.0, 3.0))
+    low, high = (
+        short.convert_to_machine_position((1.0, 2.0, 3.0)),
+        long.convert_to_machine_position((1.0, 2.0, 3.0)),
+    )
     assert np.subtract(high, low) == pytest.approx((0.0, 0.0, 80.0), abs=1e-12)
 
 
 @pytest.mark.parametrize(("chamfer", "a", "spin"), [(1, 45.0, 0.0), (3, -45.0, 180.0)])
 def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spin: float) -> None:
-    found = choose_solution(machine(A), frame_from_points(*CHAMFERS[chamfer]), {})
+    found = choose_solution(machine(A), make_frame_from_points(*CHAMFERS[chamfer]), {})
     assert found is not None
     assert found.axis_angles["A"] == pytest.approx(a)
     assert abs(found.tool_rotation_deg) == pytest.approx(spin)
@@ -124,17 +128,17 @@ def test_one_rotary_axis_reaches_what_lies_across_it(chamfer: int, a: float, spi
 
 @pytest.mark.parametrize("chamfer", [2, 4])
 def test_one_rotary_axis_does_not_reach_the_others(chamfer: int) -> None:
-    assert choose_solution(machine(A), frame_from_points(*CHAMFERS[chamfer]), {}) is None
+    assert choose_solution(machine(A), make_frame_from_points(*CHAMFERS[chamfer]), {}) is None
 
 
 def test_one_rotary_axis_has_one_side() -> None:
-    frame = frame_from_points(*CHAMFERS[1])
+    frame = make_frame_from_points(*CHAMFERS[1])
     assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_PLUS) is not None
     assert choose_solution(machine(A), frame, {}, SolutionSide.SYM_MINUS) is None
 
 
 def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
-    flat = rotation_about(Z_AXIS, 30.0)
+    flat = make_rotation(Z_AXIS, 30.0)
     standing, turning = (
         choose_solution(machine(C), flat, {}),
         choose_solution(machine(C), flat, {}, rotates_table=True),
@@ -143,22 +147,22 @@ def test_a_c_table_alone_turns_and_tilts_nothing() -> None:
     assert turning is not None
     assert (standing.axis_angles["C"], standing.tool_rotation_deg) == pytest.approx((0.0, 30.0))
     assert (turning.axis_angles["C"], turning.tool_rotation_deg) == pytest.approx((30.0, 0.0))
-    assert choose_solution(machine(C), frame_from_points(*CHAMFERS[1]), {}) is None
+    assert choose_solution(machine(C), make_frame_from_points(*CHAMFERS[1]), {}) is None
 
 
 def test_c_above_a_only_spins_about_the_tool() -> None:
     """Workpiece, A, C: Rx(A) Rz(C)."""
-    found = choose_solution(machine(A, C), frame_from_points(*CHAMFERS[1]), {})
+    found = choose_solution(machine(A, C), make_frame_from_points(*CHAMFERS[1]), {})
     assert found is not None
     assert (found.axis_angles["A"], found.axis_angles["C"], found.tool_rotation_deg) == pytest.approx(
         (45.0, 0.0, 0.0)
     )
-    assert choose_solution(machine(A, C), frame_from_points(*CHAMFERS[2]), {}) is None
+    assert choose_solution(machine(A, C), make_frame_from_points(*CHAMFERS[2]), {}) is None
 
 
 def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
     limited = dataclasses.replace(C, is_modulo=False, travel_min=-360.0, travel_max=360.0)
-    chain, frame = machine(limited, A), frame_from_points(*CHAMFERS[2])
+    chain, frame = machine(limited, A), make_frame_from_points(*CHAMFERS[2])
     for present, wanted in ((0.0, 90.0), (-200.0, -270.0), (359.0, 90.0)):
         found = choose_solution(chain, frame, {"A": 45.0, "C": present}, SolutionSide.SYM_PLUS)
         assert found is not None
@@ -168,7 +172,7 @@ def test_a_limited_c_takes_the_turn_nearest_to_where_it_stands() -> None:
 def test_a_reversed_axis_counts_the_other_way() -> None:
     backwards = dataclasses.replace(A, direction=(-1.0, 0.0, 0.0))
     found = choose_solution(
-        machine(C, backwards), frame_from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS
+        machine(C, backwards), make_frame_from_points(*CHAMFERS[1]), {}, SolutionSide.SYM_MINUS
     )
     assert found is not None
     assert (found.axis_angles["A"], found.axis_angles["C"] % 360.0) == pytest.approx((-45.0, 0.0))
@@ -178,7 +182,7 @@ def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
     """SYM+ is the side of the greater A angle, whichever way C counts."""
     chain, frame = (
         machine(dataclasses.replace(C, direction=(0.0, 0.0, -1.0)), A),
-        frame_from_points(*CHAMFERS[2]),
+        make_frame_from_points(*CHAMFERS[2]),
     )
     for side, wanted in ((SolutionSide.SYM_PLUS, (45.0, 270.0)), (SolutionSide.SYM_MINUS, (-45.0, 90.0))):
         found = choose_solution(chain, frame, {}, side)
@@ -187,14 +191,14 @@ def test_a_table_that_counts_the_other_way_swaps_no_side() -> None:
 
 
 def test_a_machine_without_rotary_axes_knows_its_own_plane_alone() -> None:
-    assert choose_solution(machine(), rotation_about(Z_AXIS, 30.0), {}) is not None
-    assert choose_solution(machine(), frame_from_points(*CHAMFERS[1]), {}) is None
+    assert choose_solution(machine(), make_rotation(Z_AXIS, 30.0), {}) is not None
+    assert choose_solution(machine(), make_frame_from_points(*CHAMFERS[1]), {}) is None
 
 
 def test_the_basic_rotation_turns_the_workpiece_about_its_zero() -> None:
     turned_part = dataclasses.replace(AC, basic_rotation_deg=90.0)
     place = turned_part.make_transform({}, turned_part.workpiece_rotation)
-    assert place.to_machine_position((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))
+    assert place.convert_to_machine_position((10.0, 0.0, 0.0)) == pytest.approx((230.0, 220.0, -350.0))
 
 
 def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array, length: float) -> Array:
@@ -202,12 +206,12 @@ def on_the_workpiece(chain: Kinematics, angles: dict[str, float], slides: Array,
     tip = np.array((0.0, 0.0, -length))
     for axis in reversed(chain.rotary_axes):
         if not axis.is_table:
-            point = np.array(axis.point)
+            point = np.array(axis.point_on_axis)
             tip = point + rotation(axis.direction, angles[axis.name]) @ (tip - point)
     spot = slides + tip
     for axis in reversed(chain.rotary_axes):
         if axis.is_table:
-            point = np.array(axis.point)
+            point = np.array(axis.point_on_axis)
             spot = point + rotation(axis.direction, angles[axis.name]) @ (spot - point)
     return np.asarray(spot - np.array(ORIGIN))
 
@@ -220,7 +224,7 @@ def test_move_keeps_its_pivot_on_any_chain(name: str, depth: float) -> None:
     start, end = dict.fromkeys(names, 5.0), dict(zip(names, (70.0, -40.0), strict=True))
     pivot = (12.0, -7.0, 25.0)
     way = PivotMove(chain, start, end, pivot, depth, length, 1.0)
-    for row in way.machine_positions(np.linspace(0.0, 1.0, 9)).tolist():
+    for row in way.compute_machine_positions(np.linspace(0.0, 1.0, 9)).tolist():
         at = dict(zip(chain.axis_names, row, strict=True))
         slides = np.array((at["X"], at["Y"], at["Z"]))
         # A tool as much longer as the pivot lies deeper has its tip on it.

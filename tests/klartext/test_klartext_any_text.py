@@ -100,7 +100,7 @@ def test_one_sign_changed_raises_nothing(text: str) -> None:
 
 
 def test_a_section_repeated_without_end_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_LINES", 1000)
+    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_LINE_COUNT", 1000)
     ran = run("LBL 1\nQ1 = +1\nCALL LBL 1 REP 65534\nCALL LBL 1 REP 65534")
     assert ran.codes == ["too-many-blocks"]
     assert "repeat counts" in ran.errors[0].hint

@@ -13,7 +13,7 @@ from app.cli.main import main
 from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import load_shipped_machine, parse_machine
 from core.table_schema import MachineFileError
-from resources import machine_file
+from resources import read_machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 from tests.klartext.chamfers import AXIAL, POINTS
 from tests.klartext.running import TOOL, whole
@@ -192,7 +192,7 @@ def test_a_block_past_a_software_limit_is_refused(turndesk: Turndesk, tmp_path: 
     ],
 )
 def test_what_a_chain_of_axes_cannot_be(old: str, new: str, named: str) -> None:
-    text = machine_file("ac-table-mill.toml")
+    text = read_machine_file("ac-table-mill.toml")
     assert old in text
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace(old, new, 1), "mill")
@@ -200,7 +200,7 @@ def test_what_a_chain_of_axes_cannot_be(old: str, new: str, named: str) -> None:
 
 
 def test_a_mill_without_its_chain_runs_no_klartext(turndesk: Turndesk, written: Path, tmp_path: Path) -> None:
-    text = machine_file("ac-table-mill.toml")
+    text = read_machine_file("ac-table-mill.toml")
     start, end = text.index("[kinematics]"), text.index("[spindle]")
     path = tmp_path / "bare.toml"
     path.write_text(text[:start] + text[end:])

@@ -129,7 +129,7 @@ def test_a_loop_within_repeats_is_none() -> None:
 
 def test_what_reads_the_control_is_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """FN 18 may read what no parameter shows, so only the count of blocks ends such a loop."""
-    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_BLOCKS", 200)
+    monkeypatch.setattr("core.interpreter.shared.interpretation.MAX_BLOCK_COUNT", 200)
     text = "LBL 1\nFN 18: SYSREAD Q5 = ID20 NR1\nL IX+1 FMAX\nFN 9: IF +0 EQU +0 GOTO LBL 1"
     assert run(text).codes == ["too-many-blocks"]
 

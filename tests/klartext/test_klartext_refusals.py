@@ -213,7 +213,7 @@ def test_after_a_refused_plane_the_old_one_stands_and_nothing_has_moved() -> Non
     assert ran.state.position_by_axis["A"] == 100.0
     assert ran.state.q_values[120] == 100.0
     assert ran.state.active_plane is not None
-    assert ran.state.active_plane.line == 3
+    assert ran.state.active_plane.line_number == 3
     assert len(ran.planes) == 1
 
 

@@ -9,12 +9,12 @@ import pytest
 
 from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import parse_machine
-from resources import machine_file
+from resources import read_machine_file
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
 from tests.klartext.running import whole
 
 __all__ = ["home", "offsets", "turndesk"]
-FILE = machine_file("ac-table-mill.toml")
+FILE = read_machine_file("ac-table-mill.toml")
 HEAD = """TOOL CALL 1 Z S3000 F500
 L X+50 Y+50 Z+60 R0 FMAX M3
 """

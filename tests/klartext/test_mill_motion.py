@@ -59,8 +59,8 @@ def test_a_slanted_cut_runs_at_its_feed_whatever_axes_it_takes() -> None:
 def test_no_axis_passes_its_speed_and_its_acceleration() -> None:
     axes, _ = traced(POINTS)
     v = speeds(axes)
-    top = np.array([axis.vmax for axis in MILL.axes])
-    hard = np.array([axis.amax for axis in MILL.axes])
+    top = np.array([axis.max_speed for axis in MILL.axes])
+    hard = np.array([axis.max_acceleration for axis in MILL.axes])
     assert (np.abs(v).max(axis=0) <= top * (1.0 + 1e-6)).all()
     assert (np.abs(v).max(axis=0)[[2, 3, 4]] > top[[2, 3, 4]] * 0.99).all()  # and uses what there is
     # A sampled acceleration can hold one step of a corner besides.
@@ -68,7 +68,7 @@ def test_no_axis_passes_its_speed_and_its_acceleration() -> None:
 
 
 def slow(name: str, vmax: float) -> Machine:
-    axes = tuple(dataclasses.replace(a, vmax=vmax) if a.name == name else a for a in MILL.axes)
+    axes = tuple(dataclasses.replace(a, max_speed=vmax) if a.name == name else a for a in MILL.axes)
     return dataclasses.replace(MILL, axes=axes)
 
 
@@ -104,7 +104,7 @@ def test_the_pivot_keeps_its_place_while_all_five_axes_run(words: str, depth: fl
     off = np.abs(np.array((x - 235.0, y - 218.0, z + 300.0 + depth)))
     assert off.max() < 2e-4
     v = np.abs(speeds(moved)).max(axis=0)
-    assert (v <= np.array([axis.vmax for axis in MILL.axes]) * (1.0 + 1e-6)).all()
+    assert (v <= np.array([axis.max_speed for axis in MILL.axes]) * (1.0 + 1e-6)).all()
 
 
 def test_the_swivel_takes_the_time_of_its_feed() -> None:

@@ -32,7 +32,7 @@ def on_the_way(block: Block, count: int = 33) -> np.ndarray:
     assert block.travel is not None
     way = block.travel.way
     assert isinstance(way, HelixMove)
-    return way.workpiece_points(way.machine_positions(np.linspace(0.0, 1.0, count)))
+    return way.compute_workpiece_points(way.compute_machine_positions(np.linspace(0.0, 1.0, count)))
 
 
 @pytest.mark.parametrize(

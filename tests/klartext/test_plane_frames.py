@@ -16,10 +16,10 @@ from core.geometry.rotation_frames import (
     InvalidFrameError,
     Matrix,
     Vector,
-    frame_from_points,
-    frame_from_spatial_angles,
+    make_frame_from_points,
+    make_frame_from_spatial_angles,
+    make_rotation,
     multiply_matrices,
-    rotation_about,
 )
 from core.geometry.swivel_angles import SolutionSide, choose_solution, find_all_solutions
 from tests.coded import raises_code
@@ -79,30 +79,32 @@ def about(angles: tuple[float, float, float]) -> object:
 
 @pytest.mark.parametrize("chamfer", CHAMFERS)
 def test_the_frame_of_a_chamfer_by_all_its_names(chamfer: int) -> None:
-    frame = frame_from_points(*CHAMFERS[chamfer])
+    frame = make_frame_from_points(*CHAMFERS[chamfer])
     turn = 90.0 * (chamfer - 1)
     assert np.allclose(frame, FRAMES[chamfer], atol=1e-12)
-    assert np.allclose(AC.tool_frame({"A": 45.0, "C": turn}), FRAMES[chamfer], atol=1e-12)
-    assert np.allclose(frame_from_spatial_angles(45.0, 0.0, turn), FRAMES[chamfer], atol=1e-12)
+    assert np.allclose(AC.compute_tool_frame({"A": 45.0, "C": turn}), FRAMES[chamfer], atol=1e-12)
+    assert np.allclose(make_frame_from_spatial_angles(45.0, 0.0, turn), FRAMES[chamfer], atol=1e-12)
 
 
 @pytest.mark.parametrize("chamfer", STANDS)
 @pytest.mark.parametrize(("row", "side"), [(0, "SYM+"), (1, "SYM-"), (0, "SEQ+"), (1, "SEQ-")])
 def test_both_ways_to_stand_in_a_chamfer(chamfer: int, row: int, side: str) -> None:
-    frame = frame_from_points(*CHAMFERS[chamfer])
+    frame = make_frame_from_points(*CHAMFERS[chamfer])
     angles, middle, origin = STANDS[chamfer][row]
     found = choose_solution(AC, frame, {}, SolutionSide(side))
     assert found is not None
     assert (found.axis_angles["A"], found.axis_angles["C"], found.tool_rotation_deg) == about(angles)
     place = AC.make_transform(found.axis_angles, frame, DATUMS[chamfer])
-    assert place.to_machine_position(MIDDLE) == pytest.approx(middle, abs=6e-5)
-    assert place.to_machine_position(ZERO) == pytest.approx(origin, abs=6e-5)
-    assert place.to_frame_point(place.to_machine_position(MIDDLE)) == pytest.approx(MIDDLE, abs=1e-9)
+    assert place.convert_to_machine_position(MIDDLE) == pytest.approx(middle, abs=6e-5)
+    assert place.convert_to_machine_position(ZERO) == pytest.approx(origin, abs=6e-5)
+    assert place.convert_to_frame_point(place.convert_to_machine_position(MIDDLE)) == pytest.approx(
+        MIDDLE, abs=1e-9
+    )
 
 
 def test_the_workpiece_zero_on_the_swivelled_table() -> None:
     for c, there in ((0.0, (230.0, 278.2843, -345.1472)), (90.0, (258.0, 357.4802, -424.3431))):
-        assert AC.make_transform({"A": 45.0, "C": c}).to_machine_position(ZERO) == pytest.approx(
+        assert AC.make_transform({"A": 45.0, "C": c}).convert_to_machine_position(ZERO) == pytest.approx(
             there, abs=6e-5
         )
 
@@ -110,7 +112,7 @@ def test_the_workpiece_zero_on_the_swivelled_table() -> None:
 def test_without_sym_the_chamfers_follow_each_other_on_the_positive_side() -> None:
     a = c = 0.0
     for chamfer, turn in ((1, 0.0), (2, 90.0), (3, 180.0), (4, 270.0)):
-        found = stands(frame_from_points(*CHAMFERS[chamfer]), a=a, c=c)
+        found = stands(make_frame_from_points(*CHAMFERS[chamfer]), a=a, c=c)
         assert found == about((45.0, turn, 0.0))
         a, c = 45.0, turn
 
@@ -126,7 +128,7 @@ def test_without_sym_the_chamfers_follow_each_other_on_the_positive_side() -> No
     ],
 )
 def test_only_directions_count(points: tuple[Vector, Vector, Vector], frame: Matrix) -> None:
-    assert np.allclose(frame_from_points(*points), frame, atol=1e-9)
+    assert np.allclose(make_frame_from_points(*points), frame, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -142,7 +144,7 @@ def test_other_planes(
     plus: tuple[float, float, float],
     minus: tuple[float, float, float],
 ) -> None:
-    frame = frame_from_points(*points)
+    frame = make_frame_from_points(*points)
     assert stands(frame, "SYM+") == about(plus)
     assert stands(frame, "SYM-") == about(minus)
 
@@ -155,7 +157,7 @@ def test_other_planes(
     ],
 )
 def test_a_plane_that_faces_down_is_out_of_range(points: tuple[Vector, Vector, Vector]) -> None:
-    assert stands(frame_from_points(*points)) is None
+    assert stands(make_frame_from_points(*points)) is None
 
 
 @pytest.mark.parametrize(
@@ -171,11 +173,11 @@ def test_a_plane_that_faces_down_is_out_of_range(points: tuple[Vector, Vector, V
 )
 def test_points_that_make_no_plane(points: tuple[Vector, Vector, Vector], code: str) -> None:
     with raises_code(InvalidFrameError, code):
-        frame_from_points(*points)
+        make_frame_from_points(*points)
 
 
 def test_the_table_of_the_older_manual() -> None:
-    frame = frame_from_spatial_angles(0.0, 45.0, 0.0)
+    frame = make_frame_from_spatial_angles(0.0, 45.0, 0.0)
     plus, minus = (45.0, 90.0, 0.0), (-45.0, 270.0, 0.0)
     narrow = limited(-90.0, 10.0)
     rows = [
@@ -195,7 +197,7 @@ def test_the_table_of_the_older_manual() -> None:
 
 
 def test_the_shorter_way_and_its_ties() -> None:
-    frame = frame_from_points(*CHAMFERS[1])
+    frame = make_frame_from_points(*CHAMFERS[1])
     assert stands(frame, c=90.0) == about((45.0, 0.0, 0.0))  # a tie goes to the positive side
     assert stands(frame, c=91.0) == about((-45.0, 180.0, 180.0))
     assert stands(frame, a=-45.0) == about((45.0, 0.0, 0.0))
@@ -203,7 +205,7 @@ def test_the_shorter_way_and_its_ties() -> None:
 
 
 def test_ranges() -> None:
-    frame = frame_from_points(*CHAMFERS[1])
+    frame = make_frame_from_points(*CHAMFERS[1])
     up, down = limited(-10.0, 110.0), limited(-110.0, 10.0)
     assert stands(frame, "SYM+", machine=up) == about((45.0, 0.0, 0.0))
     assert stands(frame, "SYM-", machine=up) is None
@@ -215,17 +217,17 @@ def test_ranges() -> None:
 
 def test_a_turn_about_the_tool_is_left_over() -> None:
     """Chamfer 2, then 20 degrees about its own Z."""
-    frame = multiply_matrices(frame_from_points(*CHAMFERS[2]), rotation_about(Z_AXIS, 20.0))
+    frame = multiply_matrices(make_frame_from_points(*CHAMFERS[2]), make_rotation(Z_AXIS, 20.0))
     assert stands(frame, "SYM+") == about((45.0, 90.0, 20.0))
     assert stands(frame, "SYM-") == about((-45.0, 270.0, -160.0))
 
 
 def test_a_free_axis_goes_to_zero_or_takes_the_whole_turn() -> None:
-    frame = frame_from_spatial_angles(0.0, 0.0, 30.0)
+    frame = make_frame_from_spatial_angles(0.0, 0.0, 30.0)
     assert stands(frame) == about((0.0, 0.0, 30.0))
     assert stands(frame, table_rot=True) == about((0.0, 30.0, 0.0))
     assert stands(frame, "SYM-", table_rot=True) == about((0.0, 30.0, 0.0))
-    tilted = frame_from_points(*CHAMFERS[2])  # C is not free at A45: nothing changes
+    tilted = make_frame_from_points(*CHAMFERS[2])  # C is not free at A45: nothing changes
     assert stands(tilted, "SYM+", table_rot=True) == stands(tilted, "SYM+")
 
 
@@ -235,9 +237,9 @@ def test_forward_of_inverse_is_the_frame() -> None:
     for count in range(10_000):
         tilt = dice.uniform(0.0, 179.0) if count % 5 else 10.0 ** dice.uniform(-12.0, -2.0)
         frame = multiply_matrices(
-            rotation_about(Z_AXIS, dice.uniform(0.0, 360.0)),
-            rotation_about(X_AXIS, tilt),
-            rotation_about(Z_AXIS, dice.uniform(-180.0, 180.0)),
+            make_rotation(Z_AXIS, dice.uniform(0.0, 360.0)),
+            make_rotation(X_AXIS, tilt),
+            make_rotation(Z_AXIS, dice.uniform(-180.0, 180.0)),
         )
         found = find_all_solutions(AC, frame)
         assert len(found) == (2 if tilt > 1e-9 else 1), tilt
@@ -246,6 +248,6 @@ def test_forward_of_inverse_is_the_frame() -> None:
         assert sorted(s.axis_angles["A"] for s in found) == pytest.approx([-a, a][-len(found) :], abs=1e-9)
         for solution in found:
             back = multiply_matrices(
-                AC.tool_frame(solution.axis_angles), rotation_about(Z_AXIS, solution.tool_rotation_deg)
+                AC.compute_tool_frame(solution.axis_angles), make_rotation(Z_AXIS, solution.tool_rotation_deg)
             )
             assert np.abs(np.array(back) - r).max() < 1e-9

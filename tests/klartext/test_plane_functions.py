@@ -80,7 +80,9 @@ def test_what_is_programmed_in_the_plane_is_the_mirrored_picture() -> None:
     ran = run("TRANS MIRROR AXIS X\nPLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SYM+")
     assert ran.planes[0].swivel is not None
     frame = np.array(ran.planes[0].swivel.system.frame)
-    assert frame @ ProgramTransform("X").to_plane((10.0, 0.0, 0.0)) == pytest.approx((-8.660254, 0.0, -5.0))
+    assert frame @ ProgramTransform("X").convert_to_plane((10.0, 0.0, 0.0)) == pytest.approx(
+        (-8.660254, 0.0, -5.0)
+    )
 
 
 @pytest.mark.parametrize("before", WITH_IT)
@@ -241,7 +243,7 @@ def test_move_keeps_it_all_the_way(words: str, depth: float) -> None:
     travel = ran.planes[0].travel
     assert travel is not None
     assert travel.way is not None
-    for x, y, z, a, c in travel.way.machine_positions(np.linspace(0.0, 1.0, 11)).tolist():
+    for x, y, z, a, c in travel.way.compute_machine_positions(np.linspace(0.0, 1.0, 11)).tolist():
         ca, sa = math.cos(math.radians(a)), math.sin(math.radians(a))
         cc, sc = math.cos(math.radians(c)), math.sin(math.radians(c))
         dy, dz = y - 250.0, z - depth + 430.0

@@ -39,7 +39,7 @@ def way(block: Block) -> Points:
     assert block.swivel is not None
     share = np.linspace(0.0, 1.0, max(2, math.ceil(block.length / 0.1)))
     if block.travel is not None and isinstance(block.travel.way, HelixMove):
-        return block.travel.way.workpiece_points(block.travel.way.machine_positions(share))
+        return block.travel.way.compute_workpiece_points(block.travel.way.compute_machine_positions(share))
     start, end = np.array(block.swivel.start), np.array(block.swivel.end)
     straight: Points = start + share[:, None] * (end - start)
     return straight

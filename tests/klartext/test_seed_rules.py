@@ -24,8 +24,8 @@ def about(axis: str, degrees: float) -> Array:
 
 def on_the_machine(spot: Array, a: float, c: float) -> Array:
     """Where tables at A and C bring a point of the workpiece: each turns it by minus its angle."""
-    turned = C.point + about("Z", -c) @ (np.array(ORIGIN) + spot - C.point)
-    moved: Array = A.point + about("X", -a) @ (turned - A.point)
+    turned = C.point_on_axis + about("Z", -c) @ (np.array(ORIGIN) + spot - C.point_on_axis)
+    moved: Array = A.point_on_axis + about("X", -a) @ (turned - A.point_on_axis)
     return moved
 
 

@@ -24,7 +24,7 @@ def tips(block: Block, count: int = 9) -> np.ndarray:
     """Where the tip is on the workpiece along a block, by the tests' own matrices."""
     assert block.travel is not None
     assert block.travel.way is not None
-    rows = block.travel.way.machine_positions(np.linspace(0.0, 1.0, count))
+    rows = block.travel.way.compute_machine_positions(np.linspace(0.0, 1.0, count))
     found = []
     for row in rows.tolist():
         at = dict(zip(AC.axis_names, row, strict=True))

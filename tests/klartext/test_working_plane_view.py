@@ -146,16 +146,16 @@ def test_cuts_are_kept_on_the_workpiece(chamfers: tuple[MillScene, list[Block]])
 
 def test_the_plane_of_a_line(chamfers: tuple[MillScene, list[Block]]) -> None:
     scene, _ = chamfers
-    first, *_ = sorted(scene.planes)
+    first, *_ = sorted(scene.plane_lines)
     here = make_line_instant(scene, first)
     assert here.axis_positions["A"] == 45.0
-    assert describe_plane(here.swivel) == (
+    assert describe_plane(here.plane_position) == (
         f"TILTED PLANE FROM LINE {first}:  A+45.000  C+0.000   Z' 0.000  −0.707  0.707"
     )
     assert (
-        make_line_instant(scene, first + 1).swivel is here.swivel
+        make_line_instant(scene, first + 1).plane_position is here.plane_position
     )  # a line without a block: the one before it
-    assert make_line_instant(scene, 0).swivel is None
+    assert make_line_instant(scene, 0).plane_position is None
     assert describe_plane(None) == ""
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.machine.driver_modules import all_drivers
-from core.machine.driver_tables import all_driver_tables
+from app.compose.machine.driver_modules import load_all_drivers
+from core.machine.driver_tables import list_driver_tables
 
 SPEC = Path(__file__).parents[2].parent / "shared" / "spec" / "drivers.md"
 Table = dict[str, object]
@@ -29,7 +29,7 @@ def spec_text() -> str:
         pytest.skip(f"the specification is not here: {SPEC}")
     section = SPEC.read_text(encoding="utf-8").partition("## 9. Machine file")[2]
     text = section.partition("```toml\n")[2].partition("```")[0]
-    absent = "|".join(_OF_FEATURES - {table.path for table in all_driver_tables(all_drivers())})
+    absent = "|".join(_OF_FEATURES - {table.path for table in list_driver_tables(load_all_drivers())})
     if not absent:
         return text
     return re.sub(rf"^\[({absent})\].*?(?=^\[|\Z)", "", text, flags=re.MULTILINE | re.DOTALL)
@@ -37,7 +37,7 @@ def spec_text() -> str:
 
 def sample(name: str) -> Table:
     """The values of a shipped file, or of the specification's example."""
-    return tomllib.loads(spec_text() if name == "spec" else resources.machine_file(f"{name}.toml"))
+    return tomllib.loads(spec_text() if name == "spec" else resources.read_machine_file(f"{name}.toml"))
 
 
 def leaves(value: object, place: Place = ()) -> Iterator[tuple[Place, object]]:

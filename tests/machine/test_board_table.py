@@ -16,7 +16,7 @@ from tests.texts import text as wording
 
 def changed(name: str, *pairs: tuple[str, str]) -> str:
     """A shipped file with texts replaced, which must be there."""
-    text = resources.machine_file(f"gt75-{name}.toml")
+    text = resources.read_machine_file(f"gt75-{name}.toml")
     for old, new in pairs:
         assert old in text, old
         text = text.replace(old, new, 1)
@@ -209,7 +209,7 @@ def test_a_value_that_is_none_is_told_once(name: str, old: str, new: str, path: 
 
 
 def test_a_board_without_hal_has_nobody_to_drive() -> None:
-    text = resources.machine_file("gt75.toml") + '\n[board]\nkind = "sim"\n'
+    text = resources.read_machine_file("gt75.toml") + '\n[board]\nkind = "sim"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "test.toml")
     (error, *_) = caught.value.findings
@@ -230,7 +230,7 @@ def test_machines_without_a_board_or_without_hal() -> None:
     with raises_code(CommandError, "no-board", "[board]", '"sim", "parport"'):
         build_hal_file(parse_machine(changed("hal", ('[board]\nkind = "sim"', "")), "test.toml"))
     with raises_code(CommandError, "not-hal"):
-        build_hal_file(parse_machine(resources.machine_file("gt75.toml"), "gt75.toml"))
+        build_hal_file(parse_machine(resources.read_machine_file("gt75.toml"), "gt75.toml"))
 
 
 # --- what the words of the file become

@@ -11,7 +11,7 @@ from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_file import MISSING_VALUE, compare_machine_files
 from core.table_schema import SECRET_MASK, MachineFileError
 
-SHIPPED = resources.machine_file("gt75.toml")
+SHIPPED = resources.read_machine_file("gt75.toml")
 
 
 def test_the_same_file_has_no_changes_whatever_its_comments_and_order() -> None:

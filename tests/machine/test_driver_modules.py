@@ -7,21 +7,26 @@ import re
 import pytest
 
 import resources
-from app.compose.machine.driver_modules import DriverModule, all_drivers, driver_modules, drivers_of
+from app.compose.machine.driver_modules import (
+    DriverModule,
+    list_driver_modules,
+    load_all_drivers,
+    load_used_drivers,
+)
 from app.compose.machine.machine_files import parse_machine
 from core.input_file import parse_toml
-from core.machine.machine_file import machine_of
+from core.machine.machine_file import build_machine
 from core.table_schema import MachineFileError
 
-TEXT = resources.machine_file("gt75.toml")
+TEXT = resources.read_machine_file("gt75.toml")
 
 
-@pytest.mark.parametrize("module", driver_modules(), ids=lambda each: each.tables[0])
+@pytest.mark.parametrize("module", list_driver_modules(), ids=lambda each: each.tables[0])
 def test_a_module_is_listed_with_the_names_that_its_driver_has(module: DriverModule) -> None:
-    driver = module.load()
+    driver = module.load_driver()
     assert module.tables == tuple(table.path for table in driver.tables)
-    assert (module.backend, module.spindle) == (driver.backend, driver.spindle)
-    assert module.always == any(table.is_always_read for table in driver.tables)
+    assert (module.backend_name, module.spindle) == (driver.backend_name, driver.spindle)
+    assert module.is_always_loaded == any(table.is_always_read for table in driver.tables)
 
 
 @pytest.mark.parametrize(
@@ -38,14 +43,16 @@ def test_a_module_is_listed_with_the_names_that_its_driver_has(module: DriverMod
 def test_a_file_loads_only_the_drivers_that_its_tables_or_names_need(
     text: str, first_tables: list[str]
 ) -> None:
-    assert [each.tables[0].path for each in drivers_of(parse_toml(text))] == first_tables
+    assert [each.tables[0].path for each in load_used_drivers(parse_toml(text))] == first_tables
 
 
-@pytest.mark.parametrize("name", sorted(resources.machine_names()))
+@pytest.mark.parametrize("name", sorted(resources.list_machine_names()))
 def test_a_shipped_file_gives_the_same_machine_with_all_drivers(name: str) -> None:
-    text = resources.machine_file(f"{name}.toml")
+    text = resources.read_machine_file(f"{name}.toml")
     data = parse_toml(text)
-    few, all_of_them = (machine_of(data, text, name, each) for each in (drivers_of(data), all_drivers()))
+    few, all_of_them = (
+        build_machine(data, text, name, each) for each in (load_used_drivers(data), load_all_drivers())
+    )
     assert few == all_of_them
 
 

@@ -71,7 +71,7 @@ def test_a_drive_on_the_bus_has_its_own() -> None:
 
 
 def test_the_simulated_spindle_does_not_follow_an_inverter() -> None:
-    text = resources.machine_file("gt75-vfd.toml").replace(
+    text = resources.read_machine_file("gt75-vfd.toml").replace(
         "encoder_ppr = 0", 'encoder_ppr = 0\nencoder = { node = "turns", counts_per_rev = 4096 }'
     )
     assert_refused(text, "spindle.encoder", "does not support an encoder on a bus")

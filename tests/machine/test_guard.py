@@ -25,7 +25,7 @@ BENCHES = ("gt75-bench", "gt75-hal")  # without hardware, and so without palm bu
 
 @pytest.mark.parametrize("name", STOPPED)
 def test_the_shipped_lathe_and_the_boards_stop_at_the_guard_and_start_with_two_hands(name: str) -> None:
-    machine = parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
+    machine = parse_machine(resources.read_machine_file(f"{name}.toml"), f"{name}.toml")
     assert machine.interlocks.guard_stops
     assert machine.interlocks.two_hand_start
     assert {"guard", "start", "hold"} <= set(machine.inputs)
@@ -33,7 +33,7 @@ def test_the_shipped_lathe_and_the_boards_stop_at_the_guard_and_start_with_two_h
 
 @pytest.mark.parametrize("name", BENCHES)
 def test_a_bench_stops_at_the_guard_with_start_and_hold_wired(name: str) -> None:
-    machine = parse_machine(resources.machine_file(f"{name}.toml"), f"{name}.toml")
+    machine = parse_machine(resources.read_machine_file(f"{name}.toml"), f"{name}.toml")
     assert machine.interlocks.guard_stops
     assert {"guard", "start", "hold"} <= set(machine.inputs)
 
@@ -49,7 +49,7 @@ def test_without_its_switch_it_is_refused() -> None:
 
 
 def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> None:
-    text = resources.machine_file("gt75-parport.toml")
+    text = resources.read_machine_file("gt75-parport.toml")
     machine = parse_machine(text, "gt75-parport.toml")
     assert not machine.interlocks.guard_stops
     assert not machine.interlocks.two_hand_start
@@ -62,6 +62,6 @@ def test_a_parallel_port_has_no_input_left_for_a_guard_and_promises_none() -> No
 
 
 def test_a_guard_at_an_input_that_grblhal_reads_at_rest_only_stops_nothing_and_is_refused() -> None:
-    text = resources.machine_file("gt75-grblhal.toml")
+    text = resources.read_machine_file("gt75-grblhal.toml")
     assert 'guard = { at = "pn.D", active = "low" }' in text
     assert_refused(text.replace('"pn.D", active = "low"', '"in.1"'), "io.in.guard.at", "pn.D")

@@ -11,8 +11,8 @@ from app.compose.machine.machine_files import parse_machine
 from core.table_schema import FileFinding, MachineFileError
 from drivers.hal.hal_table import HalTable
 
-HAL = resources.machine_file("gt75-hal.toml")
-PARPORT = resources.machine_file("gt75-parport.toml")
+HAL = resources.read_machine_file("gt75-hal.toml")
+PARPORT = resources.read_machine_file("gt75-parport.toml")
 
 
 def changed(*pairs: tuple[str, str]) -> str:
@@ -70,7 +70,7 @@ def test_each_refusal_names_its_key(old: str, new: str, path: str, expected: str
 @pytest.mark.parametrize("key", ["start", "hold"])
 def test_an_input_that_is_a_home_switch_too_is_rejected(name: str, inverted: str, key: str) -> None:
     """Homing on it would start a cycle or hold it."""
-    text = resources.machine_file(f"{name}.toml")
+    text = resources.read_machine_file(f"{name}.toml")
     home = re.search(r'^home = "([^"]+)"', text, re.MULTILINE)
     assert home is not None
     shared = re.sub(

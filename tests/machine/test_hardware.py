@@ -17,8 +17,8 @@ from drivers.inverter.inverter_table import InverterTable
 from drivers.simulated.simulated_table import PlannedFault, SimulatedTable
 from tests.texts import text as wording
 
-CAN = resources.machine_file("gt75-canopen.toml")
-SHIPPED = resources.machine_file("gt75.toml")
+CAN = resources.read_machine_file("gt75-canopen.toml")
+SHIPPED = resources.read_machine_file("gt75.toml")
 
 
 def changed(old: str, new: str, text: str = CAN) -> str:
@@ -77,11 +77,11 @@ def test_shipped_bus_in_model_units() -> None:
     ],
 )
 def test_every_shipped_file_is_good(name: str) -> None:
-    assert parse_machine(resources.machine_file(name), name).source == name
+    assert parse_machine(resources.read_machine_file(name), name).source == name
 
 
 def test_other_lines() -> None:
-    machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "vfd")
+    machine = parse_machine(resources.read_machine_file("gt75-vfd.toml"), "vfd")
     vfd, dnc = (
         machine.hardware.find_driver_table(InverterTable),
         machine.hardware.find_driver_table(SerialLineModel),
@@ -95,7 +95,7 @@ def test_other_lines() -> None:
     )
     assert dnc is not None
     assert (dnc.bits, dnc.parity, dnc.flow, dnc.eol) == (7, "E", "xonxoff", "\r\n")
-    grbl = parse_machine(resources.machine_file("gt75-grblhal.toml"), "grbl").hardware.find_driver_table(
+    grbl = parse_machine(resources.read_machine_file("gt75-grblhal.toml"), "grbl").hardware.find_driver_table(
         GrblhalTable
     )
     assert grbl is not None
@@ -313,5 +313,5 @@ def test_a_bus_without_io_names_every_signal() -> None:
 
 
 def test_a_serial_port_has_one_owner() -> None:
-    text = resources.machine_file("gt75-vfd.toml").replace('"/dev/ttyUSB1"', '"/dev/ttyUSB0"')
+    text = resources.read_machine_file("gt75-vfd.toml").replace('"/dev/ttyUSB1"', '"/dev/ttyUSB0"')
     assert_refused(text, "dnc.port", "spindle.vfd.port already uses")

@@ -30,7 +30,7 @@ class Line:
     )
     parity: str = declare_key(default="N", choices=("N", "E"), meaning="Parity.")
     range: Pair = declare_key(KeyRange(0.0, 50.0, FileUnit.LENGTH), default=(0.0, 1.0), meaning="Range.")
-    words: Words = declare_key(default="", secret=True, meaning="Words.")
+    words: Words = declare_key(default="", is_secret=True, meaning="Words.")
     others: tuple[str, ...] = ()
 
 
@@ -38,7 +38,7 @@ class Plain:
     """Keys of a table that is read into no object of its own."""
 
     port: str = declare_key(meaning="Port.")
-    count: int = declare_key(KeyRange(1, 9), derived=True, meaning="Count.")
+    count: int = declare_key(KeyRange(1, 9), is_derived=True, meaning="Count.")
 
 
 def found(table: object) -> list[tuple[str, str]]:

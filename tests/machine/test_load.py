@@ -12,7 +12,7 @@ from core.table_schema import FileFinding, MachineFileError
 from tests.coded import raises_code
 from tests.texts import text as wording
 
-SHIPPED = resources.machine_file("gt75.toml")
+SHIPPED = resources.read_machine_file("gt75.toml")
 
 
 def changed(old: str, new: str) -> str:
@@ -39,10 +39,10 @@ def test_shipped_lathe_in_model_units() -> None:
     assert (x.name, z.name, c.name) == ("X", "Z", "C")
     assert x.travel == pytest.approx((-101.6, 101.6))
     assert z.travel == pytest.approx((-152.4, 152.4))
-    assert (x.vmax, x.amax) == pytest.approx((127.0, 3048.0))  # 300 in/min, 120 in/s²
-    assert (x.count, machine.limits.resolution) == pytest.approx((0.00127, 0.00127))
+    assert (x.max_speed, x.max_acceleration) == pytest.approx((127.0, 3048.0))  # 300 in/min, 120 in/s²
+    assert (x.count_size, machine.limits.resolution) == pytest.approx((0.00127, 0.00127))
     assert c.travel is None
-    assert c.vmax == pytest.approx(1200.0)  # 200 rpm in degrees/s
+    assert c.max_speed == pytest.approx(1200.0)  # 200 rpm in degrees/s
     assert machine.limits.max_feed == 300 * 25.4 / 60  # the very number an F300 word gives
     assert machine.limits.manual_rapid == 100 * 25.4 / 60
 
@@ -58,7 +58,7 @@ def test_shipped_times_spindle_and_interlocks() -> None:
     assert not machine.interlocks.spindle_with_collet_open
     assert machine.interlocks.unclamp_while_turning
     assert machine.interlocks.two_hand_start
-    assert all(axis.absolute for axis in machine.axes)
+    assert all(axis.is_position_absolute for axis in machine.axes)
 
 
 def test_shipped_signals() -> None:
@@ -83,7 +83,7 @@ def test_metric_file_keeps_millimetres(tmp_path: Path) -> None:
     )
     machine = load_machine(path)
     assert machine.axes[0].travel == (-100, 100)
-    assert machine.axes[0].vmax == 5.0  # 300 mm/min
+    assert machine.axes[0].max_speed == 5.0  # 300 mm/min
     assert machine.source == str(path)
 
 
@@ -96,7 +96,7 @@ def test_enabled_loader_code_is_there() -> None:
 def test_unknown_key_names_the_nearest() -> None:
     found = only(changed("vmax = 300\n", "vmax = 300\nvmaxx = 3\n"))
     assert found.path == "axis.X.vmaxx"
-    assert "did you mean vmax?" in found.expected
+    assert "did you mean vmax?" in found.expected_value
 
 
 def test_a_file_without_its_unit_has_its_other_figures_held_to_their_bounds() -> None:
@@ -107,7 +107,7 @@ def test_a_file_without_its_unit_has_its_other_figures_held_to_their_bounds() ->
 def test_unknown_table_says_which_are_known() -> None:
     found = only(SHIPPED + "\n[profibus]\nbaud = 1000000\n")
     assert found.path == "[profibus]"
-    assert "[machine], [limits], [axis]" in found.expected
+    assert "[machine], [limits], [axis]" in found.expected_value
 
 
 @pytest.mark.parametrize(
@@ -197,13 +197,13 @@ def test_two_axes_may_not_home_at_once() -> None:
 def test_output_without_safe_state_is_refused() -> None:
     found = only(changed('catcher = { at = "OUT-3", safe = false }', 'catcher = { at = "OUT-3" }'))
     assert found.path == "io.out.catcher.safe"
-    assert "missing" in found.expected
+    assert "missing" in found.expected_value
 
 
 def test_output_that_nothing_switches_off_is_refused() -> None:
     found = only(changed('26 = { output = "catcher", on = false }', ""))
     assert found.path == "m_codes.25"
-    assert found.expected == wording("machine.output-stays-on", output="catcher")
+    assert found.expected_value == wording("machine.output-stays-on", output="catcher")
 
 
 def test_all_errors_come_in_one_pass() -> None:
@@ -223,14 +223,14 @@ def test_empty_file_names_every_missing_table() -> None:
 
 
 def test_broken_toml_tells_the_line() -> None:
-    assert "line 2" in only("[machine]\nname = \n").expected
+    assert "line 2" in only("[machine]\nname = \n").expected_value
 
 
 @pytest.mark.parametrize("value", ["[" * 50_000, "{a=" * 5000, "9" * 5000])
 def test_what_no_parser_can_hold_is_one_finding(value: str) -> None:
     found = only(f"[machine]\nname = {value}")
     assert found.code == "not-toml"
-    assert len(found.expected) < 100
+    assert len(found.expected_value) < 100
 
 
 def test_missing_file_and_wrong_encoding(tmp_path: Path) -> None:
@@ -249,7 +249,7 @@ def test_a_key_with_a_line_end_stays_in_its_sentence() -> None:
 
 
 def test_a_turret_is_refused_while_nothing_indexes_it() -> None:
-    text = resources.machine_file("gt75.toml").replace('kind = "gang" ', 'kind = "turret" ')
+    text = resources.read_machine_file("gt75.toml").replace('kind = "gang" ', 'kind = "turret" ')
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text, "gt75.toml")
     assert [(each.path, each.code) for each in caught.value.findings] == [("tooling.kind", "broken-rule")]

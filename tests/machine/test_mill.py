@@ -14,8 +14,8 @@ from tests.machine.mill import MILL
 def test_the_axes_come_slides_first() -> None:
     machine = parse_machine(MILL, "mill")
     assert [axis.name for axis in machine.axes] == ["X", "Y", "Z", "A", "C"]
-    assert [axis.rotary for axis in machine.axes] == [False, False, False, True, True]
-    assert not machine.c_enabled  # its C is an axis of its own, not the spindle
+    assert [axis.is_rotary for axis in machine.axes] == [False, False, False, True, True]
+    assert not machine.is_c_enabled  # its C is an axis of its own, not the spindle
 
 
 def test_rotary_figures_are_degrees_and_seconds() -> None:
@@ -23,8 +23,8 @@ def test_rotary_figures_are_degrees_and_seconds() -> None:
     a, c = machine.find_axis("A"), machine.find_axis("C")
     assert a.travel == (-120.0, 120.0)
     assert c.travel is None
-    assert math.isclose(a.vmax, 60.0)  # 3600 degrees a minute
-    assert a.amax == 720.0
+    assert math.isclose(a.max_speed, 60.0)  # 3600 degrees a minute
+    assert a.max_acceleration == 720.0
 
 
 @pytest.mark.parametrize(
@@ -50,9 +50,9 @@ def test_what_a_mill_cannot_be(change: tuple[str, str], path: str) -> None:
 
 
 def test_the_kind_decides_the_language() -> None:
-    assert parse_machine(MILL, "mill").language == "klartext"
-    assert load_named_machine("gt75").language == "omniturn"
-    assert load_named_machine("sinumerik-linear").language == "sinumerik"
+    assert parse_machine(MILL, "mill").mdi_language == "klartext"
+    assert load_named_machine("gt75").mdi_language == "omniturn"
+    assert load_named_machine("sinumerik-linear").mdi_language == "sinumerik"
 
 
 def test_a_lathe_has_no_y() -> None:

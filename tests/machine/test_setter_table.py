@@ -23,7 +23,7 @@ slow = 0.5
 
 
 def text(*changes: tuple[str, str]) -> str:
-    found = resources.machine_file("gt75.toml").replace("[io.in]\n", PROBE) + SETTER
+    found = resources.read_machine_file("gt75.toml").replace("[io.in]\n", PROBE) + SETTER
     for old, new in changes:
         assert old in found
         found = found.replace(old, new)
@@ -33,8 +33,8 @@ def text(*changes: tuple[str, str]) -> str:
 def test_a_setter() -> None:
     setter = parse_machine(text(), "test").hardware.find_driver_table(SetterModel)
     assert setter is not None
-    assert setter.touch_position("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
-    assert setter.touch_position("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
+    assert setter.compute_touch_position("X", -1) == pytest.approx(25.4 * (0.5 + 0.125))
+    assert setter.compute_touch_position("Z", 1) == pytest.approx(25.4 * (1.0 - 0.125))
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ ALL_CHECKS = wording("machine.no-part-check", checks=", ".join(PART_CHECKS))
 
 def machine(checks: str) -> Machine:
     return parse_machine(
-        resources.machine_file(DEFAULT_MACHINE_FILE) + f"\n[checks]\n{checks}\n", "lathe.toml"
+        resources.read_machine_file(DEFAULT_MACHINE_FILE) + f"\n[checks]\n{checks}\n", "lathe.toml"
     )
 
 

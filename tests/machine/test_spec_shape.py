@@ -19,7 +19,7 @@ def findings(text: str) -> list[FileFinding]:
 
 def without(*lines: str) -> str:
     """The shipped file less these lines, which must be there."""
-    text = resources.machine_file("gt75.toml")
+    text = resources.read_machine_file("gt75.toml")
     for line in lines:
         assert line in text, line
         text = text.replace(line, "", 1)
@@ -30,12 +30,14 @@ def test_the_example_of_the_specification_loads() -> None:
     machine = parse_machine(spec_text(), "spec")
     x, z, c = machine.axes
     assert x.travel == pytest.approx((-2.54, 152.4))
-    assert (x.amax, z.amax) == pytest.approx((4064.0, 4064.0))  # 160 in/s²
+    assert (x.max_acceleration, z.max_acceleration) == pytest.approx((4064.0, 4064.0))  # 160 in/s²
     assert machine.timing.setpoint == 0.001
     assert z.following_window == x.following_window == pytest.approx(0.04 * 25.4)
-    assert z.in_position == x.in_position == pytest.approx(0.0002 * 25.4)
-    assert not machine.c_enabled
-    assert (c.amax, c.following_window, c.in_position) == pytest.approx((3600.0, 5.0, 0.1))  # 600 rpm/s
+    assert z.in_position_tolerance == x.in_position_tolerance == pytest.approx(0.0002 * 25.4)
+    assert not machine.is_c_enabled
+    assert (c.max_acceleration, c.following_window, c.in_position_tolerance) == pytest.approx(
+        (3600.0, 5.0, 0.1)
+    )  # 600 rpm/s
     assert machine.spindle.decel == 1500
     assert (machine.limits.max_feed, machine.limits.manual_rapid) == pytest.approx((127.0, 100 * 25.4 / 60))
     assert (machine.limits.resolution, machine.limits.clearance) == pytest.approx((0.00127, 31.75))
@@ -45,7 +47,7 @@ def test_the_example_of_the_specification_loads() -> None:
 
 def test_the_example_on_a_bus_wants_the_switch_wired_and_says_the_line() -> None:
     text = spec_text().replace('backend = "sim"', 'backend = "canopen"', 1)
-    told = {finding.path: finding.expected for finding in findings(text)}
+    told = {finding.path: finding.expected_value for finding in findings(text)}
     # bits 0 to 5 of the module's first byte are taken by estop … end_of_bar
     assert told["io.analog.spindle_pot.switch"].endswith('spindle_auto = { at = "401.6000.1.6" }')
     assert "at least 100" in told["machine.commit_ms"]  # three records of 20 ms and a restart of 40 ms
@@ -57,7 +59,7 @@ def test_a_switch_of_another_name_has_no_button_on_the_screen() -> None:
     text = without().replace("[sim]\n", '[io.analog]\nspindle_pot = { at = "A", switch = "auto" }\n[sim]\n')
     (found,) = findings(text)
     assert found.path == "io.analog.spindle_pot.switch"
-    assert 'auto = { at = "IN-…" }' in found.expected
+    assert 'auto = { at = "IN-…" }' in found.expected_value
     assert parse_machine(text.replace('"auto"', '"spindle_auto"'), "t").hardware.analog_inputs["spindle_pot"]
 
 
@@ -70,7 +72,7 @@ def test_figures_of_slides_that_say_nothing_follow_from_their_speed_and_count() 
     for slide in machine.axes[:2]:
         # Position loop of 40 Hz, damping 1: lag 2 / (2 · 3.1416 · 40) s = 7.958 ms, at 127 mm/s, twice
         assert slide.following_window == pytest.approx(2.0213, abs=1e-4)
-        assert slide.in_position == pytest.approx(4 * 0.00127)
+        assert slide.in_position_tolerance == pytest.approx(4 * 0.00127)
     assert machine.limits.max_feed == pytest.approx(127.0)
 
 
@@ -86,7 +88,7 @@ def test_a_lathe_without_a_c_axis_needs_no_table_for_it() -> None:
     text = without()
     start, end = text.index("[axis.C]"), text.index("[c_axis]")
     machine = parse_machine(text[:start] + text[end:], "t")
-    assert not machine.c_enabled
+    assert not machine.is_c_enabled
     assert [axis.name for axis in machine.axes] == ["X", "Z", "C"]
 
 

@@ -20,8 +20,8 @@ COUNTS = ("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 18000 }"
 
 def test_a_spindle_drive_that_counts_is_c() -> None:
     machine = parse_machine(with_c(COUNTS), "can")
-    assert machine.c_enabled
-    assert machine.spindle_is_c
+    assert machine.is_c_enabled
+    assert machine.is_spindle_c_axis
 
 
 def test_one_that_does_not_count_is_none() -> None:

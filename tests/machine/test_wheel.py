@@ -55,5 +55,5 @@ def test_a_switch_that_selects_nothing() -> None:
 
 
 def test_a_controller_that_counts_nothing() -> None:
-    text = resources.machine_file("gt75-grblhal.toml") + '\n[io.analog]\nhandwheel = { at = "in.0" }\n'
+    text = resources.read_machine_file("gt75-grblhal.toml") + '\n[io.analog]\nhandwheel = { at = "in.0" }\n'
     assert_refused(text, "io.analog.handwheel", "does not have a counter input")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.mdi.mdi_model import MAX_LENGTH, LineCompletion, MdiInput
+from app.mdi.mdi_model import MAX_LINE_LENGTH, LineCompletion, MdiInput
 from core.interpreter.dialects import get_code_book
 from core.language.source import Dialect
 
@@ -36,14 +36,14 @@ def press(completion: LineCompletion, *keys: str) -> str:
 def test_what_is_typed_is_completed(dialect: Dialect, typed: str, down: int, written: str) -> None:
     completion = line(dialect, typed)
     assert press(completion, "Tab", *(["Down"] * down), "Enter") == written
-    assert completion.mdi_input.cursor == len(written)
+    assert completion.mdi_input.cursor_index == len(written)
     assert not completion.is_open
 
 
 def test_a_code_is_put_in_at_the_cursor() -> None:
     completion = line(Dialect.OMNITURN, "G0 X5", 2)
     assert press(completion, "Tab", "Down", "Tab") == "G01 X5"
-    assert completion.mdi_input.cursor == 3
+    assert completion.mdi_input.cursor_index == 3
 
 
 def test_what_begins_no_code_is_looked_up_by_chapters() -> None:
@@ -69,7 +69,7 @@ def test_a_block_that_goes_on_is_written_in_one_line() -> None:
 
 def test_of_what_does_not_fit_only_the_head_is_written() -> None:
     assert press(line(Dialect.KLARTEXT, "CYCL DEF 251"), "Tab", "Enter") == "CYCL DEF 251"
-    full = "M" * (MAX_LENGTH - 2) + " G"
+    full = "M" * (MAX_LINE_LENGTH - 2) + " G"
     completion = line(Dialect.OMNITURN, full)
     press(completion, "Tab", "Enter")
     assert completion.mdi_input.text == full

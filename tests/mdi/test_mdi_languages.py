@@ -10,7 +10,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_named_machine
 from app.compose.machine.machine_setup import create_setup
-from core.executor.control_status import modal_after_cancel
+from core.executor.control_status import make_modal_state_after_cancel
 from core.interpreter.dialects import interpret_mdi_line
 from core.interpreter.shared.actions import ToolChange
 from core.interpreter.shared.checkpoint import Checkpoint, PassStart
@@ -38,8 +38,8 @@ class Mdi:
             start=self.at,
             begin=PassStart(self.point, is_mdi_line=True),
         )
-        line = interpret_mdi_line(ProgramSource("MDI", text, Dialect(self.machine.language)), setup)
-        blocks = list(line.generate_blocks(to_first_error=True))
+        line = interpret_mdi_line(ProgramSource("MDI", text, Dialect(self.machine.mdi_language)), setup)
+        blocks = list(line.generate_blocks(stops_at_first_error=True))
         if line.has_errors:
             return line.diagnostics[0].code
         self.at = blocks[-1].machine_end if blocks else self.at
@@ -110,7 +110,7 @@ def test_slides_that_were_jogged_meanwhile_count_where_they_stand(mill: Mdi) -> 
 
 
 def test_what_a_program_has_left_is_what_a_line_begins_with(mill: Mdi) -> None:
-    mill.point = Checkpoint(modal_after_cancel(ModalState(tool=5, rpm=1200.0, spindle=1)))
+    mill.point = Checkpoint(make_modal_state_after_cancel(ModalState(tool=5, rpm=1200.0, spindle=1)))
     mill.runs("L Z+0 FMAX")
     assert mill.at[2] == pytest.approx(-270.0)
     assert (mill.line("tool"), mill.line("spindle"), mill.line("plane")) == ("T5 Z", "M5", "")

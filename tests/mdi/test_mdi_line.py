@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from app.desk.persistence import Persistence
-from app.mdi.mdi_model import HISTORY_SETTING, MAX_HISTORY, MAX_LENGTH, MdiInput
+from app.mdi.mdi_model import HISTORY_SETTING, MAX_HISTORY_LINES, MAX_LINE_LENGTH, MdiInput
 from core.store.store_errors import StoreError
 
 
@@ -17,15 +17,15 @@ def press(typing: MdiInput, keys: Iterable[str]) -> MdiInput:
 
 def test_characters_go_in_at_the_cursor_and_are_taken_out_there() -> None:
     typing = press(MdiInput(), ["X", "5", "Left", ".", "Right", "0"])
-    assert (typing.text, typing.cursor) == ("X.50", 4)
+    assert (typing.text, typing.cursor_index) == ("X.50", 4)
     press(typing, ["Back", "Left", "Left", "Delete"])
-    assert (typing.text, typing.cursor) == ("X5", 1)
+    assert (typing.text, typing.cursor_index) == ("X5", 1)
     press(typing, ["Left", "Left", "Back"])  # nothing is before the first character
-    assert (typing.text, typing.cursor) == ("X5", 0)
+    assert (typing.text, typing.cursor_index) == ("X5", 0)
 
 
 def test_a_line_is_no_longer_than_the_screen_shows() -> None:
-    assert len(press(MdiInput(), ["X"] * (MAX_LENGTH + 5)).text) == MAX_LENGTH
+    assert len(press(MdiInput(), ["X"] * (MAX_LINE_LENGTH + 5)).text) == MAX_LINE_LENGTH
 
 
 def test_keys_that_mean_nothing_here_are_left_alone() -> None:
@@ -53,25 +53,25 @@ def test_the_same_line_twice_is_kept_once_and_an_empty_one_never() -> None:
     for line in ("X1", "X1", "  ", "X2"):
         typing.set_text(line)
         typing.finish_line()
-    assert typing.history == ["X1", "X2"]
+    assert typing.history_lines == ["X1", "X2"]
 
 
 def test_the_history_is_kept_and_what_is_none_is_forgotten() -> None:
     keep = Persistence()
     typing = MdiInput(keep)
-    for number in range(MAX_HISTORY + 3):
+    for number in range(MAX_HISTORY_LINES + 3):
         typing.set_text(f"X{number}")
         typing.finish_line()
     again = MdiInput(keep)
-    assert (len(again.history), again.history[0], again.history[-1]) == (
-        MAX_HISTORY,
+    assert (len(again.history_lines), again.history_lines[0], again.history_lines[-1]) == (
+        MAX_HISTORY_LINES,
         "X3",
-        f"X{MAX_HISTORY + 2}",
+        f"X{MAX_HISTORY_LINES + 2}",
     )
     keep.save_setting(HISTORY_SETTING, {"X": 1})
-    assert MdiInput(keep).history == []
+    assert MdiInput(keep).history_lines == []
     keep.save_setting(HISTORY_SETTING, ["X1", 7])
-    assert MdiInput(keep).history == ["X1"]
+    assert MdiInput(keep).history_lines == ["X1"]
 
 
 def test_a_store_that_fails_takes_no_line_away() -> None:
@@ -85,18 +85,18 @@ def test_a_store_that_fails_takes_no_line_away() -> None:
     typing = MdiInput(Broken())
     typing.set_text("X1")
     typing.finish_line()
-    assert typing.history == ["X1"]
+    assert typing.history_lines == ["X1"]
 
 
 def test_a_refused_line_stays_in_the_history_with_its_place() -> None:
     typing = MdiInput()
     press(typing, "G01X")
-    typing.add_rejected(4)
-    assert (typing.history, typing.error_columns) == (["G01X"], {"G01X": 4})
+    typing.add_rejected_line(4)
+    assert (typing.history_lines, typing.error_columns) == (["G01X"], {"G01X": 4})
     assert typing.text == "G01X"  # to be mended where it stands
     press(typing, "1")
     typing.finish_line()
-    assert typing.history == ["G01X", "G01X1"]
+    assert typing.history_lines == ["G01X", "G01X1"]
     assert "G01X1" not in typing.error_columns
     press(typing, "G01X")
     # what was wrong with it has been put right elsewhere, such as a tool that was never set

@@ -40,8 +40,8 @@ def test_speed_and_vector_sum_stay_within_the_slides() -> None:
     radius = 2.0
     profile = plan_motion(build_path([arc((0, radius), (0, radius), (0, 0), 500.0)], LIMITS))
     limit = math.sqrt(0.8 * A * radius)
-    assert profile.phases.v.max() == pytest.approx(limit)
-    assert np.abs(profile.phases.a).max() == pytest.approx(0.6 * A)
+    assert profile.phases.start_speeds.max() == pytest.approx(limit)
+    assert np.abs(profile.phases.accelerations).max() == pytest.approx(0.6 * A)
     t = np.linspace(0.0, profile.duration_s, 4001)
     felt = np.diff(profile.positions_at(t), 2, axis=0)[:, :2] / (t[1] - t[0]) ** 2
     assert np.hypot(*felt.T).max() <= A * (1.0 + 1e-6)
@@ -49,7 +49,7 @@ def test_speed_and_vector_sum_stay_within_the_slides() -> None:
 
 def test_a_wide_arc_is_held_by_the_slides_speed() -> None:
     profile = plan_motion(build_path([arc((0, 900), (900, 0), (0, 0), 500.0)], LIMITS))
-    assert profile.phases.v.max() == pytest.approx(V)
+    assert profile.phases.start_speeds.max() == pytest.approx(V)
 
 
 def test_a_slow_arc_may_use_nearly_all_the_acceleration() -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.motion.axis_limits import FloatArray
-from core.motion.joint_easing import SUPPORT
+from core.motion.joint_easing import SUPPORT_PIECE_COUNT
 from core.motion.motion_path import MotionPath, PathBuilder
 from core.motion.motion_plan import find_last_settled_joint, plan_motion
 from core.motion.motion_profile import MotionProfile
@@ -122,7 +122,7 @@ def test_runs_of_chords_end_where_something_else_begins(kind: str) -> None:
         "long": line(here, to, 60.0, n=301),
     }[kind]
     path = build_path([*blocks, other], STEPPED)
-    assert path.block_span(301)[0] == pytest.approx(path.joint_distances[300])
+    assert path.find_block_span(301)[0] == pytest.approx(path.joint_distances[300])
     assert joints(path)[300, :2] == pytest.approx(here, abs=0)
 
 
@@ -194,8 +194,10 @@ def test_what_is_no_chord_comes_in_late_as_it_is(near: int) -> None:
     end = builder.build_path().joint_distances
     builder.add_blocks(behind, float(end[-1 - near]))
     path = builder.build_path()
-    assert path.block_span(202)[1] - path.block_span(202)[0] == pytest.approx(2.0 * math.pi, abs=1e-9)
-    assert path.block_span(204)[1] - path.block_span(204)[0] == pytest.approx(90.0, abs=1e-9)
+    assert path.find_block_span(202)[1] - path.find_block_span(202)[0] == pytest.approx(
+        2.0 * math.pi, abs=1e-9
+    )
+    assert path.find_block_span(204)[1] - path.find_block_span(204)[0] == pytest.approx(90.0, abs=1e-9)
     ends = path.pieces.point(path.pieces.length)
     assert ends[:-1] == pytest.approx(path.pieces.start[1:], abs=1e-9)
     assert path.positions_at(path.joint_distances[-1:])[0] == pytest.approx([*top, 90.0], abs=1e-9)
@@ -206,7 +208,9 @@ def test_where_the_slides_are_near_the_end_the_old_path_stays_as_it_was() -> Non
     builder = PathBuilder(STEPPED)
     builder.add_blocks(blocks[:200])
     before = joints(builder.build_path())
-    builder.add_blocks(blocks[200:], float(builder.build_path().joint_distances[-1 - SUPPORT // 2]))
+    builder.add_blocks(
+        blocks[200:], float(builder.build_path().joint_distances[-1 - SUPPORT_PIECE_COUNT // 2])
+    )
     assert joints(builder.build_path())[:201] == pytest.approx(before, abs=0)
 
 

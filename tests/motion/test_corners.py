@@ -92,7 +92,7 @@ def test_chords_run_at_the_centripetal_limit_however_short(chord: float) -> None
     limit = math.sqrt(0.8 * A * 5.0)
     on_axis = profile.distance_and_speed_at(profile.duration_s / 2)[1][0]
     assert on_axis == pytest.approx(limit, rel=0.02)
-    assert profile.phases.v.max() <= limit * 2**0.25
+    assert profile.phases.start_speeds.max() <= limit * 2**0.25
 
 
 def test_chords_do_not_ask_more_of_an_axis_than_it_has() -> None:

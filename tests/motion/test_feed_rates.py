@@ -192,6 +192,6 @@ def test_each_block_keeps_its_way_beside_one_that_is_split() -> None:
         replace(line((30, 20), (30, 25)), n=4),
     ]
     path = build_path(blocks, LIMITS)
-    spans = [path.block_span(n) for n in (1, 2, 3, 4)]
+    spans = [path.find_block_span(n) for n in (1, 2, 3, 4)]
     ways = [0.0, 50.0, 70.0, 90.0, 95.0]
     assert spans == [pytest.approx(pair) for pair in pairwise(ways)]

@@ -20,7 +20,7 @@ from tests.motion.paths import build_path
 def test_a_long_line_is_a_trapezoid() -> None:
     profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
     assert profile.duration_s == pytest.approx(100.0 / 100.0 + 100.0 / A, rel=1e-12)
-    assert profile.phases.v.max() == pytest.approx(100.0)
+    assert profile.phases.start_speeds.max() == pytest.approx(100.0)
 
 
 def test_a_short_line_is_a_triangle() -> None:

@@ -79,11 +79,11 @@ def test_blocks_that_are_not_on_the_path() -> None:
     builder = PathBuilder(LIMITS)
     builder.add_blocks(polyline([(0, 0), (0, 10), (0, 20), (0, 30)]))
     builder.drop_blocks_before(3)
-    assert builder.build_path().block_span(2) == (10.0, 20.0)  # kept for its corner
+    assert builder.build_path().find_block_span(2) == (10.0, 20.0)  # kept for its corner
     with raises_code(MotionError, "block-not-on-path", "Block 1"):
-        builder.build_path().block_span(1)
+        builder.build_path().find_block_span(1)
     with raises_code(MotionError, "block-not-on-path", "Block 4"):
-        builder.build_path().block_span(4)
+        builder.build_path().find_block_span(4)
 
 
 def test_a_full_arc_between_lines_is_met_exactly() -> None:

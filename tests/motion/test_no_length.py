@@ -66,7 +66,7 @@ def demand_setpoints(profile: MotionProfile, limits: MotionLimits) -> None:
     assert all(np.isfinite(part).all() for part in (p, v, a))
     p_end, v_end = p + (v + 0.5 * a * dt[:, None]) * dt[:, None], v + a * dt[:, None]
     assert np.abs(p[1:] - p_end[:-1]).max(initial=0.0) < 5e-4
-    assert (np.abs(v[1:] - v_end[:-1]) <= limits.acceleration_array * limits.interval * 1.01 + 1e-3).all()
+    assert (np.abs(v[1:] - v_end[:-1]) <= limits.max_acceleration_array * limits.interval * 1.01 + 1e-3).all()
     assert (np.abs(v) <= limits.speeds * 1.001 + 0.01).all()
     assert np.abs(v_end[-1]).max() < 0.01
 
@@ -120,7 +120,7 @@ def test_it_may_be_stopped_changed_and_continued_anywhere(
             builder.drop_blocks_before(int(profile.block_numbers_at(t)[0]))
         if taken < len(blocks) and chance.random() < 0.6:
             more = blocks[taken : taken + chance.randint(1, 4)]
-            builder.add_blocks(more, float(s + v * v / (0.4 * limits.plane_acceleration)))
+            builder.add_blocks(more, float(s + v * v / (0.4 * limits.max_plane_acceleration)))
             taken += len(more)
         profile = _changed(builder.build_path(), float(s), float(v), chance)
         demand_setpoints(profile, limits)
@@ -137,7 +137,7 @@ def _changed(path: MotionPath, s: float, v: float, chance: Random) -> MotionProf
     """Another plan from a state of the last one: a hold, an override, a stop behind a block, or just on."""
     match chance.choice(["hold", "override", "single", "on"]):
         case "hold":
-            return plan_motion(path, start_distance=s, start_speed=v, stop=True)
+            return plan_motion(path, start_distance=s, start_speed=v, stop_early=True)
         case "override":
             feed, rapid = chance.choice([0.0, 0.01, 1.5]), chance.choice([0.0, 0.5, 1.0])
             return plan_motion(path, start_distance=s, start_speed=v, feed_scale=feed, rapid_scale=rapid)
@@ -174,14 +174,14 @@ def test_single_block_stops_behind_a_block_of_no_length() -> None:
     still = dataclasses.replace(path, pieces=dataclasses.replace(path.pieces, rate=path.pieces.rate * 0.0))
     profile = plan_motion(still)
     assert (profile.duration_s, profile.end_distance) == (0.0, 0.0)
-    assert plan_motion(still, start_distance=0.0, stop=True).duration_s == 0.0
+    assert plan_motion(still, start_distance=0.0, stop_early=True).duration_s == 0.0
 
 
 def test_a_path_of_no_length_is_braked_planned_and_scaled_like_any_other() -> None:
     path = build_path([line((1, 2), (1, 2))], LIMITS)
     for profile in (
         plan_motion(path),
-        plan_motion(path, stop=True),
+        plan_motion(path, stop_early=True),
         plan_motion(path, feed_scale=0.0, rapid_scale=0.0),
     ):
         assert (profile.duration_s, profile.end_speed) == (0.0, 0.0)
@@ -195,7 +195,7 @@ def test_a_turn_of_c_beside_a_way_of_no_step_is_a_turn_of_c(way: float) -> None:
     far = line((0, 0), (0, 900.0), 126.0, n=1)
     turn = dataclasses.replace(line((0, 900.0), (way, 900.0), 100.0, n=2, kind=BlockKind.RAPID), c=-3600.0)
     path = build_path([far, turn], LIMITS)
-    span = path.block_span(2)
+    span = path.find_block_span(2)
     assert span[1] - span[0] == pytest.approx(3600.0)
     assert path.positions_at(np.array([span[1]]))[0] == pytest.approx([way, 900.0, -3600.0], abs=1e-9)
 

@@ -56,7 +56,7 @@ def test_a_stop_that_has_no_room_is_refused() -> None:
     """From 50 mm/s it takes 2500/2A = .41 mm."""
     path = build_path([line((0.0, 0.0), (0.0, 0.3))], LIMITS)
     with raises_code(MotionError, "cannot-stop", "0.3000 mm"):
-        plan_motion(path, start_speed=50.0, stop=True)
+        plan_motion(path, start_speed=50.0, stop_early=True)
 
 
 # --- what a path may yet become -----------------------------------------------------------------------------
@@ -101,7 +101,9 @@ def test_what_is_dropped_leaves_the_way_of_an_interval_and_a_neighbour(
     builder.add_blocks(polyline([(0.0, chord * i) for i in range(101)], 5.0))
     builder.drop_blocks_before(before)
     assert builder.build_path().block_numbers[0] == first
-    assert builder.build_path().block_span(before) == pytest.approx(((before - 1) * chord, before * chord))
+    assert builder.build_path().find_block_span(before) == pytest.approx(
+        ((before - 1) * chord, before * chord)
+    )
 
 
 @pytest.mark.parametrize("window", [1, 3, 4, 10, 99])
@@ -136,8 +138,8 @@ def test_parts_of_an_arc_join_on_it_and_are_as_short_as_its_jerk_wants() -> None
     limits = MotionLimits(vmax=(400.0, 400.0, 1200.0), amax=(40000.0, 40000.0, 12000.0), interval=T)
     path = build_path([arc((0.0, 3.0), (0.0, -3.0), (0.0, 0.0), 300.0)], limits)
     profile = plan_motion(path)
-    cruise = int(np.flatnonzero(profile.phases.a == 0.0)[0])
-    begin = float(profile.phases.t[cruise])
+    cruise = int(np.flatnonzero(profile.phases.accelerations == 0.0)[0])
+    begin = float(profile.phases.start_times_s[cruise])
     t, dt, p, v, a = profile.make_segments(begin, begin + 0.015)
     assert dt == pytest.approx(np.full(10, 0.0015))
     assert np.hypot(p[:, 0], p[:, 1]) == pytest.approx(np.full(10, 3.0))

@@ -39,14 +39,14 @@ def test_no_speed_is_above_a_limit(blocks: list[Block]) -> None:
     profile = plan_motion(build_path(blocks, LIMITS))
     t = np.linspace(0.0, profile.duration_s, 400)
     speed = profile.distance_and_speed_at(t)[1]
-    path, piece = profile.path, profile.phases.piece
+    path, piece = profile.path, profile.phases.piece_indices
     tangent = path.pieces[piece].tangent(path.pieces.length[piece] / 2)
-    assert (np.abs(tangent[:, :2] * profile.phases.v[:, None]) <= V * SLACK).all()
+    assert (np.abs(tangent[:, :2] * profile.phases.start_speeds[:, None]) <= V * SLACK).all()
     feeds = {b.n: b.feed for b in blocks}
     assert (speed <= np.array([feeds[n] for n in profile.block_numbers_at(t).tolist()]) * SLACK + 1e-9).all()
     radius = path.pieces.radius[piece]
     arc = radius > 0.0
-    assert (profile.phases.v[arc] ** 2 <= 0.8 * A * radius[arc] * SLACK).all()
+    assert (profile.phases.start_speeds[arc] ** 2 <= 0.8 * A * radius[arc] * SLACK).all()
 
 
 @few
@@ -76,7 +76,7 @@ def test_a_corner_steps_no_axis_by_more_than_one_interval(blocks: list[Block]) -
 def test_setpoints_ask_little_more_than_the_acceleration(blocks: list[Block]) -> None:
     """Sampled at the interval; what is over comes from several corners of tiny pieces within one."""
     profile = plan_motion(build_path(blocks, LIMITS))
-    changes = np.append(profile.phases.t, profile.duration_s)
+    changes = np.append(profile.phases.start_times_s, profile.duration_s)
     for begin in (0.0, 0.3 * T, 0.6 * T):
         grid = np.arange(begin - 2 * T, profile.duration_s + 2 * T, T)
         near = np.abs(grid - changes[np.searchsorted(changes, grid).clip(max=len(changes) - 1)]) < 3 * T

@@ -45,13 +45,13 @@ def test_a_hold_rests_within_the_braking_distance(blocks: list[Block], when: flo
     path = build_path(blocks, LIMITS)
     before = plan_motion(path, feed_scale=scale)
     (s,), (v,) = before.distance_and_speed_at(when * before.duration_s)
-    hold = plan_motion(path, start_distance=s, start_speed=v, stop=True)
+    hold = plan_motion(path, start_distance=s, start_speed=v, stop_early=True)
     weakest = path.accelerations[
         path.piece_at(np.array([s]))[0] : path.piece_at(np.array([hold.end_distance]))[0] + 1
     ].min()
     assert hold.end_distance - s <= v * v / (2.0 * weakest) * (1.0 + 1e-6) + 1e-8
     assert hold.distance_and_speed_at(hold.duration_s)[1][0] == 0.0
-    assert hold.phases.v.max(initial=0.0) <= v + 1e-9
+    assert hold.phases.start_speeds.max(initial=0.0) <= v + 1e-9
     resumed = plan_motion(path, start_distance=hold.end_distance)
     assert resumed.end_distance == pytest.approx(path.joint_distances[-1], rel=1e-12)
 
@@ -117,14 +117,14 @@ def test_zero_feed_override_lets_a_rapid_come_to_the_feed() -> None:
 def test_a_stop_far_from_the_end_of_a_long_path() -> None:
     points = [(0.0, 0.01 * i) for i in range(20_000)]
     path = build_path(polyline(points, 100.0), LIMITS)
-    hold = plan_motion(path, start_distance=50.0, start_speed=100.0, stop=True)
+    hold = plan_motion(path, start_distance=50.0, start_speed=100.0, stop_early=True)
     assert hold.end_distance == pytest.approx(50.0 + 100.0**2 / (2 * A))
     assert len(hold) < 200
 
 
 def test_at_rest_a_stop_stays() -> None:
     path = build_path([line((0, 0), (0, 1))], LIMITS)
-    hold = plan_motion(path, start_distance=0.4, stop=True)
+    hold = plan_motion(path, start_distance=0.4, stop_early=True)
     assert (hold.duration_s, hold.end_distance) == (0.0, 0.4)
     assert hold.positions_at(1.0)[0] == pytest.approx([0.0, 0.4, 0.0])
 
@@ -134,7 +134,7 @@ def test_too_fast_for_the_end_is_refused() -> None:
     with raises_code(MotionError, "cannot-stop", "100.000 mm/s", "1.0000 mm"):
         plan_motion(path, start_distance=99.0, start_speed=100.0)
     with raises_code(MotionError, "cannot-stop"):
-        plan_motion(path, start_distance=99.0, start_speed=100.0, stop=True)
+        plan_motion(path, start_distance=99.0, start_speed=100.0, stop_early=True)
     with raises_code(MotionError, "cannot-stop-at-end"):
         plan_motion(path, start_distance=100.0, start_speed=1.0)
 
@@ -144,7 +144,7 @@ def test_too_fast_for_a_corner_is_refused() -> None:
     with raises_code(MotionError, "too-fast", "1.524"):
         plan_motion(path, start_distance=49.5, start_speed=100.0)
     with raises_code(MotionError, "too-fast", "1.524"):
-        plan_motion(path, start_distance=49.5, start_speed=100.0, stop=True)
+        plan_motion(path, start_distance=49.5, start_speed=100.0, stop_early=True)
 
 
 def test_too_fast_for_an_arc_is_refused() -> None:
@@ -175,7 +175,7 @@ def test_more_blocks_are_taken_up_without_a_stop() -> None:
     (s,), (v,) = plan_motion(builder.build_path()).distance_and_speed_at(0.3)
     builder.add_blocks(blocks[5:])
     builder.drop_blocks_before(3)
-    assert builder.build_path().block_span(3) == pytest.approx((20.0, 30.0))
+    assert builder.build_path().find_block_span(3) == pytest.approx((20.0, 30.0))
     after = plan_motion(builder.build_path(), start_distance=s, start_speed=v)
     assert after.duration_s == pytest.approx(whole.duration_s - 0.3, rel=1e-9)
     assert after.positions_at(after.duration_s)[0] == pytest.approx([0.0, 100.0, 0.0])

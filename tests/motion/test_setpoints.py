@@ -14,7 +14,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import FloatArray, MotionLimits
 from core.motion.motion_plan import plan_motion
 from core.motion.motion_profile import SegmentArrays
-from core.ports import Segments
+from core.ports import MotionSegments
 from tests.motion.moves import LIMITS, A, T, arc, line, polyline, programs
 from tests.motion.paths import build_path
 
@@ -39,10 +39,10 @@ def evaluate(segments: SegmentArrays, t: FloatArray) -> FloatArray:
 
 def test_a_line_is_three_pieces_in_the_order_of_the_port() -> None:
     profile = plan_motion(build_path([line((0, 0), (0, 100), 100.0)], LIMITS))
-    segments = Segments(*profile.make_segments(0.0, math.inf, 7.0))
-    assert segments.t == pytest.approx([7.0, 7.0 + 100 / A, 8.0])
-    assert segments.v[:, 1] == pytest.approx([0.0, 100.0, 100.0])
-    assert segments.a[:, 1] == pytest.approx([A, 0.0, -A])
+    segments = MotionSegments(*profile.make_segments(0.0, math.inf, 7.0))
+    assert segments.start_times_s == pytest.approx([7.0, 7.0 + 100 / A, 8.0])
+    assert segments.velocities[:, 1] == pytest.approx([0.0, 100.0, 100.0])
+    assert segments.accelerations[:, 1] == pytest.approx([A, 0.0, -A])
 
 
 @pytest.mark.long

@@ -48,7 +48,7 @@ def test_chunks_continue_each_other(blocks: list[Block], window: int) -> None:
     chunks = planned(blocks, window)
     for a, b in pairwise(chunks):
         assert b.start_time_s == pytest.approx(a.start_time_s + a.profile.duration_s, rel=1e-12)
-        assert (b.profile.start_distance, b.profile.phases.v[0]) == pytest.approx(
+        assert (b.profile.start_distance, b.profile.phases.start_speeds[0]) == pytest.approx(
             (a.profile.end_distance, a.profile.end_speed)
         )
 

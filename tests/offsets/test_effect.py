@@ -48,7 +48,7 @@ def test_a_tool_that_moves_moves_its_own_path_alone(effect: OffsetEffect) -> Non
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(after))
     pair = settled(effect)
     assert pair is not None
-    assert pair.largest_distance == pytest.approx(0.05)  # 3, 4, 5
+    assert pair.largest_distance_mm == pytest.approx(0.05)  # 3, 4, 5
     dx, dz = pair.picture_after.x - pair.picture_before.x, pair.picture_after.z - pair.picture_before.z
     first = abs(pair.picture_before.x - 0.5 * INCH) < 1e-9  # T1's cylinder
     assert dx[first] == pytest.approx(0.03)
@@ -64,7 +64,7 @@ def test_a_secondary_offset_moves_the_moves_that_it_is_called_for(effect: Offset
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS, correction))
     pair = settled(effect)
     assert pair is not None
-    assert pair.largest_distance == pytest.approx(0.01)
+    assert pair.largest_distance_mm == pytest.approx(0.01)
     moved = abs(pair.picture_after.x - pair.picture_before.x) > 1e-9
     assert set(pair.picture_before.x[moved].round(6)) == {round(0.6 * INCH, 6)}
 
@@ -73,7 +73,7 @@ def test_no_difference_is_said(effect: OffsetEffect) -> None:
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables({**TOOLS, 9: ToolOffset(5.0, 5.0)}))
     pair = settled(effect)
     assert pair is not None
-    assert pair.is_equal
+    assert pair.has_no_effect
 
 
 def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
@@ -89,8 +89,8 @@ def test_a_path_of_another_kind_is_drawn_as_it_is() -> None:
     )
     pair = settled(effect)
     assert pair is not None
-    assert math.isinf(pair.largest_distance)
-    assert not pair.is_equal
+    assert math.isinf(pair.largest_distance_mm)
+    assert not pair.has_no_effect
     effect.close()
 
 
@@ -107,6 +107,6 @@ def test_a_worker_that_fails_is_told() -> None:
 
 def test_what_nobody_looks_at_any_more_is_forgotten(effect: OffsetEffect) -> None:
     effect.request_paths(job(), OffsetTables(TOOLS), OffsetTables(TOOLS))
-    effect.clear()
+    effect.clear_results()
     assert settled(effect) is None
     assert effect.error_text == ""

@@ -10,7 +10,7 @@ import pytest
 from app.compose.machine.kinematics_chain import build_kinematics
 from app.compose.machine.machine_files import load_named_machine
 from app.compose.machine.machine_setup import create_setup
-from app.compose.stored_offsets import create_offset_book, create_setup_with, read_offsets
+from app.compose.stored_offsets import create_offset_book, create_setup_with_offsets, read_offsets
 from app.desk.status.machine_status import Tone
 from app.offsets.active_offsets import MillOffsets, add_mill_offsets
 from app.offsets.cell_table import CellTable
@@ -332,7 +332,7 @@ def test_tools_of_an_offsets_file_stand_in_the_tool_table(tmp_path: Path) -> Non
     book = create_offset_book(lambda: offsets, None)
     shown, counts = (
         book.mill_tools[20],
-        create_setup_with(load_named_machine("ac-table-mill"), offsets).tools[20],
+        create_setup_with_offsets(load_named_machine("ac-table-mill"), offsets).tools[20],
     )
     assert (shown.name, shown.length, shown.radius) == ("Mill", pytest.approx(75.946), pytest.approx(6.35))
     assert (counts.z, counts.nose_radius) == (shown.length, shown.radius)

@@ -210,7 +210,7 @@ def test_undo_after_a_number_is_of_this_offset_and_a_value_is_only_cancelled(roo
 def test_the_history_has_time_from_to_and_reason(room: Room) -> None:
     page = room.page()
     room.enter(page, "1", ".5-.002", "", "", asked=True)
-    page.offset_history.toggle_shown()
+    page.offset_history.toggle_list()
     assert page.offset_history.listed_changes is not None
     at, which, change, why = page.offset_history.format_change(page.offset_history.listed_changes[0])
     assert at.startswith("20")
@@ -234,8 +234,8 @@ UNDER_WAY = [
     MachineState.RUN,
     MachineState.WAIT,
     MachineState.HOLD,
-    MachineState.HOLDING,
-    MachineState.BLOCK_END,
+    MachineState.STOPPING,
+    MachineState.SINGLE_BLOCK_STOP,
     MachineState.PROGRAM_STOP,
 ]
 
@@ -270,7 +270,7 @@ def test_all_offsets_are_not_cleared_under_a_running_program(room: Room, state: 
     assert room.store.offsets.secondary_offsets.read_rows()[1].x == pytest.approx(0.05 * 25.4)
 
 
-@pytest.mark.parametrize("state", [MachineState.JOG, MachineState.HOME])
+@pytest.mark.parametrize("state", [MachineState.JOG, MachineState.HOMING])
 def test_no_correction_while_a_hand_moves_the_slides(room: Room, state: MachineState) -> None:
     page = room.page()
     room.at(state)
@@ -317,7 +317,7 @@ def test_a_correction_at_a_stop_counts_when_the_job_has_ended(room: Room) -> Non
 
 @pytest.fixture
 def read_only(tmp_path: Path) -> Iterator[Room]:
-    book = OffsetBook(lock_reason="READ ONLY", secondary={1: SecondaryRow(0.0, 0.1, 0.0)})
+    book = OffsetBook(lock_reason="READ ONLY", secondary_offsets={1: SecondaryRow(0.0, 0.1, 0.0)})
     with room_on(tmp_path, book=book) as made:
         yield made
 
@@ -332,7 +332,7 @@ def test_offsets_of_a_file_are_read_only(read_only: Room) -> None:
     assert not room.desk.confirm_key
     assert room.desk.prompt_notice == "READ ONLY"
     assert page.present_row is None
-    assert page.offset_book.secondary.get(1) == (0.0, 0.1, 0.0)
+    assert page.offset_book.secondary_offsets.get(1) == (0.0, 0.1, 0.0)
 
 
 def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
@@ -342,7 +342,7 @@ def test_a_change_before_the_last_is_saved_is_not_taken(room: Room) -> None:
     assert book.undo_step(OffsetKind.SECONDARY, 1, 1).startswith("STILL SAVING")
     room.store.write(lambda _connection: None).result(LIMIT)
     assert book.poll_saving() == ""
-    assert book.secondary.get(1) == (0.1, 0.0, 0.0)
+    assert book.secondary_offsets.get(1) == (0.1, 0.0, 0.0)
 
 
 def test_a_store_that_is_closed_is_told(room: Room) -> None:

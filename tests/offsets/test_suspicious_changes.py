@@ -62,7 +62,7 @@ def test_a_new_master_names_itself_only_where_set_tools_follow() -> None:
     master = {1: {"x": 1.0, "z": 1.0, "master": True}}
     assert find_table_suspicions(OffsetKind.TOOL, {}, {**master, 2: {"x": 1.0, "z": 1.0}}, TRAVEL) == ()
     found = find_table_suspicions(OffsetKind.TOOL, {2: TOOL}, master, TRAVEL)
-    assert [(each.number, each.kind) for each in found] == [(1, SuspicionKind.NEW_MASTER)]
+    assert [(each.row_number, each.kind) for each in found] == [(1, SuspicionKind.NEW_MASTER)]
     assert (
         find_table_suspicions(OffsetKind.TOOL, {1: ToolRow(1.0, 1.0, master=True), 2: TOOL}, master, TRAVEL)
         == ()

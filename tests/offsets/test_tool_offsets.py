@@ -69,11 +69,11 @@ def test_f2_adds_to_what_is_there(room: Room) -> None:
     grid = at(room, 1, "wear_x")
     for _ in range(10):
         write(grid, ".0001")
-        grid.add_entered()
+        grid.add_entered_value()
         room.settle(grid)
     assert room.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0005 * INCH
     assert room.store.offsets.read_history()[0].why == "WEAR X + .0001"
-    grid.add_entered()
+    grid.add_entered_value()
     assert room.desk.prompt_notice == text("offsets.add-first")
 
 
@@ -137,13 +137,13 @@ def test_no_other_field_of_a_tool_that_was_never_set(room: Room, name: str) -> N
 def test_the_master_is_chosen_and_the_others_are_shown_from_it(room: Room) -> None:
     set_tools(room)
     grid = at(room, 2, "master")
-    grid.toggle_relative()
+    grid.toggle_relative_display()
     assert room.desk.prompt_notice == text("offsets.no-master")
     before = {n: row.offset for n, row in room.store.offsets.tool_offsets.read_rows().items()}
     room.enter(grid, "", asked=True)
     assert room.desk.offset_book.master_number == 2
     assert {n: row.offset for n, row in room.store.offsets.tool_offsets.read_rows().items()} == before
-    grid.toggle_relative()
+    grid.toggle_relative_display()
     # T1 - T2: X (-.5 - 1) in, Z (-3 - -2) in
     assert (grid.format_cell(1, "x"), grid.format_cell(1, "z")) == ("−1.50000", "−1.00000")
     assert grid.format_cell(2, "x") == "+1.00000"
@@ -174,7 +174,13 @@ GEOMETRY = ("x", "z", "nose_radius", "quadrant", "master")
 
 @pytest.mark.parametrize(
     "state",
-    [MachineState.RUN, MachineState.WAIT, MachineState.HOLD, MachineState.BLOCK_END, MachineState.HOLDING],
+    [
+        MachineState.RUN,
+        MachineState.WAIT,
+        MachineState.HOLD,
+        MachineState.SINGLE_BLOCK_STOP,
+        MachineState.STOPPING,
+    ],
 )
 @pytest.mark.parametrize("name", GEOMETRY)
 def test_no_geometry_changes_while_a_cycle_is_under_way(room: Room, state: MachineState, name: str) -> None:
@@ -287,7 +293,7 @@ def test_undo_and_history(room: Room) -> None:
     room.settle(grid)
     assert room.store.offsets.tool_offsets.read_rows()[1].wear_x == 0.0
     assert room.desk.prompt_notice == "T1 UNDONE"
-    grid.offset_history.toggle_shown()
+    grid.offset_history.toggle_list()
     assert grid.offset_history.listed_changes is not None
     at_, which, change, why = grid.offset_history.format_change(grid.offset_history.listed_changes[1])
     assert (which, why) == ("T1", "WEAR X -.001")

@@ -76,7 +76,7 @@ def test_fields_are_those_of_the_kind(room: Room) -> None:
 @pytest.mark.parametrize("kind", TOOL_KINDS)
 def test_every_kind_has_its_fields_on_the_page(room: Room, kind: str) -> None:
     set_tools(room)
-    room.desk.offset_book.shapes[5] = ShapeRow(kind)
+    room.desk.offset_book.tool_shapes[5] = ShapeRow(kind)
     page = ToolShapeTable(room.desk)
     page.update(room.now[0])
     page.select_tool(5)

@@ -4,7 +4,12 @@ from math import radians, tan
 
 import pytest
 
-from core.part.insert_codes import CORNER_ANGLES, InsertCodeError, decode_insert_code, metric_circle_sizes
+from core.part.insert_codes import (
+    CORNER_ANGLES,
+    InsertCodeError,
+    decode_insert_code,
+    list_metric_circle_sizes,
+)
 from tests.coded import raises_code
 
 # Code, point angle, inscribed circle, edge, thickness, nose radius, clearance. The edges are the catalogues'
@@ -93,7 +98,7 @@ def test_knux_is_the_only_parallelogram() -> None:
 @pytest.mark.parametrize("shape", [shape for shape in CORNER_ANGLES if shape not in "RK"])
 def test_size_is_the_edge_in_whole_millimetres(shape: str) -> None:
     """ISO 1832, symbol 5; the standard's tables list 16 for T 3/8 in, 22 for 1/2 in, 08 for W 1/2 in."""
-    for figures, circle in metric_circle_sizes(shape).items():
+    for figures, circle in list_metric_circle_sizes(shape).items():
         edge = decoded_edge(shape, circle)
         if figures not in {"L3", "03", "04"}:  # makers' and doubled names
             assert int(figures) == int(edge + 0.005)
@@ -152,7 +157,7 @@ def test_code_that_means_nothing_says_which_character(insert: str, code: str, va
 )
 def test_sizes_are_those_of_the_catalogues(circle: float, figures: tuple[str, ...]) -> None:
     for shape, name in zip("CDSTVW", figures, strict=True):
-        assert metric_circle_sizes(shape)[name] == pytest.approx(circle)
+        assert list_metric_circle_sizes(shape)[name] == pytest.approx(circle)
 
 
 def test_thin_inserts_of_small_bars_have_makers_circles() -> None:
@@ -163,4 +168,4 @@ def test_thin_inserts_of_small_bars_have_makers_circles() -> None:
 
 
 def test_a_large_triangle_is_not_rounded_up() -> None:
-    assert metric_circle_sizes("T")["54"] == pytest.approx(31.75)  # 54.993 mm
+    assert list_metric_circle_sizes("T")["54"] == pytest.approx(31.75)  # 54.993 mm

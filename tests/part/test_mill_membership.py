@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import field_from_section
+from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import FloatArray
 
 LENGTH, RADIUS, BORE = 20.0, 10.0, 2.0
@@ -20,7 +20,7 @@ PLACES = 4001
 
 def tube() -> MilledPart:
     edges = np.linspace(-LENGTH, 0.0, 2001)
-    return MilledPart(field_from_section(edges, np.full((1, 2000), BORE), np.full((1, 2000), RADIUS)))
+    return MilledPart(make_field_from_section(edges, np.full((1, 2000), BORE), np.full((1, 2000), RADIUS)))
 
 
 def somewhere(part: MilledPart, random: np.random.Generator, count: int) -> tuple[FloatArray, np.ndarray]:
@@ -73,7 +73,7 @@ def test_mill_parallel_to_the_axis(seed: int) -> None:
     path = np.column_stack([random.uniform(-12.0, 12.0, (4, 2)), random.uniform(-15.0, 1.0, 4)])
     radius, length = random.uniform(0.5, 4.0), random.choice([6.0, 100.0])
     before = part.field.volume_mm3
-    told = part.mill_axial(path, radius, length=length)
+    told = part.mill_axial(path, radius, cutting_length=length)
     assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_axial(points, path, radius, length))
@@ -94,7 +94,7 @@ def test_mill_on_a_radius(seed: int, height: float) -> None:
     path[1, [0, 2]] = path[0, [0, 2]]  # and in Z alone
     radius = random.uniform(0.8, 3.0)
     before = part.field.volume_mm3
-    told = part.mill_radial(path, radius, height=height)
+    told = part.mill_radial(path, radius, axis_offset=height)
     assert part.field.volume_mm3 == pytest.approx(before - told.volume_mm3, rel=1e-9)
     points, metal = somewhere(part, random, 1500)
     check(metal, depth_radial(points, path, radius, height))
@@ -107,11 +107,11 @@ def test_what_meets_takes_and_what_does_not_leaves(seed: int) -> None:
         place = random.uniform(-14.0, 14.0, 2)
         axial = np.column_stack([place, place + random.uniform(-4.0, 4.0, 2)]).T
         path = np.column_stack([axial, random.uniform(-6.0, 3.0, 2)])
-        meets = part.hits_axial(path, 1.5)
+        meets = part.has_axial_collision(path, 1.5)
         assert bool(part.mill_axial(path, 1.5).depth_mm > 0.01) <= meets
         path = np.column_stack(
             [random.uniform(6.0, 13.0, 2), random.uniform(-25.0, 4.0, 2), random.uniform(0.0, 360.0, 2)]
         )
-        meets = part.hits_radial(path, 1.5)
+        meets = part.has_radial_collision(path, 1.5)
         assert bool(part.mill_radial(path, 1.5).depth_mm > 0.03) <= meets
-        assert not part.hits_radial(path, 1.5)
+        assert not part.has_radial_collision(path, 1.5)

@@ -10,7 +10,7 @@ import pytest
 
 from core.geometry.virtual_mill import FacePlane, PlaneMove, SidePlane
 from core.part.milled_part import MilledPart
-from core.part.polar_field import field_from_section
+from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import (
     MAX_CHORD_ERROR_MM,
     make_axial_path,
@@ -22,7 +22,7 @@ from core.part.ray_cuts import (
 
 def bar() -> MilledPart:
     low, high = np.zeros((1, 2000)), np.full((1, 2000), 10.0)
-    return MilledPart(field_from_section(np.linspace(-20.0, 0.0, 2001), low, high))
+    return MilledPart(make_field_from_section(np.linspace(-20.0, 0.0, 2001), low, high))
 
 
 @pytest.mark.parametrize(
@@ -38,7 +38,9 @@ def test_tool_at_minus_x_stands_at_minus_c(c: float, x: float, y: float) -> None
 
 def test_tool_at_plus_x_stands_opposite() -> None:
     assert make_axial_path(np.array([[7.0, 0.0, 90.0]]))[0] == pytest.approx([0.0, 7.0, 0.0])
-    assert make_radial_path(np.array([[7.0, 0.0, 90.0]]), far_side=True)[0] == pytest.approx([7.0, 0.0, 90.0])
+    assert make_radial_path(np.array([[7.0, 0.0, 90.0]]), is_far_side=True)[0] == pytest.approx(
+        [7.0, 0.0, 90.0]
+    )
 
 
 def test_tool_above_the_axis_stands_towards_y() -> None:
@@ -55,13 +57,17 @@ def test_line_on_the_face_lies_on_the_part_as_c_stood_when_xc_was_entered() -> N
 @pytest.mark.parametrize("h", [0.0, 0.75, -2.0])
 @pytest.mark.parametrize("c0", [0.0, 30.0])
 def test_path_on_the_face_is_where_the_slides_bring_the_mill(c0: float, h: float) -> None:
-    move = PlaneMove(FacePlane(c0, h), (8.0, -3.0, 0.0), (5.0, 6.0, -2.0), start_angle=math.atan2(-3.0, 8.0))
+    move = PlaneMove(
+        FacePlane(c0, h), (8.0, -3.0, 0.0), (5.0, 6.0, -2.0), start_angle_rad=math.atan2(-3.0, 8.0)
+    )
     share = np.linspace(0.0, 1.0, 2)
-    assert make_plane_path(move) == pytest.approx(make_axial_path(move.machine_positions(share), h))
+    assert make_plane_path(move) == pytest.approx(make_axial_path(move.compute_machine_positions(share), h))
 
 
 def test_line_past_the_axis_nearer_than_the_mill_stands_high_goes_round_it() -> None:
-    move = PlaneMove(FacePlane(0.0, 1.0), (8.0, 0.5, 0.0), (-8.0, 0.5, 0.0), start_angle=math.atan2(0.5, 8.0))
+    move = PlaneMove(
+        FacePlane(0.0, 1.0), (8.0, 0.5, 0.0), (-8.0, 0.5, 0.0), start_angle_rad=math.atan2(0.5, 8.0)
+    )
     way = make_plane_path(move)
     assert len(way) > 100
     assert np.hypot(way[:, 0], way[:, 1]).min() == pytest.approx(1.0)
@@ -108,7 +114,7 @@ def test_hexagon_by_xc_stands_as_it_was_entered() -> None:
         (corner * math.cos(a), corner * math.sin(a), -5.0) for a in np.radians(np.arange(30.0, 420.0, 60.0))
     ]
     for start, end in itertools.pairwise(spots):
-        move = PlaneMove(FacePlane(90.0), start, end, start_angle=math.atan2(start[1], start[0]))
+        move = PlaneMove(FacePlane(90.0), start, end, start_angle_rad=math.atan2(start[1], start[0]))
         part.mill_axial(make_plane_path(move), 3.0)
     left = math.pi * 100.0 * 15.0 + 2.0 * math.sqrt(3.0) * 64.0 * 5.0
     assert part.field.volume_mm3 == pytest.approx(left, rel=1e-3)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from core.part.milled_part import MilledPart
-from core.part.polar_field import field_from_section
+from core.part.polar_field import make_field_from_section
 from core.part.ray_cuts import FloatArray
 from core.part.tool_polygons import PartError
 from tests.coded import raises_code
@@ -24,7 +24,7 @@ def bar(radius: float = R, bore: float = 0.0, length: float = LENGTH) -> MilledP
     """A bar or tube from Z -``length`` to its face at Z0."""
     count = round(length / 0.01)
     low, high = np.full((1, count), bore), np.full((1, count), radius)
-    return MilledPart(field_from_section(np.linspace(-length, 0.0, count + 1), low, high))
+    return MilledPart(make_field_from_section(np.linspace(-length, 0.0, count + 1), low, high))
 
 
 def path(*points: tuple[float, float, float]) -> FloatArray:
@@ -114,7 +114,7 @@ def test_cross_hole_through_both_walls_of_a_tube() -> None:
 
 def test_cross_hole_beside_the_axis() -> None:
     part = bar()
-    told = part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0, height=5.0)
+    told = part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0, axis_offset=5.0)
     hole = 4.0 * integral(lambda v: np.sqrt(R * R - (5.0 + v) ** 2) * np.sqrt(4.0 - v * v), -2.0, 2.0)
     check(part, hole, told.volume_mm3)
     assert part.field.outer_radii[0, :, 60].min() < 8.0  # towards growing angles: at 30°
@@ -123,7 +123,7 @@ def test_cross_hole_beside_the_axis() -> None:
 
 def test_blind_hole_on_the_side_with_the_point_of_a_drill() -> None:
     part = bar()
-    told = part.mill_radial(path((12.0, -10.0, 200.0), (4.0, -10.0, 200.0)), 2.0, point=1.2)
+    told = part.mill_radial(path((12.0, -10.0, 200.0), (4.0, -10.0, 200.0)), 2.0, cone_height=1.2)
     above = integral(lambda u: 2.0 * np.sqrt(4.0 - u * u) * (np.sqrt(R * R - u * u) - 4.0), -2.0, 2.0)
     check(part, above - math.pi * 4.0 * 1.2 * 2.0 / 3.0, told.volume_mm3)
 
@@ -131,7 +131,7 @@ def test_blind_hole_on_the_side_with_the_point_of_a_drill() -> None:
 @pytest.mark.parametrize("point", [0.0, 1.2])
 def test_hole_in_the_face_off_the_centre(point: float) -> None:
     part = bar()
-    told = part.mill_axial(path((5.0, -1.0, 2.0), (5.0, -1.0, -12.0)), 2.0, point=point)
+    told = part.mill_axial(path((5.0, -1.0, 2.0), (5.0, -1.0, -12.0)), 2.0, cone_height=point)
     check(part, math.pi * 4.0 * (12.0 - point * 2.0 / 3.0), told.volume_mm3, share=0.003)
 
 
@@ -203,7 +203,7 @@ def test_slot_with_a_ramp_down_is_as_deep_as_the_end_of_the_mill_came() -> None:
 
 def test_end_mill_no_longer_than_its_flutes_leaves_what_stands_above() -> None:
     part = bar()
-    told = part.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0, length=3.0)
+    told = part.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0, cutting_length=3.0)
     other = bar()
     deep = other.mill_axial(path((15.0, 0.0, -6.0), (9.0, 0.0, -6.0)), 2.0)
     assert deep.volume_mm3 == pytest.approx(2.0 * told.volume_mm3, rel=1e-6)
@@ -218,7 +218,7 @@ def test_hexagon_turned_afterwards() -> None:
     for k in range(6):
         part.mill_axial(past(60.0 * k, 8.0, 3.0, -30.0), 3.0)
     count = len(part.field.column_centers)
-    part.remove_turned(0, np.full(count, 8.5), np.full(count, math.inf))
+    part.remove_turned_material(0, np.full(count, 8.5), np.full(count, math.inf))
     area = math.pi * 8.5**2 - 6.0 * segment(8.5, 8.0)
     assert part.field.volume_mm3 == pytest.approx(area * LENGTH, rel=THOUSANDTH)
 
@@ -227,7 +227,7 @@ def test_bore_turned_through_a_cross_hole() -> None:
     part = bar()
     part.mill_radial(path((12.0, -10.0, 0.0), (-12.0, -10.0, 0.0)), 2.0)
     count = len(part.field.column_centers)
-    part.remove_turned(0, np.zeros(count), np.full(count, 6.0))
+    part.remove_turned_material(0, np.zeros(count), np.full(count, 6.0))
     walls = 8.0 * integral(
         lambda x: (np.sqrt(R * R - x * x) - np.sqrt(36.0 - x * x)) * np.sqrt(4.0 - x * x), 0.0, 2.0
     )
@@ -253,7 +253,7 @@ def test_same_cut_again_meets_nothing() -> None:
     way = path((7.0, -14.0, 45.0), (7.0, -6.0, 45.0))
     assert part.mill_radial(way, 2.0)
     assert not part.mill_radial(way, 2.0)
-    assert not part.hits_radial(way, 2.0)
+    assert not part.has_radial_collision(way, 2.0)
 
 
 # --- what is met and what is not
@@ -265,7 +265,7 @@ def test_same_cut_again_meets_nothing() -> None:
 )
 def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, met: bool) -> None:
     part = bar()
-    assert part.hits_axial(path((14.0, 0.0, z), (x, 0.0, z)) if z else path((x, 0.0, z)), 2.0) is met
+    assert part.has_axial_collision(path((14.0, 0.0, z), (x, 0.0, z)) if z else path((x, 0.0, z)), 2.0) is met
     assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
 
 
@@ -275,7 +275,7 @@ def test_rapid_of_a_mill_parallel_to_the_axis_meets_the_bar(x: float, z: float, 
 )
 def test_rapid_of_a_mill_on_a_radius_meets_the_bar(r: float, z: float, met: bool) -> None:
     part = bar()
-    assert part.hits_radial(path((r, z, 10.0), (r, z, 70.0)), 2.0) is met
+    assert part.has_radial_collision(path((r, z, 10.0), (r, z, 70.0)), 2.0) is met
     assert part.field.volume_mm3 == pytest.approx(BAR, rel=1e-4)
 
 

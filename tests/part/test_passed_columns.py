@@ -36,9 +36,9 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 
 def test_the_greatest_radius_is_that_of_the_columns_between() -> None:
-    assert part().max_radius_between(-15.0, -1.0) == 5.0
-    assert part().max_radius_between(-30.0, -1.0) == 10.0
-    assert part().max_radius_between(1.0, 5.0) == 0.0
+    assert part().find_max_radius(-15.0, -1.0) == 5.0
+    assert part().find_max_radius(-30.0, -1.0) == 10.0
+    assert part().find_max_radius(1.0, 5.0) == 0.0
 
 
 @pytest.mark.parametrize("end", [(-15.0, 5.5), (-19.0, 5.1)])

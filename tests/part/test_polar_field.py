@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from core.part.polar_field import PolarField, field_from_section, sort_intervals
+from core.part.polar_field import PolarField, make_field_from_section, sort_intervals
 from core.part.tool_polygons import PartError
 from tests.coded import raises_code
 
@@ -34,7 +34,7 @@ def take(
 def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
     edges = np.linspace(-30.0, 0.0, 30_001)
     high = -0.4 * 0.5 * (edges[1:] + edges[:-1])
-    field = field_from_section(edges, np.zeros((1, 30_000)), high[None], columns)
+    field = make_field_from_section(edges, np.zeros((1, 30_000)), high[None], columns)
     assert len(field.column_centers) <= columns
     assert field.volume_mm3 == pytest.approx(math.pi * 144.0 * 30.0 / 3.0, rel=1e-6)
 
@@ -42,7 +42,7 @@ def test_cone_keeps_its_volume_in_few_columns(columns: int) -> None:
 def test_shoulder_stands_where_it_was_turned() -> None:
     edges = np.linspace(-20.0, 0.0, 2001)
     high = np.where(0.5 * (edges[1:] + edges[:-1]) > -7.33, 4.0, 9.0)
-    field = field_from_section(edges, np.zeros((1, 2000)), high[None], 12)
+    field = make_field_from_section(edges, np.zeros((1, 2000)), high[None], 12)
     assert np.min(np.abs(field.column_edges + 7.33)) < 1e-9
     assert set(np.round(field.outer_radii[0, :, 0], 9)) == {4.0, 9.0}
 
@@ -51,7 +51,7 @@ def test_air_at_both_ends_has_no_columns() -> None:
     edges = np.linspace(-20.0, 5.0, 2501)
     z = 0.5 * (edges[1:] + edges[:-1])
     high = np.where((z < 0.0) & (z > -15.0), 6.0, 0.0)
-    field = field_from_section(edges, np.zeros((1, 2500)), high[None])
+    field = make_field_from_section(edges, np.zeros((1, 2500)), high[None])
     assert (field.column_edges[0], field.column_edges[-1]) == pytest.approx((-15.0, 0.0))
 
 
@@ -135,7 +135,7 @@ def test_field_has_no_more_columns_than_it_may() -> None:
 
 def test_section_without_metal_is_refused() -> None:
     with raises_code(PartError, "no-stock"):
-        field_from_section(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
+        make_field_from_section(np.linspace(0.0, 1.0, 11), np.ones((1, 10)), np.ones((1, 10)))
 
 
 @pytest.mark.parametrize(

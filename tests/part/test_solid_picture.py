@@ -9,7 +9,7 @@ import pytest
 
 from core.part.milled_part import MilledPart
 from core.part.part_scene import ImageArray, PartColors
-from core.part.polar_field import field_from_section
+from core.part.polar_field import make_field_from_section
 from core.part.solid_picture import SolidPicture
 from core.part.solid_view import SolidView, fit_view
 from core.part.surface_points import Solid, make_milled_solid, make_turned_solid
@@ -30,11 +30,11 @@ def turned(*steps: tuple[float, float], bore: float = 0.0, deep: float = 0.0) ->
 def milled(length: float = 20.0, radius: float = 10.0) -> MilledPart:
     count = round(length / 0.01)
     edges = np.linspace(-length, 0.0, count + 1)
-    return MilledPart(field_from_section(edges, np.zeros((1, count)), np.full((1, count), radius)))
+    return MilledPart(make_field_from_section(edges, np.zeros((1, count)), np.full((1, count), radius)))
 
 
 def draw(solid: Solid, view: SolidView, hits: tuple[tuple[float, float], ...] = ()) -> ImageArray:
-    return SolidPicture().draw(solid, view, WIDTH, HEIGHT, hits=hits)
+    return SolidPicture().draw(solid, view, WIDTH, HEIGHT, hit_z_spans=hits)
 
 
 def red(image: ImageArray) -> np.ndarray:
@@ -185,7 +185,7 @@ def test_flat_is_lit_evenly_and_the_round_is_not() -> None:
 def test_part_beside_the_picture_leaves_the_ground() -> None:
     view = SolidView(pixels_per_mm=10.0, center_z_mm=200.0)
     assert not draw(turned((20.0, 5.0)), view).any()
-    ground = SolidPicture(PartColors(ground=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
+    ground = SolidPicture(PartColors(background=0xFF102030)).draw(turned((20.0, 5.0)), view, WIDTH, HEIGHT)
     assert np.all(ground == 0xFF102030)
 
 

@@ -9,7 +9,7 @@ from tests.coded import raises_code
 
 
 def test_a_bar_is_as_long_as_the_program_needs() -> None:
-    stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit=25.4)
+    stock = parse_specification("bar:1.0+.02").stock(back_z_mm=-25.4, unit_mm=25.4)
     assert stock.specification == "bar:1.0+.02"
     assert stock.max_radius_mm == pytest.approx(12.7)
     assert stock.front_z_mm == pytest.approx(0.508)
@@ -17,7 +17,7 @@ def test_a_bar_is_as_long_as_the_program_needs() -> None:
 
 
 def test_a_length_counts_from_the_face() -> None:
-    stock = parse_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit=25.4)
+    stock = parse_specification("bar:25mm:60mm+1mm").stock(back_z_mm=-500.0, unit_mm=25.4)
     assert (stock.back_z_mm, stock.front_z_mm, stock.max_radius_mm) == (
         pytest.approx(-59.0),
         pytest.approx(1.0),
@@ -26,7 +26,7 @@ def test_a_length_counts_from_the_face() -> None:
 
 
 def test_a_tube_has_its_bore() -> None:
-    stock = parse_specification("tube:1.5:.75:2").stock(back_z_mm=0.0, unit=25.4)
+    stock = parse_specification("tube:1.5:.75:2").stock(back_z_mm=0.0, unit_mm=25.4)
     assert stock.bore_profile[0] == (pytest.approx(-50.8), pytest.approx(9.525))
     assert stock.outside_profile[0] == (pytest.approx(-50.8), pytest.approx(19.05))
 

@@ -9,7 +9,7 @@ import pytest
 
 from core.part.insert_codes import InsertCodeError
 from core.part.tool_outline import ToolOutline, make_nose_circle, make_outline
-from core.part.tool_polygons import FloatArray, PartError, signed_area
+from core.part.tool_polygons import FloatArray, PartError, calculate_signed_area
 from core.part.tool_shape import ROUND_TOOLS, Hand, ToolKind, ToolShape
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import raises_code
@@ -49,7 +49,7 @@ def test_every_outline_is_convex_and_counter_clockwise() -> None:
             edges = np.roll(points, -1, axis=0) - points
             after = np.roll(edges, -1, axis=0)
             assert np.all(edges[:, 0] * after[:, 1] - edges[:, 1] * after[:, 0] > -1e-9), shape
-            assert signed_area(points) > 0.0, shape
+            assert calculate_signed_area(points) > 0.0, shape
 
 
 @pytest.mark.parametrize(("tip", "z", "x"), [(3, 1, 1), (4, -1, 1), (2, 1, -1), (1, -1, -1)])
@@ -117,7 +117,9 @@ def test_area_of_the_insert_is_the_rhombus_less_its_corners() -> None:
     """12.7² / sin 80° less what lies between tangents and arc at each corner: r² (cot(a/2) − (π − a) / 2)."""
     (insert,) = make_outline(CNMG).cutting_outlines
     corners = [0.64 * (1 / tan(a / 2) - (pi - a) / 2) for a in (radians(80), radians(100))]
-    assert signed_area(insert) == pytest.approx(12.7**2 / sin(radians(80)) - 2 * sum(corners), abs=0.05)
+    assert calculate_signed_area(insert) == pytest.approx(
+        12.7**2 / sin(radians(80)) - 2 * sum(corners), abs=0.05
+    )
 
 
 def test_holder_lies_behind_the_insert() -> None:
@@ -277,7 +279,7 @@ def test_tap_and_reamer_have_their_full_diameter_behind_the_lead() -> None:
 def test_form_tool_is_its_profile_in_convex_pieces() -> None:
     profile = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.0, 1.0), (0.0, 4.0))
     tool = make_outline(ToolShape(ToolKind.FORM, profile=profile))
-    assert sum(signed_area(piece) for piece in tool.cutting_outlines) == pytest.approx(16.0 - 6.0)
+    assert sum(calculate_signed_area(piece) for piece in tool.cutting_outlines) == pytest.approx(16.0 - 6.0)
     assert not any(covers(piece, 2.0, 2.0) for piece in tool.cutting_outlines)
     assert make_outline(ToolShape(ToolKind.FORM, profile=profile[::-1])).assumed_fields == ()
     assert make_outline(ToolShape(ToolKind.FORM, nose_radius=1.0)).assumed_fields == ("profile",)

@@ -118,7 +118,7 @@ def test_a_bore_is_opened_and_its_wall_told() -> None:
     part = TurnedPart(make_tube(30.0, 16.0, 0.0, -40.0))
     met = in_bore().cut_material(part, (2.0, 11.0), (-25.0, 11.0))
     assert met.volume_mm3 == pytest.approx(ring(11.0, 8.0, 25.0), rel=1e-3)
-    rest = part.remaining_piece()
+    rest = part.make_remaining_piece()
     assert rest.min_wall_mm == pytest.approx(4.0)
     assert rest.bore_profile is not None
     assert rest.bore_profile[0] == pytest.approx((0.0, 11.0), abs=0.01)
@@ -222,7 +222,7 @@ def test_a_profile_is_told_from_the_face_with_upright_shoulders() -> None:
     part = TurnedPart(make_bar(30.0, 0.0, -50.0))
     outside().cut_material(part, (1.0, 10.0), (-20.0, 10.0))
     corners = [(0.0, 10.0), (-20.0, 10.0), (-20.0, 15.0), (-50.0, 15.0)]
-    told = part.remaining_piece().outside_profile
+    told = part.make_remaining_piece().outside_profile
     assert [z for z, _ in told] == [pytest.approx(z, abs=0.01) for z, _ in corners]
     assert [r for _, r in told] == [pytest.approx(r) for _, r in corners]
 

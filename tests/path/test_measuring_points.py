@@ -82,9 +82,9 @@ def test_an_arrow_goes_to_the_next_point_that_way(
 
 def test_along_the_path_and_on_at_the_other_end() -> None:
     features = SnapPoints(SQUARE)
-    assert features.find_following(4, 4, 1) == SnapPoint(0, 4, PointKind.END)
-    assert features.find_following(0, 0, -1) == SnapPoint(6, 1, PointKind.END)
-    assert features.find_following(6, 1, 1) == SnapPoint(0, 0, PointKind.END)
+    assert features.find_next_along_path(4, 4, 1) == SnapPoint(0, 4, PointKind.END)
+    assert features.find_next_along_path(0, 0, -1) == SnapPoint(6, 1, PointKind.END)
+    assert features.find_next_along_path(6, 1, 1) == SnapPoint(0, 0, PointKind.END)
 
 
 def test_an_empty_trail_has_no_points() -> None:
@@ -93,7 +93,7 @@ def test_an_empty_trail_has_no_points() -> None:
     features.update_intersections(EVERYWHERE)
     assert features.find_nearest(0, 0) is None
     assert features.find_in_direction(0, 0, (1, 0)) is None
-    assert features.find_following(0, 0, 1) is None
+    assert features.find_next_along_path(0, 0, 1) is None
 
 
 def test_what_was_touched_is_the_nearest_stretch() -> None:

@@ -59,7 +59,7 @@ def settled(player: PartPlayer) -> PartPlayer:
 def line(player: PartPlayer) -> int:
     shown = settled(player).result
     assert shown is not None
-    return shown.part_instant.line
+    return shown.part_instant.line_number
 
 
 def test_a_program_is_first_seen_at_its_end(player: PartPlayer) -> None:
@@ -91,7 +91,7 @@ def test_playing_begins_anew_at_the_end_and_goes_with_the_clock(player: PartPlay
     clock.now += 0.2
     player.update()
     assert player.time_s == pytest.approx(0.2)
-    player.toggle_fast()
+    player.toggle_fast_playback()
     clock.now += 0.2
     player.update()
     assert player.time_s == pytest.approx(0.2 + 0.2 * FAST_FACTOR)
@@ -188,7 +188,7 @@ def test_a_program_with_errors_is_shown_as_far_as_it_goes(player: PartPlayer) ->
 
 
 def test_a_mill_has_no_part() -> None:
-    machine = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    machine = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     steps = create_loading_steps(machine, lambda: NO_OFFSETS)
     job = steps.make_job(ProgramSource("roof.h", "BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n"), False)
     steps.prove_job(job, lambda _count: None)
@@ -207,7 +207,7 @@ def test_of_a_program_that_is_too_long_the_view_says_why(
 ) -> None:
     monkeypatch.setattr("core.proving.part_history.MAX_MOVES", 5)
     made = picture(SHAFT)
-    assert find_views(made, part=True)[-1] == (PathAspect.SECTION,)
+    assert find_views(made, has_part=True)[-1] == (PathAspect.SECTION,)
     assert find_views(made) == [(PathAspect.PATH,)]
     player.load_picture(made)
     assert begins(player.error_text, "findings.part-too-long", blocks=12, most=5)

@@ -17,7 +17,7 @@ def test_the_farthest_point_that_is_cut() -> None:
     )
     found = find_largest_distance(BEFORE, after)
     assert found is not None
-    assert abs(found.distance - 0.5) < 1e-12  # .4 and .3; the rapid's 7 mm do not count
+    assert abs(found.distance_mm - 0.5) < 1e-12  # .4 and .3; the rapid's 7 mm do not count
     assert found[1:] == (-9.4, 8.3)
 
 

@@ -21,15 +21,15 @@ def test_by_parts() -> None:
         ToolLifeState.WARNING,
         *[ToolLifeState.USED_UP] * 2,
     ]
-    assert replace(life, parts=49).parts_left == 1
-    assert replace(life, parts=60).parts_left == 0
+    assert replace(life, parts=49).remaining_part_count == 1
+    assert replace(life, parts=60).remaining_part_count == 0
 
 
 def test_by_minutes_what_a_part_has_taken_tells_how_many_are_left() -> None:
     """30 min, 4 parts took 10: 2.5 min a part, 20 min make 8."""
     life = ToolLife(3, limit_seconds=1800, parts=4, seconds=600)
     assert life.share == pytest.approx(1 / 3)
-    assert life.parts_left == 8
+    assert life.remaining_part_count == 8
     assert life.words == "10.0 of 30 min"
 
 
@@ -37,13 +37,13 @@ def test_the_nearer_limit_counts() -> None:
     life = ToolLife(3, limit_parts=100, limit_seconds=600, parts=50, seconds=570)
     assert life.share == pytest.approx(0.95)
     assert (life.state, life.words) == (ToolLifeState.WARNING, "9.5 of 10 min")
-    assert life.parts_left == 3  # 30 s at 11.4 s a part
+    assert life.remaining_part_count == 3  # 30 s at 11.4 s a part
     assert replace(life, parts=99).words == "99 of 100 parts"
 
 
 def test_without_a_limit_it_is_only_counted() -> None:
     life = ToolLife(3, parts=999, seconds=90)
-    assert (life.state, life.share, life.parts_left) == (ToolLifeState.NO_LIMIT, 0.0, None)
+    assert (life.state, life.share, life.remaining_part_count) == (ToolLifeState.NO_LIMIT, 0.0, None)
     assert life.words == "999 parts, 1.5 min"
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from app.compose.runs.journal import Journal
-from app.production.parts_book import read_production
+from app.production.parts_book import read_production_data
 from app.production.tool_life_watch import ToolLifeWatch
-from app.production.tool_totals import TOTALS, ToolTotals
+from app.production.tool_totals import TOTALS_SETTING, ToolTotals
 from core.executor.snapshot import MachineState, Snapshot
 from core.store.store import Store
 from core.store.store_rows import OffsetKind
@@ -25,9 +25,9 @@ class Screen:
         self.journal = Journal(folder, control_running=True)
         self.control = control
         book = self.journal.create_parts_book(OffsetKind.TOOL)
-        book.access.persistence = self.journal
+        book.user_access.persistence = self.journal
         assert book.store is not None
-        book.current, book.load_count = read_production(book.store, "", OffsetKind.TOOL, {}), 1
+        book.current_data, book.load_count = read_production_data(book.store, "", OffsetKind.TOOL, {}), 1
         self.watch = ToolLifeWatch(book, lambda: self.control)
 
     def see(self, ends: int, state: MachineState = MachineState.RUN, **seconds: float) -> None:
@@ -43,7 +43,7 @@ class Screen:
 def lives(folder: Path) -> dict[int, tuple[int, float]]:
     """Parts and seconds of each tool, as the disk has them."""
     with Store.open(folder, read_only=True) as store:
-        rows = read_production(store, "", OffsetKind.TOOL, {}).tool_lives
+        rows = read_production_data(store, "", OffsetKind.TOOL, {}).tool_lives
     return {number: (row.parts, row.seconds) for number, row in rows.items()}
 
 
@@ -105,14 +105,14 @@ def test_a_control_in_the_process_of_the_screen_stores_no_totals(tmp_path: Path)
     screen = Screen(tmp_path, "")
     screen.see(0)
     screen.see(1, MachineState.IDLE, T1=5.0)
-    assert screen.journal.read_setting(TOTALS) is None
+    assert screen.journal.read_setting(TOTALS_SETTING) is None
     screen.end()
     assert lives(tmp_path) == {1: (1, 5.0)}
 
 
 def test_totals_are_the_same_after_they_were_stored() -> None:
     totals = ToolTotals("control", 4, {1: 2.5, 12: 0.0}, frozenset({12}))
-    assert ToolTotals.of_plain(totals.plain) == totals
+    assert ToolTotals.from_setting(totals.setting_value) == totals
 
 
 @pytest.mark.parametrize(
@@ -127,6 +127,6 @@ def test_totals_are_the_same_after_they_were_stored() -> None:
     ],
 )
 def test_damaged_totals_are_none(change: dict[str, object]) -> None:
-    plain = ToolTotals("control", 4, {1: 2.5}, frozenset({1})).plain
-    assert ToolTotals.of_plain(plain | change) is None
-    assert ToolTotals.of_plain(None) is None
+    plain = ToolTotals("control", 4, {1: 2.5}, frozenset({1})).setting_value
+    assert ToolTotals.from_setting(plain | change) is None
+    assert ToolTotals.from_setting(None) is None

@@ -11,7 +11,7 @@ from app.desk.persistence import Persistence
 from app.programs import import_export
 from app.programs.atomic_files import FileOperationError
 from app.programs.import_export import TransferResult, export_programs, import_programs
-from app.programs.program_commands import check_name, delete_program, rename_program
+from app.programs.program_commands import complete_name, delete_program, rename_program
 from app.programs.removable_media import PARENT_NAME, FolderChooser, UsbStick
 from tests.programs_page.test_run_history import Kept
 from tests.texts import pattern
@@ -112,13 +112,13 @@ def test_a_full_stick_leaves_no_half_file(tmp_path: Path, monkeypatch: pytest.Mo
     [("part", "part.nc"), (" part ", "part.nc"), ("part.TXT", "part.TXT"), ("3.5", "3.5.nc")],
 )
 def test_a_name_gets_the_ending_it_lacks(typed: str, name: str) -> None:
-    assert check_name(typed, Path("like.nc")) == name
+    assert complete_name(typed, Path("like.nc")) == name
 
 
 @pytest.mark.parametrize("typed", ["", "  ", "a/b", "..", ".hidden", "a:b", "x" * 300])
 def test_a_name_that_will_not_do(typed: str) -> None:
     with pytest.raises(FileOperationError):
-        check_name(typed, Path("like.nc"))
+        complete_name(typed, Path("like.nc"))
 
 
 def test_another_case_of_letters_is_another_name_of_the_same_file(tmp_path: Path) -> None:
@@ -142,13 +142,13 @@ def test_the_chooser_goes_in_and_up_to_the_places(tmp_path: Path) -> None:
     (tmp_path / "stick" / "jobs" / "photo.jpg").write_text("")
     chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", tmp_path / "stick", 5),))
     chooser.show_lines(chooser.list_lines())
-    assert [line.name for line in chooser.lines] == ["STICK", "THIS CONTROL"]
+    assert [line.name for line in chooser.listed_lines] == ["STICK", "THIS CONTROL"]
     for name in ("STICK", "jobs"):
-        chooser.open_line(next(line for line in chooser.lines if line.name == name))
+        chooser.open_line(next(line for line in chooser.listed_lines if line.name == name))
         chooser.show_lines(chooser.list_lines())
-    assert [line.name for line in chooser.lines] == [PARENT_NAME, "a.nc"]
+    assert [line.name for line in chooser.listed_lines] == [PARENT_NAME, "a.nc"]
     assert [path.name for path in chooser.program_paths] == ["a.nc"]
     for _ in range(2):
-        chooser.open_line(chooser.lines[0])
+        chooser.open_line(chooser.listed_lines[0])
         chooser.show_lines(chooser.list_lines())
     assert chooser.current_folder is None

@@ -137,8 +137,8 @@ def test_the_chooser_says_when_the_stick_has_gone(tmp_path: Path) -> None:
     place.mkdir()
     chooser = FolderChooser(tmp_path, lambda: (UsbStick("STICK", place, 5, is_read_only=True),))
     chooser.show_lines(chooser.list_lines())
-    assert chooser.lines[0].is_read_only
-    chooser.open_line(chooser.lines[0])
+    assert chooser.listed_lines[0].is_read_only
+    chooser.open_line(chooser.listed_lines[0])
     chooser.list_lines()
     place.rmdir()
     with pytest.raises(FileOperationError, match=pattern("programs.pulled-out")):

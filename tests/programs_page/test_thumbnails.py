@@ -81,7 +81,7 @@ def test_a_folder_that_cannot_be_written_costs_no_picture(tmp_path: Path) -> Non
 
 def test_without_a_part_there_is_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert thumbnails(tmp_path).get_thumbnail(job("G90G94F100\nM03S1500\nT1\nX2Z2\nM30\n"), go_on) is None
-    mill = parse_machine(resources.machine_file("ac-table-mill.toml"), "mill")
+    mill = parse_machine(resources.read_machine_file("ac-table-mill.toml"), "mill")
     roof = job("BEGIN PGM A MM\nL X+1 Y+1 Z+1 F100\nEND PGM A MM\n", mill, "roof.h")
     assert thumbnails(tmp_path, machine=mill).get_thumbnail(roof, go_on) is None
     monkeypatch.setattr(part_history, "MAX_MOVES", 5)

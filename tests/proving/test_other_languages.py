@@ -11,10 +11,10 @@ from app.compose.machine.machine_files import load_shipped_machine
 from app.compose.machine.machine_setup import create_setup
 from core.interpreter.shared.job_setup import ToolOffset
 from core.language.source import ProgramSource
-from core.proving.proof_pass import modulo_angle_range
+from core.proving.proof_pass import find_modulo_angle_range
 from core.proving.proof_report import ProofReport
 from core.proving.prove_program import prove
-from core.tool_edges import FIRST_NAMED_TOOL, NamedTool, format_edge_name, get_tool_number, make_edge_key
+from core.tool_edges import FIRST_NAMED_TOOL, NamedTool, format_edge_name, get_tool_number, make_row_number
 
 LATHE, MILL = load_shipped_machine("sinumerik-modulo"), load_shipped_machine("ac-table-mill")
 
@@ -92,11 +92,11 @@ def test_a_tool_by_name_keeps_its_name() -> None:
     for same in (
         copy.deepcopy(tool),
         pickle.loads(pickle.dumps(tool)),
-        get_tool_number(make_edge_key(tool, 2)),
+        get_tool_number(make_row_number(tool, 2)),
     ):
         assert (same, format_edge_name(same)) == (FIRST_NAMED_TOOL, 'T="ROUGH"')
-    assert format_edge_name(make_edge_key(tool, 2)) == 'T="ROUGH" D2'
-    assert (format_edge_name(3), format_edge_name(make_edge_key(3, 2))) == ("T3", "T3 D2")
+    assert format_edge_name(make_row_number(tool, 2)) == 'T="ROUGH" D2'
+    assert (format_edge_name(3), format_edge_name(make_row_number(3, 2))) == ("T3", "T3 D2")
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ def test_a_tool_by_name_keeps_its_name() -> None:
     ],
 )
 def test_the_range_of_a_modulo_axis(low: float, high: float, shown: tuple[float, float]) -> None:
-    assert modulo_angle_range(low, high) == pytest.approx(shown)
+    assert find_modulo_angle_range(low, high) == pytest.approx(shown)
 
 
 def test_modulo_axes_are_told_in_their_range() -> None:

@@ -61,7 +61,7 @@ def test_no_metal_has_no_features() -> None:
 def test_each_finds_its_own_when_all_have_moved() -> None:
     here = find_features(piece(STEPPED))
     there = find_features(piece([(z - 0.5, r + 0.25) for z, r in STEPPED]))
-    assert [pair.difference for pair in match_features(here, there)] == [
+    assert [pair.difference_mm for pair in match_features(here, there)] == [
         pytest.approx(-0.5), pytest.approx(0.5), pytest.approx(-0.5), pytest.approx(0.5), pytest.approx(-0.5),
     ]  # fmt: skip
 
@@ -72,7 +72,7 @@ def test_what_only_one_part_has_stands_alone() -> None:
     pairs = match_features(here, there)
     assert pairs[:2] == [Pair(here[0], there[0]), Pair(here[1], there[1])]
     assert pairs[2:] == [Pair(each, None) for each in here[2:]] + [Pair(None, there[2])]
-    assert {pair.difference for pair in pairs[2:]} == {None}
+    assert {pair.difference_mm for pair in pairs[2:]} == {None}
 
 
 def test_a_diameter_is_never_taken_for_a_bore_or_a_shoulder() -> None:

@@ -16,7 +16,7 @@ from core.part.solid_bodies import RoundAxis
 from core.part.stock import Clamping, make_bar
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving import part_history, part_instant
-from core.proving.part_history import PartHistory, ProgramSteps, StepCollector, polyline_fraction
+from core.proving.part_history import PartHistory, ProgramSteps, StepCollector, find_polyline_fraction
 from core.proving.part_instant import PartInstant
 from core.proving.part_simulation import PartSimulation
 from core.proving.program_tools import PartSettings, ProgramTools
@@ -37,7 +37,7 @@ def moves(text: str, setting: PartSettings = SETTING) -> ProgramSteps | None:
     setup = create_setup(load_machine(None), tool_offsets=tools, secondary_offsets={1: SecondaryOffset()})
     gathered = StepCollector(setting)
     prove(ProgramSource("PART", text), setup, load_machine(None), on_span=gathered.add_span)
-    return gathered.collected_steps()
+    return gathered.make_program_steps()
 
 
 def history(text: str, setting: PartSettings = SETTING) -> PartHistory:
@@ -165,7 +165,7 @@ def test_of_a_program_that_is_too_long_there_is_none(monkeypatch: pytest.MonkeyP
 
 
 def test_of_a_program_without_blocks_there_is_none() -> None:
-    assert StepCollector(SETTING).collected_steps() is None
+    assert StepCollector(SETTING).make_program_steps() is None
 
 
 def test_where_nothing_is_cut_there_is_no_stock_and_no_metal() -> None:
@@ -179,7 +179,7 @@ def test_before_the_first_move_no_tool_stands_anywhere() -> None:
 
 
 def test_a_block_that_is_none_is_done_to_no_share() -> None:
-    assert history(SHAFT).executed_fraction(999, (0.0, 0.0)) == 0.0
+    assert history(SHAFT).find_executed_fraction(999, (0.0, 0.0)) == 0.0
 
 
 def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
@@ -188,17 +188,19 @@ def test_the_share_of_a_block_is_told_by_how_far_its_end_is() -> None:
         next(k for k, step in enumerate(seen.steps) if not isinstance(step, LiveToolStep) and step.line == 6)
         + 1
     )
-    assert seen.executed_fraction(turning, (0.0, 0.0)) == pytest.approx(1.0)
-    assert seen.executed_fraction(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
-    assert seen.executed_fraction(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(0.75)  # beside its path
+    assert seen.find_executed_fraction(turning, (0.0, 0.0)) == pytest.approx(1.0)
+    assert seen.find_executed_fraction(turning, (0.55 * INCH / 4, 0.0)) == pytest.approx(0.75)
+    assert seen.find_executed_fraction(turning, (0.55 * INCH / 4, 0.02)) == pytest.approx(
+        0.75
+    )  # beside its path
 
 
 def test_shares_along_a_corner() -> None:
     corner = [(0.0, 0.0), (3.0, 0.0), (3.0, 1.0)]
-    assert polyline_fraction(corner, (1.0, -1.0)) == pytest.approx(0.25)
-    assert polyline_fraction(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
-    assert polyline_fraction([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
-    assert not math.isnan(polyline_fraction([(1.0, 1.0)], (0.0, 0.0)))
+    assert find_polyline_fraction(corner, (1.0, -1.0)) == pytest.approx(0.25)
+    assert find_polyline_fraction(corner, (5.0, 0.5)) == pytest.approx(3.5 / 4.0)
+    assert find_polyline_fraction([(1.0, 1.0), (1.0, 1.0)], (0.0, 0.0)) == 0.0
+    assert not math.isnan(find_polyline_fraction([(1.0, 1.0)], (0.0, 0.0)))
 
 
 MILL = PartSettings(
@@ -306,13 +308,13 @@ def test_copies_of_a_milled_part_share_what_nothing_has_touched(monkeypatch: pyt
 def test_what_stands_round_the_part() -> None:
     seen = history(MILLED, replace(MILL, clamping=Clamping(40.0, 30.0, 5.0, 30.0)))
     instant = seen.at(len(seen.steps))
-    around = seen.scene_at(instant)
+    around = seen.make_scene_at(instant)
     assert around.chuck is not None
     assert around.chuck.max_radius_mm == 20.0
     assert float(around.chuck.column_edges[-1]) == -30.0
     assert around.tool is not None
     assert around.tool.round_axis is RoundAxis.X
-    assert history(MILLED, MILL).scene_at(instant).chuck is None
+    assert history(MILLED, MILL).make_scene_at(instant).chuck is None
 
 
 @pytest.mark.parametrize(

@@ -34,7 +34,7 @@ def circumstances(**inputs: bool) -> Setup:
     """All tools on part zero; inputs by number, such as ``i10=True``."""
     states = {name.removeprefix("i"): on for name, on in inputs.items()}
     return create_setup(
-        MACHINE, tool_offsets={1: ToolOffset(), 2: ToolOffset()}, secondary_offsets={}, inputs=states
+        MACHINE, tool_offsets={1: ToolOffset(), 2: ToolOffset()}, secondary_offsets={}, input_states=states
     )
 
 

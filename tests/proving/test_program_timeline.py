@@ -20,7 +20,7 @@ def laid(
     text: str, dialect: Dialect = Dialect.OMNITURN, *, ideal: bool = True
 ) -> list[tuple[BlockKind, float]]:
     setup = create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={})
-    timeline = Timeline.from_program(ProgramSource("T", text, dialect), setup, MACHINE, ideal=ideal)
+    timeline = Timeline.from_program(ProgramSource("T", text, dialect), setup, MACHINE, is_ideal=ideal)
     found = [(block.kind, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]
     assert not timeline.has_errors, timeline.diagnostics
     return found
@@ -40,7 +40,7 @@ def test_corners_and_waits_take_nothing() -> None:
         ProgramSource("T", text),
         create_setup(MACHINE, tool_offsets={1: ToolOffset()}, secondary_offsets={}),
         MACHINE,
-        ideal=True,
+        is_ideal=True,
     )
     assert report.times.wait_s == 0.0
     assert report.times.cutting_s == pytest.approx(2 * (1.0 + 0.125 + 1.0 + 0.125), abs=1e-6)

@@ -44,7 +44,7 @@ def proved(name: str, folder: Path) -> tuple[ProofReport, PartReport]:
     if "stock" in job:
         setting = replace(setting, stock=parse_specification(job["stock"]))
     source = ProgramSource(name, (FOLDER / f"{name}.nc").read_text())
-    report, part = prove_with_part(source, setup, machine, setting, ideal=True)
+    report, part = prove_with_part(source, setup, machine, setting, is_ideal=True)
     assert part is not None
     return report, part
 

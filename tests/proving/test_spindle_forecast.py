@@ -21,7 +21,7 @@ def test_a_start_ramps_after_the_drive_has_taken_notice(spindle: SpindleForecast
 def test_ready_when_it_has_been_in_the_band_long_enough(spindle: SpindleForecast) -> None:
     spindle.command_speed(0.0, 2000.0)
     # 1900 rpm reached after 1900/1500 s, then .3 s.
-    assert spindle.at_speed_time_s() == pytest.approx(0.08 + 1900 / 1500 + 0.3)
+    assert spindle.calculate_at_speed_time_s() == pytest.approx(0.08 + 1900 / 1500 + 0.3)
 
 
 def test_a_reversal_brakes_to_rest_first(spindle: SpindleForecast) -> None:
@@ -29,11 +29,11 @@ def test_a_reversal_brakes_to_rest_first(spindle: SpindleForecast) -> None:
     spindle.command_speed(10.0, -1000.0)
     assert spindle.speed_at(10.08 + 0.4) == pytest.approx(0.0, abs=1e-9)
     assert spindle.speed_at(10.08 + 0.4 + 1.0 / 3.0) == pytest.approx(-500.0)
-    assert spindle.at_speed_time_s() == pytest.approx(10.08 + 1000 / 2500 + 950 / 1500 + 0.3)
+    assert spindle.calculate_at_speed_time_s() == pytest.approx(10.08 + 1000 / 2500 + 950 / 1500 + 0.3)
 
 
 def test_the_same_command_again_changes_nothing(spindle: SpindleForecast) -> None:
     spindle.command_speed(0.0, 1500.0)
-    ready = spindle.at_speed_time_s()
+    ready = spindle.calculate_at_speed_time_s()
     spindle.command_speed(5.0, 1500.0)
-    assert spindle.at_speed_time_s() == ready
+    assert spindle.calculate_at_speed_time_s() == ready

@@ -48,7 +48,7 @@ def job_of(text: str) -> Job:
 
 def passes(job: Job) -> IterStartBlocks:
     def blocks(at: tuple[float, ...]) -> Iterable[Block]:
-        return start_program_pass(job, replace(job.setup, start=at)).blocks
+        return start_program_pass(job, replace(job.setup, start=at)).block_iterator
 
     return blocks
 
@@ -56,9 +56,9 @@ def passes(job: Job) -> IterStartBlocks:
 def check_of(job: Job, setting: PartSettings = SETTING) -> StartCheck:
     gathered = StepCollector(setting)
     prove(job.source, job.setup, load_machine(None), on_span=gathered.add_span)
-    moves = gathered.collected_steps()
+    moves = gathered.make_program_steps()
     assert moves is not None
-    return StartCheck(PartHistory(moves), dict(TOOLS), stock_specified=setting.stock is not None)
+    return StartCheck(PartHistory(moves), dict(TOOLS), is_stock_specified=setting.stock is not None)
 
 
 def axes(tool: int, x: float, z: float) -> tuple[float, float]:
@@ -92,7 +92,7 @@ def line_of(text: str, at: tuple[float, ...], tool: int) -> Job:
 
 
 def met(found: FirstMove) -> tuple[CollisionBody | None, int, bool]:
-    return found.hit_body, found.tool, found.starts_inside
+    return found.hit_body, found.tool, found.is_inside_at_start
 
 
 def test_a_start_at_line_1_out_of_the_bore_goes_through_its_wall() -> None:
@@ -123,7 +123,7 @@ def test_a_tool_that_stopped_in_a_bore_is_inside_although_the_first_move_meets_n
     """The next tools would take the boring bar along through the wall."""
     job = job_of(BORE)
     found = check_of(job).check_start(lambda _at: (), interrupted(job, place, line, jogged=jogged))
-    assert (found.hit_body is CollisionBody.PART, found.starts_inside) == (inside, inside)
+    assert (found.hit_body is CollisionBody.PART, found.is_inside_at_start) == (inside, inside)
 
 
 def test_jogged_out_of_the_bore_it_is_clear() -> None:

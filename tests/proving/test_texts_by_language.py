@@ -19,7 +19,7 @@ from core.proving.checks.thread_checks import DriveLimits
 from core.proving.part_proof import prove_with_part
 from core.proving.program_tools import PartSettings
 from core.proving.prove_program import prove
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 from tests.proving import test_edge_checks, test_part_proof, test_thread_checks
 from tests.proving.test_part_proof import text
 
@@ -50,7 +50,7 @@ def in_sinumerik(program: str) -> str:
 
 def found(program: str, stock: Stock | None, shapes: dict[int, ToolShape], **said: Any) -> list[Diagnostic]:
     """Return what the proof finds in a SINUMERIK program; ``said`` are further fields of the setting."""
-    keys = {make_edge_key(n, 1): shape for n, shape in shapes.items()}
+    keys = {make_row_number(n, 1): shape for n, shape in shapes.items()}
     setup = create_setup(
         LATHE, tool_offsets=dict.fromkeys(keys, ToolOffset(-12.7, -50.8)), secondary_offsets={}
     )
@@ -133,7 +133,7 @@ def test_what_holds_the_part_is_told_in_its_words(check: str) -> None:
     program, stock, said = MORE[check]
     shapes = {**test_edge_checks.SHAPES, 10: TAP}
     if "gang" in said:
-        said = {"gang": {make_edge_key(n, 1): at for n, at in said["gang"].items()}}
+        said = {"gang": {make_row_number(n, 1): at for n, at in said["gang"].items()}}
     told = found(f"{HEAD}{program}M30\n", stock, shapes, **said)
     assert check in {each.check_name for each in told}
     assert [each for each in told if not reads_as(each, OMNITURN, KLARTEXT)] == []

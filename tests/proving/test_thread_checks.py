@@ -142,7 +142,7 @@ def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
     """.05 in at 600 rpm are 12.7 mm/s: with 20 mm/s² that is 4.03 mm. The bar stands .1 in before Z0."""
     lines = THREAD.format(p="P")
     lines = lines.replace("I[.01]", "I[.02]") if diameter else lines
-    slow = DriveLimits(z_acceleration=20.0)
+    slow = DriveLimits(z_acceleration_mm_s2=20.0)
     program = text(lines, metric=metric, diameter=diameter)
     assert findings(program, make_bar(12.7, 2.54, -60.0), slow) == [("thread-run-up", 8)]
     assert findings(program, make_bar(12.7, 0.5, -60.0), slow) == []
@@ -150,7 +150,7 @@ def test_a_thread_that_begins_in_front_of_part_zero_needs_its_run_up_there(
 
 def test_a_slide_that_brakes_in_metal_for_more_than_a_lead() -> None:
     """12.7 mm/s and 50 mm/s² are 1.6 mm, more than the lead of 1.27; run-up is 5 mm."""
-    slow = DriveLimits(z_acceleration=50.0)
+    slow = DriveLimits(z_acceleration_mm_s2=50.0)
     assert findings(text(CUT), drives=slow) == [("thread-run-up", 8)]
     assert findings(text(THREAD.format(p="P")), drives=slow) == []  # goes on while it pulls out
     relief = Stock(

@@ -11,7 +11,13 @@ import pytest
 
 from core.records.record import FloatArray, RecordError
 from core.records.record_ring import RingLayout, RowBuffer, ScopeRing, pack_bits
-from core.records.ring_file import LAST, NOW, RingFile, create_ring_file, read_ring_file
+from core.records.ring_file import (
+    CURRENT_RING_NAME,
+    PREVIOUS_RING_NAME,
+    RingFile,
+    create_ring_file,
+    read_ring_file,
+)
 from tests.coded import raises_code
 
 OUTPUTS = tuple(f"out{n}" for n in range(60))  # more than one figure has bits for
@@ -36,8 +42,8 @@ def tick(t: float, line: int, on: tuple[str, ...] = ()) -> list[float]:
 
 def filled() -> ScopeRing:
     ring = ScopeRing.from_layout(OF)
-    ring.samples.write(samples(0, 500))
-    ring.ticks.write(np.array([tick(0.1, 3), tick(0.2, 4, ("out1", "out59"))]))
+    ring.samples.append_rows(samples(0, 500))
+    ring.ticks.append_rows(np.array([tick(0.1, 3), tick(0.2, 4, ("out1", "out59"))]))
     return ring
 
 
@@ -60,9 +66,9 @@ def test_a_channel_is_the_drivers_own_or_stands_as_at_the_last_tick() -> None:
 
 def test_a_late_tick_between_two_samples_is_not_lost() -> None:
     ring = ScopeRing.from_layout(OF)
-    ring.samples.write(samples(0, 400)[::100])  # at 0, .1, .2, .3
+    ring.samples.append_rows(samples(0, 400)[::100])  # at 0, .1, .2, .3
     late = {0.0: 0.001, 0.12: 0.05, 0.15: 0.002, 0.19: 0.003, 0.31: 0.9}
-    ring.ticks.write(np.array([[*tick(t, 1)[:7], worst, *tick(t, 1)[8:]] for t, worst in late.items()]))
+    ring.ticks.append_rows(np.array([[*tick(t, 1)[:7], worst, *tick(t, 1)[8:]] for t, worst in late.items()]))
     assert ring.get_record_between(0.0, 1.0).values_by_channel["lateness"].tolist() == [
         0.001,
         0.001,
@@ -83,28 +89,28 @@ def test_the_oldest_are_written_over(batch: int) -> None:
     ring = ScopeRing.from_layout(OF)
     everything = samples(0, 2600)
     for at in range(0, 2600, batch):
-        ring.samples.write(everything[at : at + batch])
-    kept = ring.samples.copy_between(-np.inf, np.inf)
+        ring.samples.append_rows(everything[at : at + batch])
+    kept = ring.samples.copy_rows_between(-np.inf, np.inf)
     np.testing.assert_array_equal(kept, everything[-1000:])
-    np.testing.assert_array_equal(ring.samples.copy_between(2.0, 2.1), everything[2000:2101])
+    np.testing.assert_array_equal(ring.samples.copy_rows_between(2.0, 2.1), everything[2000:2101])
 
 
 def test_rows_that_are_being_written_over_are_not_read() -> None:
     rows = RowBuffer(100, 1)
-    rows.write(np.arange(100.0)[:, None])
-    rows.rows_started = 130  # a writer is at work on the thirty oldest
-    assert rows.copy_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
+    rows.append_rows(np.arange(100.0)[:, None])
+    rows.started_row_count = 130  # a writer is at work on the thirty oldest
+    assert rows.copy_rows_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
 def test_rows_that_are_written_over_while_they_are_copied_are_left_out() -> None:
     begun = iter((100, 130))  # before they are copied, and behind
 
     class Overtaken(RowBuffer):
-        rows_started = property(lambda _: next(begun), lambda _self, _value: None)
+        started_row_count = property(lambda _: next(begun), lambda _self, _value: None)
 
     rows = Overtaken(100, 1)
-    rows.write(np.arange(100.0)[:, None])
-    assert rows.copy_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
+    rows.append_rows(np.arange(100.0)[:, None])
+    assert rows.copy_rows_between(-1.0, 1000.0)[:, 0].tolist() == list(range(30, 100))
 
 
 def test_a_torn_row_is_left_out() -> None:
@@ -121,11 +127,11 @@ def test_a_torn_row_is_left_out() -> None:
 
 def written(folder: Path, count: int = 1700) -> tuple[RingFile, ScopeRing]:
     ring = ScopeRing.from_layout(OF)
-    file = create_ring_file(folder, NOW, ring)
+    file = create_ring_file(folder, CURRENT_RING_NAME, ring)
     everything = samples(0, count)
     for at in range(0, count, 300):
-        file.write_rows(ring.samples, ring.samples.write(everything[at : at + 300]))
-    file.write_rows(ring.ticks, ring.ticks.write(np.array([tick(0.1, 3), tick(1.2, 4, ("out59",))])))
+        file.write_rows(ring.samples, ring.samples.append_rows(everything[at : at + 300]))
+    file.write_rows(ring.ticks, ring.ticks.append_rows(np.array([tick(0.1, 3), tick(1.2, 4, ("out59",))])))
     return file, ring
 
 
@@ -133,7 +139,7 @@ def test_a_reader_has_the_same_while_it_is_written_and_afterwards(tmp_path: Path
     file, ring = written(tmp_path)
     wanted = ring.get_record_between(-np.inf, np.inf)
     for close in (file.close, lambda: None):
-        found = read_ring_file(tmp_path / NOW)
+        found = read_ring_file(tmp_path / CURRENT_RING_NAME)
         np.testing.assert_array_equal(found.times_s, wanted.times_s)
         for name, column in wanted.values_by_channel.items():
             np.testing.assert_array_equal(found.values_by_channel[name], column, name)
@@ -144,17 +150,19 @@ def test_a_reader_has_the_same_while_it_is_written_and_afterwards(tmp_path: Path
         )
         assert found.about["machine"] == "LATHE"
         close()
-    assert read_ring_file(tmp_path / NOW, 1.0, 1.1).times_s == pytest.approx(np.arange(1000, 1101) * 0.001)
+    assert read_ring_file(tmp_path / CURRENT_RING_NAME, 1.0, 1.1).times_s == pytest.approx(
+        np.arange(1000, 1101) * 0.001
+    )
 
 
 def test_the_file_has_its_whole_size_before_anything_is_written(tmp_path: Path) -> None:
     ring = ScopeRing.from_layout(OF)
-    file = create_ring_file(tmp_path, NOW, ring)
-    before = (tmp_path / NOW).stat()
+    file = create_ring_file(tmp_path, CURRENT_RING_NAME, ring)
+    before = (tmp_path / CURRENT_RING_NAME).stat()
     assert before.st_blocks * 512 >= ring.samples.array.nbytes + ring.ticks.array.nbytes
-    file.write_rows(ring.samples, ring.samples.write(samples(0, 3000)))
+    file.write_rows(ring.samples, ring.samples.append_rows(samples(0, 3000)))
     file.close()
-    assert (tmp_path / NOW).stat().st_size == before.st_size
+    assert (tmp_path / CURRENT_RING_NAME).stat().st_size == before.st_size
 
 
 def test_a_writer_that_ended_in_the_middle_leaves_what_it_had_counted(
@@ -170,28 +178,28 @@ def test_a_writer_that_ended_in_the_middle_leaves_what_it_had_counted(
             raise OSError(errno.EIO, "killed here")
         return real(fd, data, at)
 
-    parts = ring.samples.write(samples(1700, 200))
+    parts = ring.samples.append_rows(samples(1700, 200))
     monkeypatch.setattr(os, "pwrite", ends)
     with pytest.raises(RecordError):
         file.write_rows(ring.samples, parts)
     monkeypatch.undo()
-    times = read_ring_file(tmp_path / NOW).times_s
+    times = read_ring_file(tmp_path / CURRENT_RING_NAME).times_s
     assert times == pytest.approx(np.arange(900, 1700) * 0.001)  # the 200 oldest may be written over
     file.close()
 
 
 def test_the_last_one_stays_beside_the_new_one(tmp_path: Path) -> None:
     written(tmp_path, 20)[0].close()
-    create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF)).close()
-    assert read_ring_file(tmp_path / LAST).times_s.size == 20
-    assert read_ring_file(tmp_path / NOW).times_s.size == 0
+    create_ring_file(tmp_path, CURRENT_RING_NAME, ScopeRing.from_layout(OF)).close()
+    assert read_ring_file(tmp_path / PREVIOUS_RING_NAME).times_s.size == 20
+    assert read_ring_file(tmp_path / CURRENT_RING_NAME).times_s.size == 0
 
 
 def test_two_do_not_write_one_file(tmp_path: Path) -> None:
     file, _ = written(tmp_path, 20)
     with raises_code(RecordError, "in-use", "now.ring"):
-        create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF))
-    assert read_ring_file(tmp_path / NOW).times_s.size == 20
+        create_ring_file(tmp_path, CURRENT_RING_NAME, ScopeRing.from_layout(OF))
+    assert read_ring_file(tmp_path / CURRENT_RING_NAME).times_s.size == 20
     file.close()
 
 
@@ -203,8 +211,8 @@ def test_a_full_disk_is_told_and_leaves_nothing_behind(
 
     monkeypatch.setattr(os, "posix_fallocate", full)
     with raises_code(RecordError, "disk-full", "now.ring"):
-        create_ring_file(tmp_path, NOW, ScopeRing.from_layout(OF))
-    assert (tmp_path / NOW).stat().st_size == 0
+        create_ring_file(tmp_path, CURRENT_RING_NAME, ScopeRing.from_layout(OF))
+    assert (tmp_path / CURRENT_RING_NAME).stat().st_size == 0
 
 
 def test_systems_without_preallocation_and_locks_write_it_too(
@@ -215,14 +223,14 @@ def test_systems_without_preallocation_and_locks_write_it_too(
     monkeypatch.setitem(__import__("sys").modules, "fcntl", None)
     file, ring = written(tmp_path)
     np.testing.assert_array_equal(
-        read_ring_file(tmp_path / NOW).times_s, ring.get_record_between(0.0, 9.0).times_s
+        read_ring_file(tmp_path / CURRENT_RING_NAME).times_s, ring.get_record_between(0.0, 9.0).times_s
     )
     file.close()
 
 
 def test_a_ring_that_is_cut_off_or_newer_is_refused(tmp_path: Path) -> None:
     written(tmp_path, 20)[0].close()
-    path = tmp_path / NOW
+    path = tmp_path / CURRENT_RING_NAME
     whole = path.read_bytes()
     path.write_bytes(whole[:-100])
     with raises_code(RecordError, "cut-off"):

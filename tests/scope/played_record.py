@@ -93,9 +93,12 @@ class PlayedSamples:
             self.lets.wait()
         return float(np.floor(self.now * RATE + 1e-6) / RATE)
 
-    def read_between(self, start_s: float, end_s: float, names: Collection[str] | None = None) -> ScopeRecord:
+    def read_between(
+        self, start_s: float, end_s: float, channel_names: Collection[str] | None = None
+    ) -> ScopeRecord:
         """As the recorder gives it."""
         self.asked.append((start_s, end_s))
         return record_of(
-            seconds(max(start_s, 0.0, self.now - self.buffer_length_s), min(end_s, self.newest_time_s)), names
+            seconds(max(start_s, 0.0, self.now - self.buffer_length_s), min(end_s, self.newest_time_s)),
+            channel_names,
         )

@@ -34,10 +34,10 @@ def test_one_sample_that_stands_out_is_seen() -> None:
     values[54_321] = 7.0
     found = make_points(times, values, 0.1)
     assert found.has_line_pairs
-    assert len(found.times) == 2 * 1000
+    assert len(found.times_s) == 2 * 1000
     at = int(np.argmax(found.values))
     assert found.values[at] == 7.0
-    assert found.times[at] == pytest.approx(54.35)  # the middle of its column
+    assert found.times_s[at] == pytest.approx(54.35)  # the middle of its column
     assert (found.values == 7.0).sum() == 1  # nor in the next one: the way back is drawn there
 
 
@@ -59,8 +59,8 @@ def test_few_samples_are_drawn_as_they_are() -> None:
 def test_a_gap_of_what_is_not_told_stays_a_gap() -> None:
     found = make_points(np.arange(5.0), np.array([1.0, 2.0, np.nan, 4.0, 5.0]), 1.0)
     assert list(found.values) == [1.0, 2.0, 4.0, 5.0]
-    assert found.is_joined is not None
-    assert list(found.is_joined) == [True, False, True, False]
+    assert found.is_joined_to_next is not None
+    assert list(found.is_joined_to_next) == [True, False, True, False]
 
 
 def test_a_gap_is_not_joined_in_columns() -> None:
@@ -68,14 +68,14 @@ def test_a_gap_is_not_joined_in_columns() -> None:
     columns.append_samples(np.arange(8) / 2.0, np.array([0.0, 0.0, 0.0, np.nan, np.nan, np.nan, 9.0, 9.0]))
     assert list(columns.column_numbers) == [0, 1, 3]
     assert list(columns.minima) == [0.0, 0.0, 9.0]
-    assert len(columns.make_points().times) == 6  # no level line over the gap
+    assert len(columns.make_points().times_s) == 6  # no level line over the gap
 
 
 def test_rest_is_a_level_line_although_nothing_was_sampled() -> None:
     columns = CurveColumns.make_empty(1.0)
     columns.append_samples(np.array([0.5, 9.5]), np.array([3.0, 3.0]))
     points = columns.make_points()
-    assert list(points.times[-2:]) == [0.5, 9.5]
+    assert list(points.times_s[-2:]) == [0.5, 9.5]
     assert list(points.values[-2:]) == [3.0, 3.0]
 
 
@@ -92,8 +92,8 @@ def test_in_pieces_as_in_one() -> None:
 
 
 def test_nothing_gives_nothing() -> None:
-    assert len(make_points(np.empty(0), np.empty(0), 0.1).times) == 0
-    assert len(make_points(np.arange(3.0), np.full(3, np.nan), 0.1).times) == 0
+    assert len(make_points(np.empty(0), np.empty(0), 0.1).times_s) == 0
+    assert len(make_points(np.arange(3.0), np.full(3, np.nan), 0.1).times_s) == 0
 
 
 def test_a_lane_keeps_its_range_as_long_as_it_fits() -> None:
@@ -114,7 +114,7 @@ def test_a_record_is_drawn_to_the_bit() -> None:
     sight = RecordingCurves(record, 101.0).make_picture(wanted("X following error", begin=-1.0, pixels=4000))
     (curve,) = sight.curves
     assert (curve.points.values == record.values_by_channel["X following error"]).all()
-    assert curve.points.times == pytest.approx(record.times_s - 101.0)
+    assert curve.points.times_s == pytest.approx(record.times_s - 101.0)
 
 
 def test_inch_is_a_matter_of_showing() -> None:
@@ -172,7 +172,7 @@ def test_live_curves_are_those_of_the_record() -> None:
         column = whole.read_column(SIGNALS[key])
         assert column is not None
         middle = slice(200, -200)  # columns at the edges are not whole yet
-        for time, value in zip(points.times[middle] + sight.zero_s, points.values[middle], strict=True):
+        for time, value in zip(points.times_s[middle] + sight.zero_s, points.values[middle], strict=True):
             near = np.abs(whole.record.times_s - time) <= 0.5 * asked.width + 0.0011
             assert np.nanmin(column[near]) - 1e-9 <= value <= np.nanmax(column[near]) + 1e-9
 
@@ -183,7 +183,7 @@ def test_a_trigger_counts_from_where_it_was_armed(armed: float, released: float 
     played = PlayedSamples(now=108.0)
     trigger = Trigger(TriggerEvent.RISES_ABOVE, "X following error", 0.00762)
     asked = replace(wanted("X following error"), trigger=trigger, armed=armed)
-    found = LiveCurves(played).make_picture(asked).trigger_time
+    found = LiveCurves(played).make_picture(asked).trigger_time_s
     assert found == (
         None if released is None else pytest.approx(32.0 * np.pi + 2 * np.pi - np.arccos(0.762), abs=0.002)
     )
@@ -259,7 +259,7 @@ def test_a_live_trigger_finds_the_sample_between_two_pictures() -> None:
     asked = wanted("X demand", trigger=Trigger(TriggerEvent.RISES_ABOVE, "X demand", 12.5))
     found = None
     while found is None and played.now < 110.0:
-        found = live.make_picture(asked).trigger_time
+        found = live.make_picture(asked).trigger_time_s
         played.now += 0.016
     # 10 + 5 sin t = 12.5 where sin t = 1/2: the first t above 100 is 16·2π + π/6
     assert found == pytest.approx(32.0 * np.pi + np.pi / 6.0, abs=0.001)
@@ -269,9 +269,9 @@ def test_what_was_before_it_was_armed_does_not_release_it() -> None:
     played = PlayedSamples(now=101.4)
     live = LiveCurves(played)
     asked = wanted("X demand", trigger=Trigger(TriggerEvent.RISES_ABOVE, "X demand", 12.5))
-    assert live.make_picture(asked).trigger_time is None
+    assert live.make_picture(asked).trigger_time_s is None
     played.now += 0.1
-    assert live.make_picture(asked).trigger_time is None
+    assert live.make_picture(asked).trigger_time_s is None
 
 
 # --- signals --------------------------------------------------------------------------------------------

@@ -58,7 +58,7 @@ def editor(day: Day) -> EditorPage:
     day.sees(
         lambda: (
             not page.editor.live_proof.is_outdated
-            and page.finding_list.findings is page.editor.live_proof.current
+            and page.finding_list.findings is page.editor.live_proof.current_findings
         )
     )
     return page

@@ -130,4 +130,4 @@ def unproved(text: str, _snapshot: Snapshot, _watch: ProgressCallback) -> tuple[
 
 
 def _secondary(desk: Desk) -> dict[int, SecondaryOffset]:
-    return {n: SecondaryOffset(*values) for n, values in desk.offset_book.secondary.items()}
+    return {n: SecondaryOffset(*values) for n, values in desk.offset_book.secondary_offsets.items()}

@@ -26,7 +26,7 @@ from core.executor.snapshot import Alarm, LogEvent, MachineState, Snapshot
 from core.interpreter.shared.actions import ProgramEnd, ProgramStop
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 
-STOPPED = frozenset({MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP})
+STOPPED = frozenset({MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP})
 
 
 @dataclass
@@ -138,7 +138,7 @@ class FakeMachine:
         elif isinstance(action, ProgramStop) and (not action.optional or self.now.optional_stop):
             self.now = replace(self.now, state=MachineState.PROGRAM_STOP, message=action.message)
         elif self.now.single_block:
-            self.now = replace(self.now, state=MachineState.BLOCK_END)
+            self.now = replace(self.now, state=MachineState.SINGLE_BLOCK_STOP)
         else:
             return False
         return True
@@ -207,7 +207,7 @@ class FakeMachine:
     def set_feed_pot(self, fraction: float) -> None:
         self.now = replace(self.now, feed_override=fraction)
 
-    def turn_handwheel(self, counts: int) -> None:
+    def turn_handwheel(self, count_change: int) -> None:
         """It has none."""
 
     def idle(self) -> None:

@@ -86,7 +86,7 @@ def _holding(day: Day) -> None:
     _running(day)
     day.run(0.5)
     day.desk.post(FeedHold())
-    day.reaches(MachineState.HOLDING, MachineState.HOLD)
+    day.reaches(MachineState.STOPPING, MachineState.HOLD)
 
 
 def _held(day: Day) -> None:
@@ -96,7 +96,7 @@ def _held(day: Day) -> None:
 
 def _block_end(day: Day) -> None:
     day.desk.post(SetSwitch("single_block", True))
-    _started(day, "stops", MachineState.BLOCK_END)
+    _started(day, "stops", MachineState.SINGLE_BLOCK_STOP)
 
 
 def _jogging(day: Day) -> None:
@@ -108,7 +108,7 @@ def _jogging(day: Day) -> None:
 def _homing(day: Day) -> None:
     drives_on(day)
     day.desk.post(HomeAxes(""))
-    day.reaches(MachineState.HOME)
+    day.reaches(MachineState.HOMING)
 
 
 def _stopped(day: Day) -> None:
@@ -142,13 +142,13 @@ STATES: dict[MachineState, Callable[[Day], None]] = {
     MachineState.DISABLED: lambda day: day.reaches(MachineState.DISABLED),
     MachineState.IDLE: _rest,
     MachineState.RUN: _running,
-    MachineState.HOLDING: _holding,
+    MachineState.STOPPING: _holding,
     MachineState.HOLD: _held,
-    MachineState.BLOCK_END: _block_end,
+    MachineState.SINGLE_BLOCK_STOP: _block_end,
     MachineState.PROGRAM_STOP: lambda day: _started(day, "stops", MachineState.PROGRAM_STOP),
     MachineState.WAIT: lambda day: _started(day, "waits", MachineState.WAIT),
     MachineState.JOG: _jogging,
-    MachineState.HOME: _homing,
+    MachineState.HOMING: _homing,
     MachineState.ESTOP: _stopped,
     MachineState.FAULT: _alarm,
 }

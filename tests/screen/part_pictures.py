@@ -91,7 +91,7 @@ def part_of(path: Path) -> Solid:
     setting = PartSettings(nose_radii={n: tool.nose_radius for n, tool in setup.tools.items()})
     gathered = StepCollector(setting)
     _, report = prove_with_part(source, setup, machine, setting, on_span=gathered.add_span)
-    moves = gathered.collected_steps()
+    moves = gathered.make_program_steps()
     assert report is not None
     assert moves is not None
     if report.parted_pieces and not report.is_milled:

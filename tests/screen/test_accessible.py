@@ -54,7 +54,7 @@ def without_name(window: MainWindow) -> list[str]:
     """Each page on which something has no name or no role."""
     assert window.frame is not None
     found = []
-    for entry in list_pages(window.frame.desk.machine.language):
+    for entry in list_pages(window.frame.desk.machine.program_language):
         window.frame.open_page(entry.name)
         window.refresh()
         found += [

@@ -12,7 +12,7 @@ from app.desk.status.readouts import ReadoutKind
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts
 from app.screen.window.readout_panels import describe_stop
-from core.alarms import CATALOGUE, AlarmCode, Reaction
+from core.alarms import CATALOG, AlarmCode, Reaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import MachineState, Snapshot
 from tests.texts import text as wording
@@ -20,7 +20,7 @@ from tests.texts import text as wording
 UNIT = 600 / 90  # pixels at 1024×600
 ACROSS = 1024 - 3 * UNIT
 LIST = ACROSS - 24 * UNIT - 17 * UNIT - 4 * UNIT  # beside the station, behind the column of times
-CODES = pytest.mark.parametrize("code", sorted(CATALOGUE))
+CODES = pytest.mark.parametrize("code", sorted(CATALOG))
 
 
 @pytest.fixture
@@ -37,7 +37,7 @@ def fits(look: ScreenTheme, text: str, size: float, width: float, *, bold: bool 
 
 def snapshot(code: AlarmCode) -> Snapshot:
     alarm = make_alarm(code, "", 1234, 0.0)
-    if CATALOGUE[code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP}:
+    if CATALOG[code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP}:
         return Snapshot(state=MachineState.FAULT, alarms=(alarm,))
     return Snapshot(state=MachineState.HOLD, stop=alarm)
 
@@ -46,7 +46,7 @@ def snapshot(code: AlarmCode) -> Snapshot:
 def test_head_cause_and_remedy_are_whole(look: ScreenTheme, code: AlarmCode) -> None:
     shot = snapshot(code)
     view = make_status(shot, ReadoutKind.POSITION, True)
-    assert fits(look, view.state_text, 2.5, 42 * look.u, bold=True), view.state_text
+    assert fits(look, view.state_text, 2.5, 42 * look.unit_px, bold=True), view.state_text
     assert fits(look, describe_stop(view), 2.5, ACROSS - 24 * UNIT - 6 * UNIT, bold=True)
     assert fits(look, reason(view), 1.9, ACROSS), reason(view)
     assert fits(look, make_alarm_prompt(shot, wording("stories.release-by-u")), 2.1, ACROSS, bold=True)

@@ -89,7 +89,7 @@ def test_offsets_of_a_file_are_shown_and_not_changed(home: Path) -> None:
     journal = Journal(home)
     file = str(SHIPPED.parents[1] / "programs" / "offsets.toml")
     book = create_offset_book(make_offsets_reader(file), journal)
-    assert sorted(book.tools) == [1, 2, 3, 4, 6, 7, 8, 20]
+    assert sorted(book.tool_offsets) == [1, 2, 3, 4, 6, 7, 8, 20]
     assert shows(book.change_fields(OffsetKind.TOOL, 1, {"x": 1.0}, "try"), "screen.offsets-read-only")
     assert shows(book.clear_table(OffsetKind.SECONDARY, "C"), "screen.offsets-read-only")
     assert shows(book.undo_step(OffsetKind.TOOL, 1, 1), "screen.offsets-read-only")

@@ -61,7 +61,7 @@ def desk(
     controller: Controller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, qapp: object
 ) -> Iterator[Desk]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path / "home"))
-    text = resources.machine_file("gt75-grblhal.toml")
+    text = resources.read_machine_file("gt75-grblhal.toml")
     for old, new in (("/dev/ttyACM0", controller.end.device_name), *CHANGES):
         assert old in text, old
         text = text.replace(old, new, 1)

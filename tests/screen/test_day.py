@@ -85,7 +85,7 @@ def single_block_through(day: Day) -> None:
     ended: dict[int, tuple[float, float]] = {}
     for _ in range(40):
         day.palms()
-        day.reaches(MachineState.BLOCK_END, MachineState.PROGRAM_STOP, MachineState.IDLE)
+        day.reaches(MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP, MachineState.IDLE)
         if day.shot.state is MachineState.IDLE:
             break
         ended[day.shot.line] = day.slides

@@ -153,11 +153,11 @@ def test_a_stop_in_the_middle_and_the_second_tool_by_searchto(day: Day) -> None:
     search(day, "X1.2", "11")
     restarts(day)
     ended = {}
-    day.reaches(MachineState.BLOCK_END)
-    while day.shot.state is MachineState.BLOCK_END:
+    day.reaches(MachineState.SINGLE_BLOCK_STOP)
+    while day.shot.state is MachineState.SINGLE_BLOCK_STOP:
         ended[day.shot.line] = day.slides
         day.palms()
-        day.reaches(MachineState.BLOCK_END, MachineState.IDLE)
+        day.reaches(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE)
     assert [ended[line] for line in (11, 12, 13, 14)] == [
         pytest.approx(ENDS[line], abs=NEAR) for line in (11, 12, 13, 14)
     ]
@@ -171,7 +171,7 @@ def search(day: Day, text: str, line: str) -> None:
     """F6, a text or nothing, Return to its state, F10 to take it."""
     day.key(Key.Key_F6)
     assert day.page == page_table.SEARCHTO_PAGE
-    model = day.desk.page_registry.find(SearchtoModel)
+    model = day.desk.page_registry.find_model(SearchtoModel)
     assert model is not None
     if text:
         day.type(text)

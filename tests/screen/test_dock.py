@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.station_dock import StationDock
-from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit, make_layout
+from app.screen.window_layout import FINGERTIP_PX, MIN_WINDOW_PX, find_unit_px, make_layout
 from core.executor.commands import CycleStart
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands
@@ -85,7 +85,7 @@ def test_a_finger_that_slides_turns_the_pot(hands: Hands) -> None:
 def test_whatever_stands_on_the_smallest_station_fits_a_finger(hands: Hands) -> None:
     """The tracks of the pots had 42 pixels."""
     at = make_layout(*MIN_WINDOW_PX, has_dock=True).dock
-    dock = StationDock(ScreenTheme(DARK_PALETTE, find_unit(*MIN_WINDOW_PX)), hands.desk)
+    dock = StationDock(ScreenTheme(DARK_PALETTE, find_unit_px(*MIN_WINDOW_PX)), hands.desk)
     dock.resize(at.w, at.h)
     dock.grab()
     assert len(dock.controls) == 13  # as above, feed hold and the palms

@@ -52,7 +52,7 @@ KEYS = {
     **{
         getattr(Key, f"Key_{page.key}"): page.name
         for extra in extras().values()
-        for page in extra.pages
+        for page in extra.page_descriptions
         if page.key
     },
 }

@@ -100,7 +100,7 @@ def day(
     programs = MACHINES[kind]
     for name, text in programs.texts.items():
         write_program_file(find_data_folder() / "programs" / f"{name}.{programs.ending}", text.encode())
-    machine = shipped(tmp_path, absolute=False) if state is MachineState.HOME else programs.machine
+    machine = shipped(tmp_path, absolute=False) if state is MachineState.HOMING else programs.machine
     with begun(qtbot, machine=machine) as day:
         day.sees(lambda: QApplication.focusWindow() is day.window.windowHandle())
         STATES[state](day)
@@ -275,7 +275,7 @@ def test_every_key_does_what_the_page_offers(day: Day, typists: list[Typist]) ->
     typists.append(typist)
     faults: list[str] = []
     seen: list[str] = []
-    language = day.desk.machine.language
+    language = day.desk.machine.program_language
     for entry in list_pages(language):
         own = language == "omniturn" or entry.name in BY_MACHINE or len(entry.languages) < ALL
         if not own or not typist.opens(entry.name):
@@ -305,17 +305,17 @@ ENDS = {
     MachineState.DISABLED: ("D", {MachineState.IDLE}),
     MachineState.FAULT: ("R", {MachineState.DISABLED, MachineState.IDLE}),
     MachineState.HOLD: ("palms", {MachineState.RUN, MachineState.WAIT}),
-    MachineState.BLOCK_END: (
+    MachineState.SINGLE_BLOCK_STOP: (
         "palms",
-        {MachineState.RUN, MachineState.WAIT, MachineState.BLOCK_END, MachineState.PROGRAM_STOP},
+        {MachineState.RUN, MachineState.WAIT, MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP},
     ),
     MachineState.PROGRAM_STOP: ("palms", {MachineState.RUN, MachineState.WAIT}),
     MachineState.IDLE: ("palms", {MachineState.RUN, MachineState.WAIT}),
-    MachineState.RUN: ("Pause", {MachineState.HOLD, MachineState.HOLDING}),
-    MachineState.WAIT: ("Pause", {MachineState.HOLD, MachineState.HOLDING}),
-    MachineState.HOLDING: ("Pause", {MachineState.HOLD}),
+    MachineState.RUN: ("Pause", {MachineState.HOLD, MachineState.STOPPING}),
+    MachineState.WAIT: ("Pause", {MachineState.HOLD, MachineState.STOPPING}),
+    MachineState.STOPPING: ("Pause", {MachineState.HOLD}),
     MachineState.JOG: ("Pause", {MachineState.IDLE}),
-    MachineState.HOME: ("H", {MachineState.IDLE}),
+    MachineState.HOMING: ("H", {MachineState.IDLE}),
     MachineState.ESTOP: ("Y", {MachineState.DISABLED}),
 }
 """The key that the Automatic page offers in each state, and the states that follow."""

@@ -15,7 +15,12 @@ from pytestqt.qtbot import QtBot
 from app.screen.page_table import AUTOMATIC
 from app.screen.window.file_opening import FileOpening
 from app.screen.window.main_window import MainWindow
-from app.screen.window.running_screen import ACCEPTED, MOST, RunningScreen, socket_name
+from app.screen.window.running_screen import (
+    ACCEPTED_REPLY,
+    MAX_REQUEST_BYTES,
+    RunningScreen,
+    find_socket_name,
+)
 from core.executor.snapshot import MachineState
 from tests.screen.desks import SAMPLES
 from tests.screen.fake import FakeMachine
@@ -91,14 +96,14 @@ def test_no_program_is_loaded_while_one_runs(
 def received(window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
     found: list[Path] = []
-    assert RunningScreen(found.append, window).listen()
+    assert RunningScreen(found.append, window).start_listening()
     return found
 
 
 def ask(request: bytes, qtbot: QtBot) -> bytes:
     """Send a request and return the reply, or nothing if the screen closes the connection."""
     socket = QLocalSocket()
-    socket.connectToServer(socket_name())
+    socket.connectToServer(find_socket_name())
     assert socket.waitForConnected(5000)
     socket.write(request)
     socket.flush()
@@ -108,11 +113,13 @@ def ask(request: bytes, qtbot: QtBot) -> bytes:
 
 
 def test_a_second_start_hands_its_program_over(received: list[Path], qtbot: QtBot) -> None:
-    assert ask(os.fsencode(PIN) + b"\n", qtbot) == ACCEPTED
+    assert ask(os.fsencode(PIN) + b"\n", qtbot) == ACCEPTED_REPLY
     assert received == [PIN]
 
 
-@pytest.mark.parametrize("request_", [b"pin.nc\n", b"/nowhere/pin.nc\n", b"\n", b"x" * (MOST + 1)])
+@pytest.mark.parametrize(
+    "request_", [b"pin.nc\n", b"/nowhere/pin.nc\n", b"\n", b"x" * (MAX_REQUEST_BYTES + 1)]
+)
 def test_a_request_that_is_not_an_existing_file_is_rejected(
     request_: bytes, received: list[Path], qtbot: QtBot
 ) -> None:
@@ -121,12 +128,12 @@ def test_a_request_that_is_not_an_existing_file_is_rejected(
 
 
 def test_a_second_screen_does_not_replace_the_first(received: list[Path], window: MainWindow) -> None:
-    assert not RunningScreen(received.append, window).listen()
+    assert not RunningScreen(received.append, window).start_listening()
 
 
 def test_a_socket_of_a_killed_screen_is_replaced(
     window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("TURNDESK_HOME", str(tmp_path))
-    Path(socket_name()).touch()
-    assert RunningScreen(lambda _path: None, window).listen()
+    Path(find_socket_name()).touch()
+    assert RunningScreen(lambda _path: None, window).start_listening()

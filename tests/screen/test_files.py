@@ -14,7 +14,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.compose.runs.journal import Journal
-from app.programs.program_commands import check_name, remove_extension
+from app.programs.program_commands import complete_name, remove_extension
 from app.programs.program_list_model import ProgramListModel
 from app.programs.programs_view import ProgramsPage
 from app.programs.removable_media import UsbStick, list_sticks
@@ -122,7 +122,7 @@ def test_a_name_is_typed_in_a_cycle_and_no_letter_is_a_switch(shop: Shop) -> Non
     assert not shop.machine.now.no_count
     assert shop.machine.now.spindle_auto
     shop.type("bevel")
-    assert not shop.desk.station_controls.estop_pressed
+    assert not shop.desk.station_controls.is_estop_pressed
     shop.key(Key.Key_Escape)
     assert not any(isinstance(command, FeedHold) for command in shop.machine.posted)
     assert shop.programs.model.search_field.text == ""
@@ -182,7 +182,7 @@ def test_what_is_typed_goes_before_the_ending(shop: Shop) -> None:
 )
 def test_the_name_that_is_offered_becomes_the_same_again(name: str, offered: str) -> None:
     assert remove_extension(name) == offered
-    assert check_name(offered, Path(name)) == name
+    assert complete_name(offered, Path(name)) == name
 
 
 @pytest.mark.parametrize(

@@ -129,7 +129,7 @@ def test_a_line_of_mdi_is_drawn_before_it_starts(operator: Operator) -> None:
     page = operator.frame.current_page
     operator.window.refresh()
     assert isinstance(page, MdiPage)
-    assert [(leg.x, leg.rapid) for leg in page.path_view.drawn_legs] == [(0.0, True), (12.7, False)]
+    assert [(leg.x, leg.is_rapid) for leg in page.path_view.drawn_legs] == [(0.0, True), (12.7, False)]
     assert page.path_view.isVisible()
     operator.palms()
     operator.reaches(MachineState.IDLE)

@@ -67,7 +67,7 @@ def test_hold_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.Keyboa
 def test_estop_with_every_modifier(watched: Hands, key: Key, modifiers: Qt.KeyboardModifier) -> None:
     for _ in range(3):  # nor does it free itself
         send(watched, key, modifiers=modifiers)
-        assert watched.desk.station_controls.estop_pressed
+        assert watched.desk.station_controls.is_estop_pressed
 
 
 def test_the_stop_key_acts_though_it_counts_as_down(watched: Hands) -> None:
@@ -201,7 +201,7 @@ def test_what_waited_behind_a_stall_is_late() -> None:
     assert not times.was_delayed(50_000)  # the stamps count from somewhere else: now
     before, during = 50_100, 52_900
     time.now += 3.0
-    times.note_input()
+    times.record_input()
     assert times.was_delayed(before)
     assert times.was_delayed(during)
     for _ in range(FRAMES_AFTER_STALL):
@@ -300,4 +300,4 @@ def test_letters_are_text_on_a_page_of_offsets_and_stop_nothing(watched: Hands) 
         send(watched, Key(ord(letter.upper())), text=letter)
         send(watched, Key(ord(letter.upper())), text=letter, up=True)
     assert watched.machine.posted[before:] == []
-    assert not watched.desk.station_controls.estop_pressed
+    assert not watched.desk.station_controls.is_estop_pressed

@@ -25,7 +25,7 @@ from app.screen.page_base import Page
 from app.screen.screen_theme import TRANSLATION_CONTEXT, ScreenTheme, use_language
 from app.screen.window.main_window import MainWindow
 from app.special.machine_records import make_event_row
-from core.alarms import CATALOGUE, AlarmCode, AlarmEntry
+from core.alarms import CATALOG, AlarmCode, AlarmEntry
 from core.executor.raised_alarm import format_log_line, make_alarm
 from core.executor.snapshot import Alarm
 from core.interpreter.shared.checkpoint import Checkpoint
@@ -33,19 +33,19 @@ from core.interpreter.shared.modal_state import ModalState
 from core.store.store_rows import EventRow
 from resources.translations.collect import (
     _NO_TEXT,
-    HERE,
-    HOLE,
-    HOUSE,
-    NO_SENTENCES,
-    ROOMS,
+    CATALOG_FOLDER,
+    FILE_ENDINGS_WITHOUT_SENTENCES,
+    PLACEHOLDER_PATTERN,
+    PROJECT_FOLDER,
+    SCREEN_FOLDERS,
     _is_apart,
     _is_read,
-    console_texts,
-    texts,
+    collect_console_texts,
+    collect_screen_texts,
 )
-from resources.translations.collect import catalogue as written
+from resources.translations.collect import read_translations as written
 from resources.translations.message_list import read_list
-from resources.translations.reading import composed_of
+from resources.translations.text_extraction import find_composed_texts
 from tests.screen.hands import Hands, Key
 from tests.texts import message, text_in_spanish
 
@@ -54,7 +54,7 @@ OFF = message("screen.off-setpoint", axis="Z", distance=2.1)
 _LOGGED = re.compile(r'\.log\(\s*"(\w+)"')
 
 
-every_text = cache(texts)  # of every file there is: seconds
+every_text = cache(collect_screen_texts)  # of every file there is: seconds
 
 
 @pytest.fixture
@@ -98,7 +98,7 @@ def test_program_text_and_comments_are_left_alone(spanish: Hands, monkeypatch: p
 
 
 def test_an_alarm_of_the_control_is_told_in_spanish(spanish: Hands, monkeypatch: pytest.MonkeyPatch) -> None:
-    remedy = CATALOGUE["following"].remedy
+    remedy = CATALOG["following"].remedy
     spanish.machine.fault(
         Alarm(
             102,
@@ -150,7 +150,9 @@ def test_an_event_of_an_older_store_stays_english() -> None:
 @pytest.mark.usefixtures("spanish")
 def test_every_kind_of_the_log_has_its_word() -> None:
     kinds = {
-        kind for file in (HOUSE / "core/executor").rglob("*.py") for kind in _LOGGED.findall(file.read_text())
+        kind
+        for file in (PROJECT_FOLDER / "core/executor").rglob("*.py")
+        for kind in _LOGGED.findall(file.read_text())
     }
     assert len(kinds) > 15
     assert {kind for kind in kinds if tr(kind) == kind} <= {"mdi", "override"}  # the same word in Spanish
@@ -174,7 +176,7 @@ def test_the_comment_in_force_is_the_programs(spanish: Hands) -> None:
 
 
 @pytest.mark.usefixtures("spanish")
-@pytest.mark.parametrize("entry", CATALOGUE.values(), ids=str)
+@pytest.mark.parametrize("entry", CATALOG.values(), ids=str)
 def test_every_alarm_has_its_spanish(entry: AlarmEntry) -> None:
     texts = (entry.text.upper(), *entry.causes, entry.remedy)
     assert [text for text in texts if tr(text) == text] in ([], ["RESET"])
@@ -200,14 +202,18 @@ def _has(font: QFont, sign: str) -> bool:
 
 def test_the_compiled_catalogue_is_that_of_the_texts() -> None:
     translator = QTranslator()
-    assert translator.load(str(HERE / "turndesk_es.qm"))
+    assert translator.load(str(CATALOG_FOLDER / "turndesk_es.qm"))
     for text, told in written("es").items():
         assert (translator.translate(TRANSLATION_CONTEXT, text) or "") == told
 
 
 def test_no_value_is_lost() -> None:
-    holes = {text: told for text, told in written("es").items() if told and HOLE.search(text)}
-    lost = [text for text, told in holes.items() if sorted(HOLE.findall(told)) != sorted(HOLE.findall(text))]
+    holes = {text: told for text, told in written("es").items() if told and PLACEHOLDER_PATTERN.search(text)}
+    lost = [
+        text
+        for text, told in holes.items()
+        if sorted(PLACEHOLDER_PATTERN.findall(told)) != sorted(PLACEHOLDER_PATTERN.findall(text))
+    ]
     assert lost == []
 
 
@@ -270,7 +276,7 @@ def test_queries_and_style_sheets_are_no_texts(text: str) -> None:
 def test_the_list_has_every_text_once() -> None:
     shown = every_text()
     listed = read_list()
-    known = {*shown, *console_texts(shown)}
+    known = {*shown, *collect_console_texts(shown)}
     if len(extras()) < len(FEATURE_NAMES):  # the list has the texts of all optional features
         known |= set(listed.values())
     assert sorted(listed.values()) == sorted(known)
@@ -279,11 +285,11 @@ def test_the_list_has_every_text_once() -> None:
 def test_every_text_with_values_is_a_message() -> None:
     """A text that is put together otherwise cannot be translated."""
     found = [
-        f"{path.relative_to(HOUSE)}:{line}: {text}"
-        for room in ROOMS
-        for path in sorted((HOUSE / room).rglob("*.py"))
-        if not _is_apart(path, room) and not path.name.endswith(NO_SENTENCES)
-        for line, text in composed_of(ast.parse(path.read_text(encoding="utf-8")))
+        f"{path.relative_to(PROJECT_FOLDER)}:{line}: {text}"
+        for room in SCREEN_FOLDERS
+        for path in sorted((PROJECT_FOLDER / room).rglob("*.py"))
+        if not _is_apart(path, room) and not path.name.endswith(FILE_ENDINGS_WITHOUT_SENTENCES)
+        for line, text in find_composed_texts(ast.parse(path.read_text(encoding="utf-8")))
         if _is_read(text, False)
     ]
     assert found == []

@@ -28,7 +28,7 @@ class Stall:
     def __init__(self, hands: Hands) -> None:
         self.hands, self.time = hands, Time()
         hands.window.input_times.clock = hands.desk.station_controls.clock = (
-            hands.desk.window_state.late_presses.clock
+            hands.desk.window_state.late_presses.read_time_s
         ) = self.time
         send(hands, Key.Key_F5, at=round(1000 * self.time.now))  # the stamps are of our own clock
         send(hands, Key.Key_F5, up=True, at=round(1000 * self.time.now))
@@ -290,7 +290,7 @@ def test_what_stops_acts_also_after_a_dropped_answer(stall: Stall) -> None:
     stall.press(Key.Key_Pause, 400)
     assert stall.hands.machine.posted == [FeedHold()]
     stall.press(Key.Key_ScrollLock, 500)
-    assert stall.hands.desk.station_controls.estop_pressed
+    assert stall.hands.desk.station_controls.is_estop_pressed
 
 
 @pytest.mark.parametrize("key", [Key.Key_Pause, Key.Key_H, Key.Key_Space])

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QRect
 from PySide6.QtGui import QScreen
 
-from app.screen.window_layout import MIN_WINDOW_PX, Rect, find_unit, make_layout, make_low_layout
+from app.screen.window_layout import MIN_WINDOW_PX, Rect, find_unit_px, make_layout, make_low_layout
 from tests.screen.hands import Hands
 
 SIZES = [
@@ -48,7 +48,7 @@ def test_nothing_overlaps_and_nothing_is_cut(size: tuple[int, int], dock: bool) 
 
 @pytest.mark.parametrize("size", SIZES)
 def test_the_figures_keep_their_room(size: tuple[int, int]) -> None:
-    at, u = make_layout(*size, has_dock=True), find_unit(*size)
+    at, u = make_layout(*size, has_dock=True), find_unit_px(*size)
     assert at.position.h >= 27 * u - 1
     assert at.feed.w >= 24 * u
     assert at.listing.h >= 18 * u
@@ -77,7 +77,7 @@ def test_a_page_with_low_readouts_overlaps_nothing(size: tuple[int, int], dock: 
     parts = [at.title, *low, at.prompt, at.keys, *([at.dock] if dock else [])]
     for one, two in combinations(parts, 2):
         assert apart(one, two), (one, two)
-    assert low.work_area.h >= 49 * find_unit(*size) - 1
+    assert low.work_area.h >= 49 * find_unit_px(*size) - 1
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_a_window_among_others_is_a_quarter_of_a_large_glass(
     hands: Hands, glass: tuple[int, int], window: tuple[int, int]
 ) -> None:
     screen = SimpleNamespace(availableGeometry=lambda: QRect(0, 0, *glass))
-    hands.window.show_on(cast("QScreen", screen))
+    hands.window.show_on_screen(cast("QScreen", screen))
     size = hands.window.size()
     assert (size.width(), size.height()) == window
     assert not hands.window.isMaximized()

@@ -106,9 +106,9 @@ def test_the_history_is_there_again_the_next_day(at_mdi: Operator) -> None:
     at_mdi.run("G90F50")
     at_mdi.key(Key.Key_F1)
     at_mdi.key(Key.Key_F4)
-    at_mdi.mdi.mdi_input.history = []
-    at_mdi.mdi.mdi_input.reload()
-    assert at_mdi.mdi.mdi_input.history == ["G90F50"]
+    at_mdi.mdi.mdi_input.history_lines = []
+    at_mdi.mdi.mdi_input.reload_history()
+    assert at_mdi.mdi.mdi_input.history_lines == ["G90F50"]
 
 
 def test_letters_are_keys_again_while_a_line_is_under_way(at_mdi: Operator) -> None:

@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.path.measuring import PointKind, SnapPoint
-from app.path.path_aspects import DrawnLeg, PathAspect, TipPosition
-from app.path.path_marks_view import place_leg_labels
+from app.path.path_aspects import ApproachLeg, PathAspect, TipPosition
+from app.path.path_marks_view import make_leg_labels
 from app.path.path_picture import PictureBuilder, ProgramPicture
 from app.path.path_view import PathView
 from app.screen.color_palettes import DARK_PALETTE
@@ -194,7 +194,9 @@ def test_two_fingers_spread_the_picture_and_touch_nothing(view: PathView) -> Non
         fingers(view, device, "move", (380 - far, 250), (420 + far, 250))
     fingers(view, device, "release", (340, 250), (460, 250))
     assert view.first_projection is not None
-    assert view.first_projection.scale == pytest.approx(3 * before.scale)  # from 40 pixels to 120
+    assert view.first_projection.pixels_per_mm == pytest.approx(
+        3 * before.pixels_per_mm
+    )  # from 40 pixels to 120
     assert FOUND == []
 
 
@@ -276,7 +278,7 @@ def test_zooming_a_comparison_goes_to_the_farthest_change(view: PathView) -> Non
     view.show_compared(picture(SHAFT), picture([(10.0, 2.0), (5.0, 0.0), (5.0, -20.0), (8.004, -20.003)]))
     apart = view.panes[0].largest_distance
     assert apart is not None
-    assert apart.distance == pytest.approx(0.005)
+    assert apart.distance_mm == pytest.approx(0.005)
     view.zoom_view(20)
     z0, z1, x0, x1 = view.panes[0].find_visible_area()
     assert z0 < -20.003 < z1
@@ -311,7 +313,7 @@ def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -
     view.shows_whole_approach = True
     before = view.first_projection
     view.show_approach(
-        [DrawnLeg(60.0, 40.0), DrawnLeg(60.0, 8.0, label="1 X"), DrawnLeg(-5.0, 8.0, label="2 Z")]
+        [ApproachLeg(60.0, 40.0), ApproachLeg(60.0, 8.0, label="1 X"), ApproachLeg(-5.0, 8.0, label="2 Z")]
     )
     _z0, z1, _x0, x1 = view.panes[0].find_visible_area()
     assert z1 > 60
@@ -320,19 +322,19 @@ def test_the_way_back_is_seen_whole_unless_one_looks_elsewhere(view: PathView) -
     assert view.first_projection == before
     view.zoom_view(2)
     near = view.first_projection
-    view.show_approach([DrawnLeg(60.0, 40.0), DrawnLeg(60.0, 8.0)])
+    view.show_approach([ApproachLeg(60.0, 40.0), ApproachLeg(60.0, 8.0)])
     assert view.first_projection == near
-    view.fit_all()
+    view.fit_all_panes()
     assert view.panes[0].find_visible_area()[1] > 60
 
 
 def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
     legs = [
-        DrawnLeg(10.0, 12.0),
-        DrawnLeg(10.0, 8.0, label="1 X"),
-        DrawnLeg(-5.0, 8.0, rapid=False, label="2 Z"),
+        ApproachLeg(10.0, 12.0),
+        ApproachLeg(10.0, 8.0, label="1 X"),
+        ApproachLeg(-5.0, 8.0, is_rapid=False, label="2 Z"),
     ]
-    view.fit_all()
+    view.fit_all_panes()
     view.zoom_view(-3)
     plain = settle(view)
     view.show_approach(legs)
@@ -347,11 +349,11 @@ def test_the_way_back_is_drawn_and_taken_away(view: PathView) -> None:
 def test_legs_that_lie_on_each_other_have_one_label(view: PathView) -> None:
     """A short way beside a long one: no number hides another."""
     spots = [QPointF(300.0, 50.0), QPointF(100.0, 50.0), QPointF(104.0, 52.0), QPointF(98.0, 49.0)]
-    one, rest = place_leg_labels(view.theme, spots, ["1 X", "2 Z", "3 X", "4 XZ"])
+    one, rest = make_leg_labels(view.theme, spots, ["1 X", "2 Z", "3 X", "4 XZ"])
     assert (one[1], rest[1]) == ("1 X", "2–4")
     assert rest[0].center() == spots[1]
     assert not one[0].intersects(rest[0])
-    assert [text for _, text in place_leg_labels(view.theme, spots[:3], ["1 X", "", "3 X"])] == ["1 X", "3 X"]
+    assert [text for _, text in make_leg_labels(view.theme, spots[:3], ["1 X", "", "3 X"])] == ["1 X", "3 X"]
 
 
 def test_keys_on_the_automatic_page(hands: Hands) -> None:

@@ -179,7 +179,7 @@ def test_a_program_given_up_leaves_no_plane_behind(mill: Mill) -> None:
     assert end.swivel is not None
     assert end.swivel.system.is_workpiece_system
     x, y, z, *_ = end.actual
-    assert end.swivel.system.transform.to_frame_point((x, y, z)) == pytest.approx(
+    assert end.swivel.system.transform.convert_to_frame_point((x, y, z)) == pytest.approx(
         (x - 230.0, y - 210.0, z + 350.0 - 76.2)
     )
 
@@ -274,7 +274,7 @@ def test_the_jog_page_of_a_mill_sets_no_tool(mill: Mill) -> None:
     assert frame is not None
     page = frame.current_page
     assert isinstance(page, JogPage)
-    assert page.key_labels() == (
+    assert page.make_key_labels() == (
         *("MENU", "STEP", "SPEED", "", "3D-ROT", "", "ALARMS", "TOOLS", "PRESETS", "READOUT"),
     )
     assert (page.mill_panel.isVisible(), page.tool_panel.isVisible(), page.entry_panel.isVisible()) == (

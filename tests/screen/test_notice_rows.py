@@ -84,11 +84,11 @@ def test_what_was_done_of_an_interrupted_program_stays_drawn(hands: Hands) -> No
     tip = hands.page.path_view._tip
     assert tip is not None
     tool = job.setup.tools[1]
-    assert (tip.block, tip.stop_position) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
+    assert (tip.active_block, tip.stop_position) == (9, (found.where[1] - tool.z, found.where[0] - tool.x))
     hands.machine.now = replace(hands.machine.now, interrupted=replace(found, text="changed"))
     hands.window.refresh()
     assert hands.page.path_view._tip is not None
-    assert hands.page.path_view._tip.block == 0
+    assert hands.page.path_view._tip.active_block == 0
 
 
 def test_a_finger_on_the_row_answers_as_the_key_does(hands: Hands) -> None:

@@ -213,7 +213,7 @@ def test_a_tool_is_set_with_f8_and_refused_while_running(hands: Hands, store: St
         hands.key(Key.Key_Down)
     hands.sees(lambda: page.entry_panel.entry_texts.question_text == "T9  X R?")
     answer(hands, "-.5", "-3-.25")
-    hands.sees(lambda: 9 in page.model.offset_book.tools)
+    hands.sees(lambda: 9 in page.model.offset_book.tool_offsets)
     hands.key(Key.Key_Right)
     answer(hands, ".0156")
     hands.sees(lambda: page.entry_panel.entry_texts.change_text == "T9   NOSE RADIUS 0.00000 → 0.01560")
@@ -266,7 +266,7 @@ def test_a_remark_is_written_by_a_finger(hands: Hands, store: Store) -> None:
     hands.window.resize(1024, 600)
     hands.key(Key.Key_F8)
     page = tools_of(hands)
-    page.set_pad_shown(True)
+    page.set_number_pad_visible(True)
     page.model.select_cell(1, 7)
     hands.sees(page.letter_pad.isHidden)
     page.handle_touched_key("Enter")  # on the pad: it opens the remark
@@ -293,10 +293,10 @@ def test_a_finger_alone_enters_an_offset(hands: Hands, store: Store) -> None:
     assert page.number_pad.isHidden()  # until a finger is there
     touch(hands, page.table_panel, 2)  # the upper half of the right column
     assert page.model.offset_number == 0
-    assert page.table_panel.first_enlarged == 17
+    assert page.table_panel.first_enlarged_number == 17
     touch(hands, page.table_panel, 0)
     assert page.model.offset_number == 17
-    assert page.table_panel.first_enlarged == 0
+    assert page.table_panel.first_enlarged_number == 0
     point, two, enter = 13, 9, 20  # places on the pad, row by row
     for key in (point, two, enter, enter, enter):
         spot, *_ = page.number_pad._places[key]
@@ -337,14 +337,14 @@ def test_offsets_that_were_brought_near_go_back_by_finger_and_by_escape(hands: H
     page = page_of(hands)
     touch(hands, page.table_panel, 1)
     touch(hands, page.table_panel, 8)  # ALL 32
-    assert (page.table_panel.first_enlarged, page.model.offset_number) == (0, 0)
+    assert (page.table_panel.first_enlarged_number, page.model.offset_number) == (0, 0)
     touch(hands, page.table_panel, 1)
     hands.key(Key.Key_Escape)
-    assert page.table_panel.first_enlarged == 0
+    assert page.table_panel.first_enlarged_number == 0
     assert hands.frame.current_page is page
     touch(hands, page.table_panel, 3)
     answer(hands, "7")  # typed all the same
-    hands.sees(lambda: page.table_panel.first_enlarged == 0)
+    hands.sees(lambda: page.table_panel.first_enlarged_number == 0)
     assert page.model.offset_number == 7
 
 
@@ -367,7 +367,7 @@ def test_the_effect_of_what_is_typed_and_of_what_was_changed(hands: Hands, store
     before = page.effect_view.first_projection
     assert whole is not None
     assert before is not None
-    assert 0.0254 * before.scale >= 0.05 * page.effect_view.width()
+    assert 0.0254 * before.pixels_per_mm >= 0.05 * page.effect_view.width()
     hands.key(Key.Key_Z)
     assert page.effect_view.first_projection != before
     hands.key(Key.Key_F6)

@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QTimer
 from PySide6.QtTest import QTest
 
-from app.screen.window.main_window import FRAME_MS, IDLE_AFTER_S, REST_FRAME_MS
-from app.screen.window.window_frame import MAX_AGE_S
+from app.screen.window.main_window import AT_REST_FRAME_MS, FRAME_MS, IDLE_DELAY_S
+from app.screen.window.window_frame import MAX_REFRESH_AGE_S
 from core.executor.snapshot import MachineState
 from tests.screen.hands import Hands, Key
 
@@ -24,7 +24,7 @@ def left_alone(hands: Hands) -> None:
     """Two seconds without a key or finger, and the next frame."""
     assert hands.window.page_preloader is not None
     hands.window.page_preloader.is_done = True
-    hands.window.input_times.touch_time = hands.window.input_times.clock() - IDLE_AFTER_S - 0.1
+    hands.window.input_times.input_time_s = hands.window.input_times.clock() - IDLE_DELAY_S - 0.1
     hands.window._handle_tick()
 
 
@@ -35,7 +35,7 @@ def test_a_machine_at_rest_that_nobody_touches_is_drawn_less_often(hands: Hands,
     hands.machine.now = replace(hands.machine.now, state=state)
     assert interval(hands) == FRAME_MS
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
+    hands.sees(lambda: interval(hands) == AT_REST_FRAME_MS)
 
 
 def test_the_first_key_ends_it_before_it_is_judged(hands: Hands) -> None:
@@ -49,7 +49,7 @@ def test_a_change_of_the_machine_ends_it_from_any_thread(
     hands: Hands, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
+    hands.sees(lambda: interval(hands) == AT_REST_FRAME_MS)
     seen: list[int] = []
     monkeypatch.setattr(hands.window, "_pace", seen.append)
     executor = threading.Thread(target=hands.desk.window_state.wake_window)
@@ -77,7 +77,7 @@ def test_the_handwheel_and_a_page_that_lives_are_too(hands: Hands, monkeypatch: 
     assert interval(hands) == FRAME_MS
     hands.machine.now = replace(hands.machine.now, wheel="")
     left_alone(hands)
-    hands.sees(lambda: interval(hands) == REST_FRAME_MS)
+    hands.sees(lambda: interval(hands) == AT_REST_FRAME_MS)
     monkeypatch.setattr(hands.page, "is_animating", lambda: True)
     left_alone(hands)
     assert interval(hands) == FRAME_MS
@@ -112,7 +112,7 @@ class Counted:
     def until_still(self) -> None:
         """All is drawn, and nobody has touched anything for a while."""
         self._hands.machine.alive = False  # the same time in every snapshot would be a silent control
-        self._window.input_times.touch_time = self.t - IDLE_AFTER_S - 0.1
+        self._window.input_times.input_time_s = self.t - IDLE_DELAY_S - 0.1
         for _ in range(50):
             self.tick(0.0)
             self._hands.qtbot.wait(1)  # what is to be drawn is drawn
@@ -136,7 +136,7 @@ def test_a_picture_in_which_nothing_is_new_is_not_made(counted: Counted) -> None
 
 
 def test_all_is_looked_at_twice_a_second_all_the_same(counted: Counted) -> None:
-    counted.tick(MAX_AGE_S + 0.01)
+    counted.tick(MAX_REFRESH_AGE_S + 0.01)
     assert counted.frames == 1
 
 

@@ -143,7 +143,7 @@ def test_a_page_that_cannot_be_loaded_is_left_to_whoever_opens_it(
 
 
 def test_a_page_without_its_model_is_not_made(idle: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
-    entries(monkeypatch, (replace(ONE[0], model_class="core.executor.recorder.Recorder"),))
+    entries(monkeypatch, (replace(ONE[0], model_class="core.executor.scope_recorder.ScopeRecorder"),))
     asked = Asked()
     ahead = PagePreloader(idle, asked)
     steps(ahead, idle)

@@ -41,12 +41,12 @@ def test_a_finding_stands_the_part_at_its_place(day: Day) -> None:
     day.sees(lambda: shown.path_view.is_part_shown)
     player = shown.path_view.part_player
     assert player is not None
-    day.sees(lambda: player.result is not None and player.result.part_instant.line == 11)
+    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 11)
     assert shown.model.selected_index == 1  # what weighs most, not the offset that nobody has set
     day.key(Key.Key_J)
-    day.sees(lambda: player.result is not None and player.result.part_instant.line == 10)
+    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 10)
     day.key(Key.Key_Return)
-    day.sees(lambda: player.result is not None and player.result.part_instant.line == 11)
+    day.sees(lambda: player.result is not None and player.result.part_instant.line_number == 11)
 
 
 def test_a_bar_is_said_by_fingers(day: Day) -> None:

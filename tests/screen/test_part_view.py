@@ -136,7 +136,7 @@ def test_zoom_pan_and_fit_are_those_of_the_path(view: PathView) -> None:
     view.zoom_view(1)
     view.pan_view(1, 0)
     assert view.first_projection != before
-    view.fit_all()
+    view.fit_all_panes()
     assert view.first_projection == before
 
 

@@ -9,14 +9,14 @@ import pytest
 from PySide6.QtCore import QPointF, QRectF, QSizeF
 from PySide6.QtGui import QColor, QImage, QPainter
 
-from app.path.path_layers_view import MAX_SMOOTH_CHORDS, PIXELS_PER_STEP, LineStyle, PathLayers, make_polygon
+from app.path.path_layers_view import MAX_SMOOTH_CHORDS, PIXELS_PER_SLICE, LineStyle, PathLayers, make_polygon
 from app.path.path_marks_view import (
     ViewButton,
+    clip_line,
     count_button_columns,
     draw_buttons,
     find_columns_width,
-    inside_room,
-    visible_part,
+    move_box_inside,
 )
 from app.path.path_picture import ProgramPicture
 from app.path.path_projection import (
@@ -35,7 +35,7 @@ from app.screen.screen_theme import ScreenTheme
 from app.screen.window_layout import FINGERTIP_PX
 from tests.screen.colours import apart
 
-FRAME = Projection(z=0.0, x=0.0, scale=10.0, width=400, height=200)
+FRAME = Projection(z=0.0, x=0.0, pixels_per_mm=10.0, width=400, height=200)
 
 
 def picture(points: list[tuple[float, float, Stroke]], first: list[int]) -> ProgramPicture:
@@ -73,24 +73,24 @@ def test_fitting_shows_both_sides_of_the_centre_line() -> None:
 
 
 def test_fitting_nothing_still_gives_a_frame() -> None:
-    assert fit_mirrored((0.0, 0.0, 0.0, 0.0), 400, 200, 10).scale > 0
+    assert fit_mirrored((0.0, 0.0, 0.0, 0.0), 400, 200, 10).pixels_per_mm > 0
 
 
 def test_zooming_keeps_what_is_under_the_pointer() -> None:
-    near = FRAME.zoom(3.0, 300.0, 40.0)
+    near = FRAME.magnify(3.0, 300.0, 40.0)
     assert near.find_column(10.0) == pytest.approx(300.0)  # z = 10 was at column 300
     assert near.find_row(-6.0) == pytest.approx(40.0)
-    assert near.scale == pytest.approx(30.0)
+    assert near.pixels_per_mm == pytest.approx(30.0)
 
 
 def test_zooming_has_ends() -> None:
-    assert FRAME.zoom(1e9, 0, 0).scale == 5000.0
-    assert FRAME.zoom(1e-9, 0, 0).scale == 0.02
+    assert FRAME.magnify(1e9, 0, 0).pixels_per_mm == 5000.0
+    assert FRAME.magnify(1e-9, 0, 0).pixels_per_mm == 0.02
 
 
 def test_neighbouring_strokes_of_a_kind_are_one_run() -> None:
     found = list(project_runs(SHAFT, FRAME, 0, 4))
-    assert [run.stroke for run in found] == [Stroke.RAPID, Stroke.TURN]
+    assert [run.stroke_kind for run in found] == [Stroke.RAPID, Stroke.TURN]
     assert found[1].columns.tolist() == [250, 100, 100]
     assert found[1].rows.tolist() == [140, 140, 180]
 
@@ -212,7 +212,7 @@ def test_long_strokes_are_drawn_few_at_a_time(monkeypatch: pytest.MonkeyPatch) -
     edges = [0, *(end for _, end in parts)]
     assert parts == list(pairwise(edges)), "each point once, in its order"
     assert edges[-1] == len(there_and_back)
-    assert all((end - begin) * 300 < PIXELS_PER_STEP + 2 * 300 for begin, end in parts), (
+    assert all((end - begin) * 300 < PIXELS_PER_SLICE + 2 * 300 for begin, end in parts), (
         "30 mm are 300 pixels"
     )
 
@@ -256,7 +256,8 @@ def test_all_buttons_fit_a_finger_in_a_low_view(high: float) -> None:
         assert min(box.width(), box.height()) >= FINGERTIP_PX - 1
         assert room.contains(box)
         assert (
-            box.x() >= room.right() - find_columns_width(count_button_columns(look, room, 5), look) - look.u
+            box.x()
+            >= room.right() - find_columns_width(count_button_columns(look, room, 5), look) - look.unit_px
         )
     assert not any(one.intersects(other) for one, other in combinations(boxes, 2))
 
@@ -265,13 +266,13 @@ PANE = QSizeF(400.0, 200.0)
 
 
 def test_a_leg_is_cut_at_the_edge_of_the_pane() -> None:
-    cut = visible_part(QPointF(900.0, 100.0), QPointF(300.0, 100.0), PANE)
+    cut = clip_line(QPointF(900.0, 100.0), QPointF(300.0, 100.0), PANE)
     assert cut == (QPointF(400.0, 100.0), QPointF(300.0, 100.0))
-    assert visible_part(QPointF(10.0, 20.0), QPointF(30.0, 40.0), PANE) == (QPointF(10, 20), QPointF(30, 40))
-    assert visible_part(QPointF(900.0, 100.0), QPointF(500.0, 100.0), PANE) is None
+    assert clip_line(QPointF(10.0, 20.0), QPointF(30.0, 40.0), PANE) == (QPointF(10, 20), QPointF(30, 40))
+    assert clip_line(QPointF(900.0, 100.0), QPointF(500.0, 100.0), PANE) is None
 
 
 def test_a_label_moves_into_the_pane() -> None:
     room = QRectF(0.0, 0.0, 400.0, 200.0)
-    assert inside_room(QRectF(390.0, -5.0, 40.0, 20.0), room) == QRectF(360.0, 0.0, 40.0, 20.0)
-    assert inside_room(QRectF(50.0, 50.0, 40.0, 20.0), room) == QRectF(50.0, 50.0, 40.0, 20.0)
+    assert move_box_inside(QRectF(390.0, -5.0, 40.0, 20.0), room) == QRectF(360.0, 0.0, 40.0, 20.0)
+    assert move_box_inside(QRectF(50.0, 50.0, 40.0, 20.0), room) == QRectF(50.0, 50.0, 40.0, 20.0)

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.path.path_aspects import DrawnLeg
-from app.path.path_stock_view import Blank, blank_of
-from app.path.path_view import FOOT, PathView
+from app.path.path_aspects import ApproachLeg
+from app.path.path_stock_view import Blank, find_blank
+from app.path.path_view import FOOTER_HEIGHT, PathView
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
 from core.part.stock import Clamping, Stock, make_bar
@@ -31,13 +31,13 @@ def blank(stock: Stock | StockSpec | None, clamping: Clamping | None) -> Blank |
     """What the picture of the shaft shows of a stock and a clamping."""
     drawn = picture(SHAFT)
     assert drawn.part is not None
-    return blank_of(replace(drawn, part=ProgramSteps(drawn.part.parts, setting(stock, clamping))))
+    return find_blank(replace(drawn, part=ProgramSteps(drawn.part.block_groups, setting(stock, clamping))))
 
 
 def test_nothing_is_shown_of_a_part_that_is_not_specified() -> None:
     assert blank(None, None) is None
     assert blank(None, Clamping(0.0, 0.0, max_rpm=3000.0)) is None
-    assert blank_of(replace(picture(SHAFT), part=None)) is None
+    assert find_blank(replace(picture(SHAFT), part=None)) is None
 
 
 def test_a_stock_that_cannot_be_read_shows_only_the_collet() -> None:
@@ -63,18 +63,18 @@ def test_the_length_of_a_bar_is_that_of_the_program_unless_specified() -> None:
 
 def test_a_far_retract_does_not_make_the_part_small() -> None:
     """The stock is 30 mm long in front of the collet: 12 % of 30 + 20 mm are shown next to it."""
-    seen = Blank(BAR, BAR, COLLET).cuts_seen((-25.0, 200.0, 0.0, 150.0))
+    seen = Blank(BAR, BAR, COLLET).find_visible_area((-25.0, 200.0, 0.0, 150.0))
     assert seen == pytest.approx((-30.0, 6.0, 0.0, 16.0))
 
 
 def test_all_cuts_are_visible_without_a_stock() -> None:
     cuts = (-25.0, 200.0, -3.0, 150.0)
-    assert Blank(None, BAR, COLLET).cuts_seen(cuts) == cuts
+    assert Blank(None, BAR, COLLET).find_visible_area(cuts) == cuts
 
 
 def test_the_chuck_is_shown_up_to_a_part_of_its_length() -> None:
-    assert Blank(BAR, BAR, COLLET).chuck_from == pytest.approx(-30.0 - 12.0)
-    assert Blank(BAR, BAR, None).chuck_from is None
+    assert Blank(BAR, BAR, COLLET).chuck_left_z_mm == pytest.approx(-30.0 - 12.0)
+    assert Blank(BAR, BAR, None).chuck_left_z_mm is None
 
 
 @pytest.fixture
@@ -87,7 +87,7 @@ def view(qtbot: QtBot) -> PathView:
         made.show()
     drawn = picture(SHAFT)
     assert drawn.part is not None
-    made.show_picture(replace(drawn, part=ProgramSteps(drawn.part.parts, setting(BAR, COLLET))))
+    made.show_picture(replace(drawn, part=ProgramSteps(drawn.part.block_groups, setting(BAR, COLLET))))
     return made
 
 
@@ -102,7 +102,7 @@ def test_legend_and_scale_are_below_all_panes(view: PathView) -> None:
     for box, text in texts:
         assert not box.intersects(pane.area), text
         assert box.bottom() <= view.height(), text
-    assert pane.area.bottom() + FOOT * view.theme.u <= view.height()
+    assert pane.area.bottom() + FOOTER_HEIGHT * view.theme.unit_px <= view.height()
 
 
 def test_the_part_fills_the_height_of_the_pane(view: PathView) -> None:
@@ -113,11 +113,11 @@ def test_the_part_fills_the_height_of_the_pane(view: PathView) -> None:
 
 def test_an_approach_from_far_away_changes_the_visible_area_only_where_it_matters(view: PathView) -> None:
     near = view.first_projection
-    view.show_approach((DrawnLeg(400.0, 200.0), DrawnLeg(5.0, 12.0, label="START")))
+    view.show_approach((ApproachLeg(400.0, 200.0), ApproachLeg(5.0, 12.0, label="START")))
     view.grab()
     assert view.first_projection == near
     view.shows_whole_approach = True
-    view.show_approach((DrawnLeg(400.0, 201.0), DrawnLeg(5.0, 12.0, label="START")))
+    view.show_approach((ApproachLeg(400.0, 201.0), ApproachLeg(5.0, 12.0, label="START")))
     assert view.first_projection is not None
     assert near is not None
-    assert view.first_projection.scale < near.scale / 3
+    assert view.first_projection.pixels_per_mm < near.pixels_per_mm / 3

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.desk.late_presses import StartingAction
-from app.desk.status.prompt_line import CHOOSE_FILE, CONFIRM_CANCEL, MessageKind
+from app.desk.status.prompt_line import CHOOSE_FILE_TEXT, CONFIRM_CANCEL, MessageKind
 from app.screen.page_table import list_menu_entries
 from core.executor.commands import Reset
 from core.executor.snapshot import MachineState
@@ -47,7 +47,7 @@ def test_the_question_for_a_file_offers_no_start(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     assert hands.page.file_prompt.isVisible()
     hands.window.refresh()
-    assert hands.frame.prompt_line.state_text == CHOOSE_FILE
+    assert hands.frame.prompt_line.state_text == CHOOSE_FILE_TEXT
 
 
 def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
@@ -56,7 +56,7 @@ def test_no_page_offers_a_start_that_is_refused(operator: Operator) -> None:
     operator.stage.make_ready()
     operator.window.refresh()
     assert desk.start_instruction in frame.prompt_line.state_text
-    for entry in list_menu_entries(desk.machine.language):
+    for entry in list_menu_entries(desk.machine.program_language):
         if frame.open_page(entry.name):
             operator.window.refresh()
             assert desk.start_instruction not in frame.prompt_line.state_text or not desk.barred(), entry.name

@@ -69,7 +69,7 @@ def test_start_hold_go_on_single_block_estop_recover(stage: Stage, window: MainW
     assert stage.desk.read_snapshot().actual == pytest.approx(held, abs=0.01)
     cycle_start(stage, window, MachineState.RUN)
     QTest.keyClick(window, Key.Key_S)
-    reaches(stage, MachineState.BLOCK_END)
+    reaches(stage, MachineState.SINGLE_BLOCK_STOP)
     QTest.keyClick(window, Key.Key_E)
     reaches(stage, MachineState.ESTOP)
     assert stage.desk.read_snapshot().rpm_command == 0.0

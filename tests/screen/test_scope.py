@@ -127,7 +127,7 @@ def test_frozen_curves_do_not_move(hands: Hands, played: PlayedSamples) -> None:
 
 
 def test_level_curves_that_roll_are_not_drawn_again(hands: Hands, played: PlayedSamples) -> None:
-    page, scope = opened(hands), hands.desk.page_registry.find(ScopeModel)
+    page, scope = opened(hands), hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     assert page.is_animating()  # they swing
     scope.selected_keys = ("spindle command", "C actual")
@@ -503,7 +503,7 @@ def colours_of(image: QImage) -> set[str]:
 
 
 def test_nothing_is_recorded_on_a_machine_without(hands: Hands) -> None:
-    scope = hands.desk.page_registry.find(ScopeModel)
+    scope = hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     scope.live_samples = scope._carried = None
     scope.signals = ()
@@ -545,7 +545,7 @@ def test_f7_opens_what_was_recorded_before_an_alarm(hands: Hands, tmp_path: Path
     hands.sees(lambda: shows(hands.prompt(), "scope.nothing-before"))
     hands.key(Key.Key_Down, CTRL)
     hands.key(Key.Key_F10, SHIFT)
-    scope = hands.desk.page_registry.find(ScopeModel)
+    scope = hands.desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     hands.sees(lambda: scope.recording_name == "one-alarm301.scope")
     assert hands.frame.current_page.NAME == page_table.SCOPE

@@ -74,7 +74,7 @@ def test_after_an_estop_the_part_is_finished_from_the_line_that_was_running(oper
     assert page.state_panel.content.title == text("search.state-at-line", line=18)
     assert page.functions_panel.started_functions == ("SPINDLE FORWARD G97 1800 RPM", "COOLANT")
     assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 X", "2 Z", "3 Z", "4 X", "5 Z"]
-    assert [leg.rapid for leg in page.path_view.drawn_legs[1:]] == [False, False, True, True, True]
+    assert [leg.is_rapid for leg in page.path_view.drawn_legs[1:]] == [False, False, True, True, True]
     assert operator.shot.rpm_command == 0.0
     assert "coolant" not in operator.shot.outputs  # nothing starts before it is confirmed and started
     confirmed(operator)
@@ -179,7 +179,7 @@ def test_a_line_that_is_not_good_offers_its_neighbours(operator: Operator) -> No
     assert operator.prompt() == text("search.good-line-first")
     operator.key(Key.Key_F9)
     model_of(operator).restart_finder.worker.wait_for_results(60.0)
-    assert page_of(operator).state_panel.content.title == text("search.state-at-line", line=after.line)
+    assert page_of(operator).state_panel.content.title == text("search.state-at-line", line=after.line_number)
 
 
 def test_the_palms_start_nothing_before_it_is_confirmed(operator: Operator) -> None:
@@ -392,7 +392,7 @@ def test_a_bore_that_broke_off_is_finished_along_z(operator: Operator) -> None:
     assert page.state_panel.content.title == text("search.state-at-line", line=38)
     # The bar stands on X.5 already: out along Z, and in again; within the bore at a feed.
     assert [leg.label for leg in page.path_view.drawn_legs] == ["", "1 Z", "2 Z", "3 Z"]
-    assert [leg.rapid for leg in page.path_view.drawn_legs[1:]] == [False, True, True]
+    assert [leg.is_rapid for leg in page.path_view.drawn_legs[1:]] == [False, True, True]
     confirmed(operator)
     x = operator.shot.demand[0]
     operator.palms()

@@ -44,7 +44,7 @@ def opened(hands: Hands, program: str = "bushing") -> tuple[SpecialPage, SetupSh
     function = page.model.shown_function
     assert isinstance(function, SetupSheetFunction)
     if program:
-        hands.sees(lambda: function.made_sheet is not None)
+        hands.sees(lambda: function.prepared_sheet is not None)
         hands.sees(lambda: len(page.table_panel.table.rows) > 3)
     return page, function
 
@@ -128,7 +128,7 @@ def test_it_is_written_as_pdf_and_html(hands: Hands, tmp_path: Path) -> None:
     if before is PaperSize.A4:
         hands.key(Key.Key_F5)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: [place.label for place in function.save_places] == ["BLUE", "THIS CONTROL"])
+    hands.sees(lambda: [place.label for place in function.save_locations] == ["BLUE", "THIS CONTROL"])
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.file-is-whole"))
     page = (stick / "bushing.nc-setup.html").read_text()
@@ -160,7 +160,7 @@ def test_without_a_program_there_is_no_sheet(hands: Hands) -> None:
         hands.key(key)
         assert begins(hands.prompt(), "screen.choose-program-for-sheet")
     assert function.note_field is None
-    assert function.save_places == ()
+    assert function.save_locations == ()
 
 
 def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
@@ -169,7 +169,7 @@ def test_the_page_says_its_language(hands: Hands, tmp_path: Path) -> None:
     hands.desk.settings_store.choose("language", "es")
     hands.sees(lambda: get_language() == "es")
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.save_places))
+    hands.sees(lambda: bool(function.save_locations))
     hands.key(Key.Key_Return)
     hands.sees((tmp_path / "bushing.nc-setup.pdf").exists)
     hands.sees(lambda: not function.task_text)
@@ -191,7 +191,7 @@ def test_a_place_that_cannot_be_written_is_told(hands: Hands, tmp_path: Path) ->
     (tmp_path / "file").write_text("no folder")
     function.list_media = lambda: (UsbStick("GONE", tmp_path / "file", 0),)
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.save_places))
+    hands.sees(lambda: bool(function.save_locations))
     hands.key(Key.Key_Return)
     hands.sees(lambda: shows(hands.prompt(), "screen.cannot-be-written"))
     assert function.task_text == ""
@@ -206,9 +206,9 @@ def test_a_full_disk_is_told(hands: Hands, tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr("os.fsync", full)
     function.folder = tmp_path / "sheets"
     hands.key(Key.Key_F6)
-    hands.sees(lambda: bool(function.save_places))
+    hands.sees(lambda: bool(function.save_locations))
     hands.key(Key.Key_End)
-    function.marked = len(function.save_places) - 1
+    function.marked = len(function.save_locations) - 1
     hands.key(Key.Key_Return)
     hands.sees(lambda: "No space left on device" in hands.prompt())
     assert list((tmp_path / "sheets").iterdir()) == []

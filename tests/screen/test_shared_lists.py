@@ -140,8 +140,8 @@ class Codes:
     def selected_entry(self) -> SimpleNamespace | None:
         return self.choices[self.marked] if self.choices else None
 
-    def mark(self, number: int) -> None:
-        self.marked = max(0, min(len(self.choices) - 1, number))
+    def mark(self, index: int) -> None:
+        self.marked = max(0, min(len(self.choices) - 1, index))
 
 
 def test_the_wheel_goes_through_the_codes_and_no_further(above: QWidget) -> None:

@@ -266,7 +266,7 @@ def test_the_list_tells_what_a_backup_is_worth(hands: Hands, journal: Journal) -
     hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
     backups = page.model.shown_function
     assert isinstance(backups, BackupFunction)
-    folder = backups.places[0].path
+    folder = backups.listed_locations[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-good.turndesk.db")
     (folder / "2026-11-22-bad.turndesk.db").write_bytes(b"no store any more")
@@ -326,7 +326,7 @@ def test_a_restore_leaves_the_levels_on(hands: Hands, journal: Journal) -> None:
     hands.sees(lambda: len(page.table_panel.table.rows) >= 1)
     backups = page.model.shown_function
     assert isinstance(backups, BackupFunction)
-    folder = backups.places[0].path
+    folder = backups.listed_locations[0].path
     folder.mkdir(parents=True, exist_ok=True)
     journal.backup(folder / "2026-11-23-before.turndesk.db")
     journal.require_store().people.save_user(UserRow("ANNA", 3, b"salt", b"hash")).result()

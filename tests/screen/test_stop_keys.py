@@ -38,7 +38,7 @@ WHERE = [("omniturn", state) for state in sorted(MOVING_STATES)]
 def stops(typist: Typist) -> bool:
     """Whether both keys act, also after input was dropped, which another key does not survive."""
     acted = [bool(typist.press(PAUSE)), bool(typist.press(SCROLL_LOCK))]
-    typist.day.window.input_times.note_dropped(0)
+    typist.day.window.input_times.record_dropped_answer(0)
     acted += [not typist.press(LETTER), bool(typist.press(PAUSE)), bool(typist.press(SCROLL_LOCK))]
     typist.day.window.input_times._dropped = float("-inf")
     return all(acted)
@@ -59,7 +59,7 @@ def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
     typist = Typist(day)
     typists.append(typist)
     deaf, written = [], set()
-    for entry in list_pages(day.desk.machine.language):
+    for entry in list_pages(day.desk.machine.program_language):
         if not typist.opens(entry.name):
             continue
         known: set[object] = {typist.face}
@@ -72,7 +72,8 @@ def test_both_keys_stop_in_every_entry(day: Day, typists: list[Typist]) -> None:
     typist.opens(page_table.AUTOMATIC)
     assert deaf == []
     assert (
-        ENTRIES - ({page_table.EDITOR} if day.shot.state in {MachineState.JOG, MachineState.HOME} else set())
+        ENTRIES
+        - ({page_table.EDITOR} if day.shot.state in {MachineState.JOG, MachineState.HOMING} else set())
         <= written
     )
 
@@ -83,13 +84,13 @@ def test_both_drawn_buttons_stop_on_every_page(day: Day, typists: list[Typist]) 
     typists.append(typist)
     dock = day.frame.station_dock
     assert dock is not None
-    for entry in list_pages(day.desk.machine.language):
+    for entry in list_pages(day.desk.machine.program_language):
         if not typist.opens(entry.name):
             continue
         dock.grab()
         typist.done.clear()
-        day.desk.station_controls.estop_pressed = False
-        for control in [each for each in dock.controls if each.acts_when_late]:
+        day.desk.station_controls.is_estop_pressed = False
+        for control in [each for each in dock.controls if each.stops_machine]:
             at = control.box.center().toPoint()
             QTest.mouseClick(dock, Qt.MouseButton.LeftButton, pos=at)
         assert {"press_hold", "press_estop"} <= typist.done, entry.name

@@ -10,7 +10,7 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QApplication
 
 from app.desk.programs.program_loading import LoadingPhase
-from app.desk.status.prompt_line import CONFIRM_CANCEL, FILE_NOT_FOUND, ONE_PALM_PRESSED
+from app.desk.status.prompt_line import CONFIRM_CANCEL, FILE_NOT_FOUND_TEXT, ONE_PALM_PRESSED
 from core.executor.commands import CycleStart, FeedHold, Reset
 from core.executor.snapshot import Alarm, MachineState
 from tests.screen.hands import Hands, Key
@@ -30,10 +30,10 @@ def test_pick_start_hold_resume_single_block_estop_recover(hands: Hands) -> None
     hands.both_palms()
     hands.sees_state(MachineState.RUN)
     hands.key(Key.Key_S)
-    hands.sees_state(MachineState.BLOCK_END)
+    hands.sees_state(MachineState.SINGLE_BLOCK_STOP)
     block = hands.machine.at
     hands.both_palms()
-    hands.sees(lambda: hands.machine.at > block and hands.machine.now.state is MachineState.BLOCK_END)
+    hands.sees(lambda: hands.machine.at > block and hands.machine.now.state is MachineState.SINGLE_BLOCK_STOP)
     hands.key(Key.Key_E)
     hands.sees_state(MachineState.ESTOP)
     hands.key(Key.Key_D)
@@ -77,7 +77,7 @@ def test_file_not_found_and_any_key_goes_on(hands: Hands) -> None:
     hands.key(Key.Key_F2)
     hands.type("nosuch")
     hands.key(Key.Key_Return)
-    assert hands.page.file_prompt.message_text == FILE_NOT_FOUND
+    assert hands.page.file_prompt.message_text == FILE_NOT_FOUND_TEXT
     hands.key(Key.Key_X)
     assert hands.page.file_prompt.message_text == ""
     assert hands.page.file_prompt.name_edit.text() == "nosuch"

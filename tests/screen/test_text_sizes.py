@@ -9,8 +9,8 @@ import pytest
 from app.screen import page_table
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme
-from app.screen.text_sizes import CAPITALS, PanelSize, Role, panel_size
-from app.screen.window_layout import LOW_WINDOW_PX, find_unit, make_layout, make_low_layout
+from app.screen.text_sizes import CAPITAL_HEIGHT_RATIO, PanelSize, TextRole, make_panel_size
+from app.screen.window_layout import LOW_WINDOW_HEIGHT_PX, find_unit_px, make_layout, make_low_layout
 from tests.screen.lathe import Operator
 from tests.screen.text_heights import recorded
 
@@ -31,14 +31,50 @@ PANELS = {
 # spindle and the tool, and the height of the title line limits the state. A Spanish sentence that is too wide
 # for its row is drawn at 60 % of its height at the least.
 SHORT = {
-    "7": {Role.POSITION: 39, Role.STATE: 39, Role.PROMPT: 54, Role.FEED: 34, Role.TABLE: 24},
-    "10": {Role.POSITION: 34, Role.STATE: 34, Role.PROMPT: 52, Role.FEED: 34, Role.TABLE: 24},
-    "10.1": {Role.POSITION: 34, Role.STATE: 39, Role.PROMPT: 51, Role.FEED: 34, Role.TABLE: 22},
-    "12.1": {Role.POSITION: 41, Role.STATE: 48, Role.PROMPT: 62, Role.FEED: 41, Role.TABLE: 25},
-    "15.6": {Role.POSITION: 55, Role.STATE: 65, Role.PROMPT: 83, Role.FEED: 54, Role.TABLE: 39},
-    "21.5": {Role.POSITION: 75, Role.STATE: 90, Role.FEED: 75, Role.TABLE: 55},
-    "27": {Role.POSITION: 95, Role.TABLE: 68},
-    "upright": {Role.POSITION: 30, Role.STATE: 35, Role.PROMPT: 47, Role.FEED: 30, Role.TABLE: 20},
+    "7": {
+        TextRole.POSITION: 39,
+        TextRole.STATE: 39,
+        TextRole.PROMPT: 54,
+        TextRole.FEED: 34,
+        TextRole.TABLE: 24,
+    },
+    "10": {
+        TextRole.POSITION: 34,
+        TextRole.STATE: 34,
+        TextRole.PROMPT: 52,
+        TextRole.FEED: 34,
+        TextRole.TABLE: 24,
+    },
+    "10.1": {
+        TextRole.POSITION: 34,
+        TextRole.STATE: 39,
+        TextRole.PROMPT: 51,
+        TextRole.FEED: 34,
+        TextRole.TABLE: 22,
+    },
+    "12.1": {
+        TextRole.POSITION: 41,
+        TextRole.STATE: 48,
+        TextRole.PROMPT: 62,
+        TextRole.FEED: 41,
+        TextRole.TABLE: 25,
+    },
+    "15.6": {
+        TextRole.POSITION: 55,
+        TextRole.STATE: 65,
+        TextRole.PROMPT: 83,
+        TextRole.FEED: 54,
+        TextRole.TABLE: 39,
+    },
+    "21.5": {TextRole.POSITION: 75, TextRole.STATE: 90, TextRole.FEED: 75, TextRole.TABLE: 55},
+    "27": {TextRole.POSITION: 95, TextRole.TABLE: 68},
+    "upright": {
+        TextRole.POSITION: 30,
+        TextRole.STATE: 35,
+        TextRole.PROMPT: 47,
+        TextRole.FEED: 30,
+        TextRole.TABLE: 20,
+    },
 }
 # The position on the pages on which axes can move, in percent of the required height.
 MOVING = {"7": 40, "10": 34, "10.1": 49, "12.1": 59, "15.6": 79, "21.5": 98, "27": 98, "upright": 44}
@@ -59,18 +95,18 @@ PAGES = (
 
 
 def test_the_angle_of_a_role_at_its_distance() -> None:
-    assert Role.POSITION.least_mm(small=False) == pytest.approx(2000 * tan(radians(20 / 60)))
-    assert Role.POSITION.least_mm(small=False) == pytest.approx(11.64, abs=0.01)
-    assert Role.PROMPT.least_mm(small=False) == pytest.approx(6.98, abs=0.01)
-    assert Role.TABLE.least_mm(small=False) == pytest.approx(3.26, abs=0.01)
-    assert Role.TABLE.least_mm(small=True) == pytest.approx(2.33, abs=0.01)
+    assert TextRole.POSITION.find_min_height_mm(is_small=False) == pytest.approx(2000 * tan(radians(20 / 60)))
+    assert TextRole.POSITION.find_min_height_mm(is_small=False) == pytest.approx(11.64, abs=0.01)
+    assert TextRole.PROMPT.find_min_height_mm(is_small=False) == pytest.approx(6.98, abs=0.01)
+    assert TextRole.TABLE.find_min_height_mm(is_small=False) == pytest.approx(3.26, abs=0.01)
+    assert TextRole.TABLE.find_min_height_mm(is_small=True) == pytest.approx(2.33, abs=0.01)
 
 
 @pytest.mark.parametrize(("name", "small"), [("7", True), ("10", False), ("21.5", False)])
 def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
-    size = panel_size(*PANELS[name])
+    size = make_panel_size(*PANELS[name])
     width, _, wide, _ = PANELS[name]
-    assert size.small is small
+    assert size.is_small is small
     assert size.pixels_per_mm == pytest.approx(width / wide, rel=0.02)
 
 
@@ -85,29 +121,35 @@ def test_a_panel_under_10_inches_is_small(name: str, small: bool) -> None:
     ],
 )
 def test_an_implausible_size_counts_as_a_monitor_of_96_dots_per_inch(reported: tuple[int, int]) -> None:
-    size = panel_size(1024, 600, *reported)
+    size = make_panel_size(1024, 600, *reported)
     assert size.pixels_per_mm == pytest.approx(96 / 25.4)
-    assert not size.small
+    assert not size.is_small
 
 
 def test_a_text_grows_to_the_height_of_its_role_or_of_its_row() -> None:
     look = ScreenTheme(DARK_PALETTE, 8.0)
     look.screen = PanelSize(5.0)  # A position has capitals of 58.2 pixels, and a table of 16.3 pixels.
-    needed = 58.18 / CAPITALS / 8.0
-    assert look.em(5.0, Role.POSITION, 200.0) == pytest.approx(needed, rel=1e-3)
-    assert look.em(5.0, Role.POSITION, 56.0) == pytest.approx(7.7)  # 1.1 times the row of 7 units
-    assert look.em(5.0, Role.POSITION, 8.0) == 5.0  # never smaller than its least size
-    assert look.em(2.0, Role.TABLE, 80.0) == pytest.approx(2.7)  # 1.35 times
-    assert look.em(1.5, Role.TABLE, 12.8) == pytest.approx(1.5)
+    needed = 58.18 / CAPITAL_HEIGHT_RATIO / 8.0
+    assert look.find_em_height(5.0, TextRole.POSITION, 200.0) == pytest.approx(needed, rel=1e-3)
+    assert look.find_em_height(5.0, TextRole.POSITION, 56.0) == pytest.approx(
+        7.7
+    )  # 1.1 times the row of 7 units
+    assert look.find_em_height(5.0, TextRole.POSITION, 8.0) == 5.0  # never smaller than its least size
+    assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == pytest.approx(2.7)  # 1.35 times
+    assert look.find_em_height(1.5, TextRole.TABLE, 12.8) == pytest.approx(1.5)
     look.screen = PanelSize(2.0)
-    assert look.em(2.0, Role.TABLE, 80.0) == 2.0  # A large screen needs no more.
+    assert look.find_em_height(2.0, TextRole.TABLE, 80.0) == 2.0  # A large screen needs no more.
 
 
 @pytest.mark.parametrize("size", [(1024, 600), (1280, 800), (1920, 1080), (3840, 2160), (1080, 1920)])
 @pytest.mark.parametrize("dock", [True, False])
 def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], dock: bool) -> None:
-    low, moves, u = make_low_layout(*size, dock), make_low_layout(*size, dock, moves=True), find_unit(*size)
-    more = 2.8 * u if size[1] >= LOW_WINDOW_PX else 0.0  # a lower window keeps the room for fingers
+    low, moves, u = (
+        make_low_layout(*size, dock),
+        make_low_layout(*size, dock, has_axis_motion=True),
+        find_unit_px(*size),
+    )
+    more = 2.8 * u if size[1] >= LOW_WINDOW_HEIGHT_PX else 0.0  # a lower window keeps the room for fingers
     assert moves.readout_line.h - low.readout_line.h == pytest.approx(more, abs=1)
     assert low.work_area.h - moves.work_area.h == moves.readout_line.h - low.readout_line.h
     assert moves.work_area.bottom == low.work_area.bottom <= make_layout(*size, dock).prompt.y
@@ -118,7 +160,7 @@ def test_the_large_position_takes_2_8_units_of_a_page(size: tuple[int, int], doc
 def test_texts_of_all_pages_are_as_high_as_stated(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, language: str
 ) -> None:
-    size, lowest = panel_size(*PANELS[name]), dict[Role, tuple[float, str]]()
+    size, lowest = make_panel_size(*PANELS[name]), dict[TextRole, tuple[float, str]]()
     window, desk = operator.window, operator.stage.desk
     operator.stage.make_ready()
     window.resize(*PANELS[name][:2])
@@ -130,9 +172,11 @@ def test_texts_of_all_pages_are_as_high_as_stated(
             window.refresh()
             window.grab()
     for each in texts:
-        share = 100 * each.capitals / (each.role.least_mm(small=size.small) * size.pixels_per_mm)
+        share = (
+            100 * each.capitals / (each.role.find_min_height_mm(is_small=size.is_small) * size.pixels_per_mm)
+        )
         lowest[each.role] = min((share, f"{each.panel}: {each.text}"), lowest.get(each.role, (999.0, "")))
-    assert set(lowest) == set(Role)
+    assert set(lowest) == set(TextRole)
     for role, (share, text) in lowest.items():
         assert share >= SHORT[name].get(role, 98), (role, share, text)
 
@@ -142,7 +186,7 @@ def test_texts_of_all_pages_are_as_high_as_stated(
 def test_the_position_is_large_where_axes_can_move(
     operator: Operator, monkeypatch: pytest.MonkeyPatch, name: str, page: str
 ) -> None:
-    size = panel_size(*PANELS[name])
+    size = make_panel_size(*PANELS[name])
     operator.stage.make_ready()
     operator.window.resize(*PANELS[name][:2])
     operator.window.theme.screen = size
@@ -150,7 +194,9 @@ def test_the_position_is_large_where_axes_can_move(
     operator.window.refresh()
     with recorded(monkeypatch) as texts:
         operator.frame.readout_line.grab()
-    least = MOVING[name] / 100 * Role.POSITION.least_mm(small=size.small) * size.pixels_per_mm
-    heights = [each.capitals for each in texts if each.role is Role.POSITION]
+    least = (
+        MOVING[name] / 100 * TextRole.POSITION.find_min_height_mm(is_small=size.is_small) * size.pixels_per_mm
+    )
+    heights = [each.capitals for each in texts if each.role is TextRole.POSITION]
     assert len(heights) == 3
     assert min(heights) >= least

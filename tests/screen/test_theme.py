@@ -37,8 +37,8 @@ SHAPES = [
 def test_a_colour_that_is_made_faint_stays_as_it_is_elsewhere() -> None:
     """The part view draws holders through; the state in the title has the same colour."""
     look = ScreenTheme(DARK_PALETTE)
-    look.color("off").setAlphaF(0.12)
-    assert look.color("off").alphaF() == 1.0
+    look.get_color("off").setAlphaF(0.12)
+    assert look.get_color("off").alphaF() == 1.0
 
 
 def luminance(colour: str) -> float:

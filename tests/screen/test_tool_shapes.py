@@ -83,7 +83,7 @@ def test_a_new_shape_by_keys_alone(hands: Hands, store: Store) -> None:
     page = opened(hands, 2)
     hands.key(Key.Key_Right)
     hands.key(Key.Key_Return)
-    hands.sees(lambda: 2 in page.model.offset_book.shapes)
+    hands.sees(lambda: 2 in page.model.offset_book.tool_shapes)
     hands.sees(lambda: hands.prompt() == text("screen.saved", names="T2"))
     for _ in range(4):
         hands.key(Key.Key_Down)
@@ -140,11 +140,11 @@ def test_outline_and_control_point_are_drawn(hands: Hands, store: Store, size: t
     hands.window.grab()
     look = hands.window.theme
     drawn = colours(hands, page.table_panel)
-    assert {look.color(name).name() for name in ("accent", "ghost", "tip")} <= drawn
+    assert {look.get_color(name).name() for name in ("accent", "ghost", "tip")} <= drawn
     hands.key(Key.Key_PageDown)
     hands.sees(lambda: page.model.tool_number == 2)
     hands.window.refresh()
-    assert look.color("ghost").name() not in colours(hands, page.table_panel)
+    assert look.get_color("ghost").name() not in colours(hands, page.table_panel)
 
 
 def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> None:
@@ -153,8 +153,8 @@ def test_what_cannot_be_is_told_and_not_drawn(hands: Hands, store: Store) -> Non
     page = opened(hands)
     hands.sees(lambda: hands.prompt().startswith(f"T1: {text('screen.tip-not-round', tip=3)}"))
     hands.window.refresh()
-    assert hands.window.theme.color("ghost").name() not in colours(hands, page.table_panel)
-    assert hands.window.theme.color("alarm").name() in colours(hands, page.table_panel)
+    assert hands.window.theme.get_color("ghost").name() not in colours(hands, page.table_panel)
+    assert hands.window.theme.get_color("alarm").name() in colours(hands, page.table_panel)
 
 
 def test_f3_asks_before_it_forgets(hands: Hands, store: Store) -> None:

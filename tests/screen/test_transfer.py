@@ -36,8 +36,8 @@ WAIT = 60.0
 
 @dataclass(frozen=True)
 class Reach:
-    done_bytes: int = 640
-    total_bytes: int = 1280
+    done_byte_count: int = 640
+    total_byte_count: int = 1280
     line_count: int = 20
     wait_reason: str = "held"
     received_text: str = ""
@@ -267,7 +267,7 @@ def test_while_a_program_runs_letters_are_the_name_of_what_was_received(
     hands.machine.now = replace(hands.machine.now, state=MachineState.WAIT)
     hands.type("hec")
     assert FeedHold() not in hands.machine.posted
-    assert not hands.desk.station_controls.estop_pressed
+    assert not hands.desk.station_controls.is_estop_pressed
     assert not hands.machine.now.cycle_repeat
     assert page(hands).table_panel.table.text == "O77.nchec"
     hands.machine.idle()

@@ -8,8 +8,8 @@ from typing import cast
 import pytest
 from PySide6.QtWidgets import QApplication
 
+from app.desk.stop_keys.key_watcher_client import KeyWatcherClient
 from app.desk.stop_keys.stop_records import FocusRecord, StopKind, StopPress, make_press_number
-from app.desk.stop_keys.watched_keys import KeyWatcherClient
 from app.screen import page_table
 from core.executor.commands import FeedHold
 from core.executor.snapshot import MachineState
@@ -99,7 +99,7 @@ def test_an_estop_whose_key_never_comes_is_shown_pressed(watched: tuple[Hands, W
     hands, made = watched
     made.send(StopKind.ESTOP, Key.Key_ScrollLock)
     hands.window.refresh()
-    assert hands.desk.station_controls.estop_pressed
+    assert hands.desk.station_controls.is_estop_pressed
 
 
 def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, Watched]) -> None:
@@ -107,7 +107,7 @@ def test_a_hold_whose_key_never_comes_is_not_posted_again(watched: tuple[Hands, 
     made.send(StopKind.HOLD, Key.Key_Pause)
     hands.window.refresh()
     assert FeedHold() not in hands.machine.posted
-    assert not hands.desk.station_controls.estop_pressed
+    assert not hands.desk.station_controls.is_estop_pressed
 
 
 def test_without_an_x_server_nothing_is_started(hands: Hands) -> None:

@@ -56,7 +56,7 @@ def test_outputs_are_told_with_the_codes_that_this_machine_reads(
     section = SignalsFunction(hands.desk, load_shipped_machine(name))
     outputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert {name: outputs[name] for name in switched} == switched
-    section.function_keys()["F4"].action()
+    section.make_function_keys()["F4"].action()
     inputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert {name: inputs[name] for name in asked} == asked
     assert name == "gt75" or not any(code.startswith("M9") for code in inputs.values())
@@ -67,6 +67,6 @@ def test_the_guard_is_asked_for_where_it_stops_the_cycle(hands: Hands, stops: bo
     machine = load_shipped_machine("gt75")
     interlocks = replace(machine.interlocks, guard_stops=stops)
     section = SignalsFunction(hands.desk, replace(machine, interlocks=interlocks))
-    section.function_keys()["F4"].action()
+    section.make_function_keys()["F4"].action()
     inputs = {row.cells[0]: row.cells[3] for row in section.make_table(Snapshot()).rows}
     assert inputs["guard"] == asked

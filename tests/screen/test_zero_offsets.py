@@ -54,7 +54,7 @@ def test_values_are_typed_over_and_saved(hands: Hands, store: Store) -> None:
     hands.type("-15")
     hands.sees(lambda: page.entry_panel.entry_texts.change_text == "G54 C   +0.000  →  −15.000")
     hands.key(Key.Key_Return)
-    hands.sees(lambda: page.table_panel.stored == {54: ZeroRow(x=1.25, c=-15.0)})
+    hands.sees(lambda: page.table_panel.stored_rows == {54: ZeroRow(x=1.25, c=-15.0)})
     hands.key(Key.Key_Down)
     hands.key(Key.Key_Left)
     enter(hands, "33")
@@ -94,7 +94,7 @@ def test_undo_clear_and_history(hands: Hands, store: Store) -> None:
     assert begins(hands.prompt(), "screen.clear-zero")
     yes(hands.window)
     hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {})
-    hands.sees(lambda: not page.model.offset_book.is_saving and page.table_panel.stored == {})
+    hands.sees(lambda: not page.model.offset_book.is_saving and page.table_panel.stored_rows == {})
     hands.key(Key.Key_F4)
     yes(hands.window)
     hands.sees(lambda: store.offsets.zero_offsets.read_rows() == {54: ZeroRow(x=7.0)})
@@ -141,7 +141,7 @@ def test_without_a_store_the_reason_is_told(hands: Hands) -> None:
     page = opened(hands)
     enter(hands, "3")
     hands.sees(lambda: hands.prompt() == wording("screen.no-offsets-kept"))
-    assert page.table_panel.stored == {}
+    assert page.table_panel.stored_rows == {}
 
 
 def test_a_program_is_read_anew_when_an_offset_changes(hands: Hands, store: Store) -> None:

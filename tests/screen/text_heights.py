@@ -12,7 +12,7 @@ from PySide6.QtGui import QFontMetricsF, QPainter
 
 from app.desk.translation import tr
 from app.screen import screen_theme
-from app.screen.text_sizes import Role
+from app.screen.text_sizes import TextRole
 from app.screen.window.window_bars import TitleLine
 
 
@@ -20,7 +20,7 @@ class Text(NamedTuple):
     """One drawn text: ``capitals`` is the height of its capitals in pixels."""
 
     text: str
-    role: Role
+    role: TextRole
     capitals: float
     panel: str
 
@@ -29,11 +29,11 @@ class Text(NamedTuple):
 def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
     """Everything that is drawn inside, with the role of each text."""
     texts: list[Text] = []
-    roles = [Role.TABLE]
+    roles = [TextRole.TABLE]
     write, put_raw = screen_theme.ThemedPainter.draw_text_line, screen_theme.draw_raw_text
 
     def noted(painter: screen_theme.ThemedPainter, *args: Any, **more: Any) -> None:
-        roles.append(more.get("role", Role.TABLE))
+        roles.append(more.get("role", TextRole.TABLE))
         write(painter, *args, **more)
         roles.pop()
 
@@ -41,7 +41,7 @@ def recorded(patch: pytest.MonkeyPatch) -> Iterator[list[Text]]:
         panel = painter.device()
         role = roles[-1]
         if isinstance(panel, TitleLine) and text == tr(panel.state_text):
-            role = Role.STATE
+            role = TextRole.STATE
         if text.strip():
             capitals = QFontMetricsF(painter.font()).capHeight()
             texts.append(Text(text, role, capitals, type(panel).__name__))

@@ -87,7 +87,7 @@ class Typist:
         self.done.clear()
         if self.recorded:
             pressed = stroke.name == "u" and self.day.shot.state is MachineState.ESTOP
-            self.day.desk.station_controls.estop_pressed = pressed  # else it would be no other press
+            self.day.desk.station_controls.is_estop_pressed = pressed  # else it would be no other press
         before = self._all()
         for kind in (QEvent.Type.KeyPress, QEvent.Type.KeyRelease):
             event = QKeyEvent(kind, stroke.key, stroke.modifiers, stroke.text)
@@ -139,7 +139,7 @@ class Typist:
         return (
             page.NAME,
             self.day.frame.has_text_field(),
-            page.key_labels(),
+            page.make_key_labels(),
             mode,
             self.day.frame.alarm_list.isVisible(),
         )

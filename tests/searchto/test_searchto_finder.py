@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from app.compose.program_proving import rebuild_search
+from app.compose.program_proving import create_search
 from app.desk.programs.program_loading import ProvedJob
 from app.searchto.restart_finder import LineCursor, RestartFinder
 from core.executor.job import Job, Proof, make_job
@@ -78,7 +78,7 @@ ANSWERS: list[object] = []
 def finder() -> RestartFinder:
     ANSWERS.clear()
     return RestartFinder(
-        rebuild_search, lambda job, _watch: ProvedJob(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append
+        create_search, lambda job, _watch: ProvedJob(Proof(job.digest, ())), ANSWERS.append, ANSWERS.append
     )
 
 
@@ -98,18 +98,18 @@ def test_lines_are_found_one_after_the_other(finder: RestartFinder) -> None:
     finder.find_line(part, 5)
     found = answer(finder)
     assert isinstance(found, RestartPoint)
-    assert found.line == 5
+    assert found.line_number == 5
     finder.worker.close()
 
 
 def test_what_was_given_up_never_answers_and_the_next_line_is_found(finder: RestartFinder) -> None:
     long = job("G90G94F300\nX1Z1\nLS90000\nX1\nX2\nLF\nX1\nM30\n")
     finder.find_line(long, 7)
-    finder.worker.cancel()
+    finder.worker.cancel_request()
     finder.find_line(long, 3)
     found = answer(finder)
     assert isinstance(found, RestartPoint)
-    assert found.line == 3
+    assert found.line_number == 3
     finder.worker.close()
 
 

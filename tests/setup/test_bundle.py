@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from resources.setup import bundle
-from resources.setup.lock import HERE
+from resources.setup.lock import SETUP_FOLDER
 
 pytestmark = pytest.mark.skipif(platform.system() != "Linux", reason="the bundle is for Linux")
 MACHINE = platform.machine()
@@ -26,7 +26,7 @@ def packed(tmp_path: Path) -> Path:
     told = 'here=$(dirname "$0"); echo "$BUNDLE: $*: $(wc -c <"$here/wheels/tiny.whl")"\n'
     (folder / "install.sh").write_text(told, encoding="utf-8")
     target = tmp_path / "turndesk.run"
-    bundle.pack(folder, target, MACHINE)
+    bundle.write_bundle_file(folder, target, MACHINE)
     return target
 
 
@@ -53,7 +53,7 @@ def test_how_the_set_up_ends_is_how_the_bundle_ends(tmp_path: Path) -> None:
     (tmp_path / "gathered").mkdir()
     (tmp_path / "gathered" / "VERSION").write_text("1.2", encoding="utf-8")
     (tmp_path / "gathered" / "install.sh").write_text("exit 2\n", encoding="utf-8")
-    bundle.pack(tmp_path / "gathered", tmp_path / "turndesk.run", MACHINE)
+    bundle.write_bundle_file(tmp_path / "gathered", tmp_path / "turndesk.run", MACHINE)
     assert run(tmp_path / "turndesk.run").returncode == 2
 
 
@@ -92,7 +92,7 @@ def test_it_is_refused_on_another_machine(packed: Path, tmp_path: Path) -> None:
 
 
 def test_wheels_of_every_glibc_up_to_that_of_qt() -> None:
-    asked = list(bundle.platforms("aarch64"))
+    asked = list(bundle.list_platform_options("aarch64"))
     assert asked[0] == "--platform=manylinux_2_39_aarch64"
     assert "--platform=manylinux_2_17_aarch64" in asked
     assert asked[-1] == "--platform=manylinux1_aarch64"
@@ -102,7 +102,7 @@ def test_wheels_of_every_glibc_up_to_that_of_qt() -> None:
 def unpacked(tmp_path: Path) -> Path:
     """What install.sh needs before it looks at any wheel."""
     for name in ("environment.sh", "install.sh"):
-        (tmp_path / name).write_text((HERE / name).read_text(encoding="utf-8"), encoding="utf-8")
+        (tmp_path / name).write_text((SETUP_FOLDER / name).read_text(encoding="utf-8"), encoding="utf-8")
     (tmp_path / "VERSION").write_text("1.2", encoding="utf-8")
     return tmp_path / "install.sh"
 
@@ -127,7 +127,7 @@ def test_no_bundle_is_a_sentence(
         raise bundle.BundleError("pip download …:\nno network")
 
     monkeypatch.setattr(bundle, "fetch_wheels", refuse)
-    monkeypatch.setattr(bundle, "version", lambda: "1.2")
+    monkeypatch.setattr(bundle, "get_bundle_version", lambda: "1.2")
     assert bundle.main([str(tmp_path), f"--machine={MACHINE}"]) == 1
     assert capsys.readouterr().err == "No bundle: pip download …:\nno network\n"
     assert list(tmp_path.iterdir()) == []

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from resources.setup.lock import HERE
+from resources.setup.lock import SETUP_FOLDER
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the set-up is a shell script")
 needs_pip = pytest.mark.skipif(find_spec("pip") is None, reason="this environment was made without pip")
@@ -24,8 +24,8 @@ case $2 in *"sys.exit"*) exit {unsupported} ;; *ensurepip*) exit {bare} ;; *) ec
 def tell(script: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Sources environment.sh and runs a line behind it, as app/start.sh does."""
     return subprocess.run(
-        ["/bin/sh", "-euc", f'. "{HERE / "environment.sh"}"; {script}', "start.sh"],
-        env={"PATH": os.environ["PATH"], "LC_ALL": "C", "ROOT": str(HERE.parents[1])} | environment,
+        ["/bin/sh", "-euc", f'. "{SETUP_FOLDER / "environment.sh"}"; {script}', "start.sh"],
+        env={"PATH": os.environ["PATH"], "LC_ALL": "C", "ROOT": str(SETUP_FOLDER.parents[1])} | environment,
         capture_output=True,
         text=True,
         check=False,
@@ -267,8 +267,8 @@ def test_whoever_waits_is_told_at_least_every_ten_seconds(tmp_path: Path) -> Non
 def test_nothing_is_shown_any_more_when_the_set_up_was_ended(tmp_path: Path) -> None:
     """The end of its output comes when nobody has it open any more."""
     executable(tmp_path / "sleep", "#!/bin/sh\nexit 0\n")
-    script = f'. "{HERE / "environment.sh"}"; patiently "It works" kill -9 "$$"'
-    around = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "ROOT": str(HERE.parents[1])}
+    script = f'. "{SETUP_FOLDER / "environment.sh"}"; patiently "It works" kill -9 "$$"'
+    around = {"PATH": f"{tmp_path}:{os.environ['PATH']}", "ROOT": str(SETUP_FOLDER.parents[1])}
     with subprocess.Popen(["/bin/sh", "-euc", script], env=around, stderr=subprocess.PIPE) as told:
         assert told.wait(60) == -9
         assert told.stderr is not None

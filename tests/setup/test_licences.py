@@ -10,9 +10,16 @@ from typing import cast
 
 import pytest
 
-from resources.setup.licences import PAGE, LicenceError, compatible, licence_of, page, rows
-from resources.setup.lock import SETS, locked_packages
-from resources.setup.sbom import file_of_the_system, sbom
+from resources.setup.licences import (
+    PAGE_PATH,
+    LicenseError,
+    get_license,
+    is_compatible,
+    parse_page,
+    update_page,
+)
+from resources.setup.lock import EXTRAS_BY_SET, read_locked_packages
+from resources.setup.sbom import build_sbom, build_system_component
 
 MAKE = "run: python -m resources.setup.licences"
 
@@ -27,8 +34,8 @@ def _installed(name: str) -> bool:
 
 @pytest.mark.parametrize("name", ["desk", "tests"])
 def test_every_licence_is_compatible(name: str) -> None:
-    for package in locked_packages(name):
-        assert compatible(licence_of(distribution(package)))
+    for package in read_locked_packages(name):
+        assert is_compatible(get_license(distribution(package)))
 
 
 @pytest.mark.parametrize(
@@ -43,7 +50,7 @@ def test_every_licence_is_compatible(name: str) -> None:
     ],
 )
 def test_what_is_compatible(expression: str, may_be: bool) -> None:
-    assert compatible(expression) is may_be
+    assert is_compatible(expression) is may_be
 
 
 class Stated:
@@ -59,20 +66,20 @@ class Stated:
     "stated", [{}, {"License": "BSD"}, {"License_Expression": "GPL-3.0-only"}, {"License": "Proprietary"}]
 )
 def test_a_package_that_may_not_be_passed_on_is_named(stated: dict[str, str]) -> None:
-    with pytest.raises(LicenceError, match=r"^tiny: "):
-        licence_of(cast(Distribution, Stated(**stated)))
+    with pytest.raises(LicenseError, match=r"^tiny: "):
+        get_license(cast(Distribution, Stated(**stated)))
 
 
 def test_the_page_is_in_step() -> None:
-    text = PAGE.read_text(encoding="utf-8")
-    listed = {(row.name, row.version) for row in rows(text)}
+    text = PAGE_PATH.read_text(encoding="utf-8")
+    listed = {(row.name, row.version) for row in parse_page(text)}
     assert listed == {
-        (each.name, each.version) for name in SETS for each in locked_packages(name).values()
+        (each.name, each.version) for name in EXTRAS_BY_SET for each in read_locked_packages(name).values()
     }, MAKE
-    for row in rows(text):
+    for row in parse_page(text):
         if _installed(row.name):
-            assert row.licence == licence_of(distribution(row.name)), MAKE
-    assert page(text) == text, MAKE
+            assert row.license_expression == get_license(distribution(row.name)), MAKE
+    assert update_page(text) == text, MAKE
 
 
 @pytest.fixture
@@ -82,18 +89,18 @@ def document(tmp_path: Path) -> dict[str, object]:
     wheel.write_bytes(b"abc")
     package = tmp_path / "libegl1_1.7.0-1_amd64.deb"
     package.write_bytes(b"")
-    return sbom("0.1.0", [wheel], [file_of_the_system("libegl1", "1.7.0-1", package, "debian")])
+    return build_sbom("0.1.0", [wheel], [build_system_component("libegl1", "1.7.0-1", package, "debian")])
 
 
 def test_the_sbom_names_all_with_licence_and_version(document: dict[str, list[dict[str, object]]]) -> None:
     components = {each["bom-ref"]: each for each in document["components"]}
-    for package in locked_packages("desk").values():
+    for package in read_locked_packages("desk").values():
         assert components[package.name]["version"] == package.version
         assert components[package.name]["purl"] == f"pkg:pypi/{package.name}@{package.version}"
         assert components[package.name]["licenses"] == [
-            {"expression": licence_of(distribution(package.name))}
+            {"expression": get_license(distribution(package.name))}
         ]
-    assert set(components) == {*locked_packages("desk"), "b612", "deb:libegl1"}
+    assert set(components) == {*read_locked_packages("desk"), "b612", "deb:libegl1"}
     known = {"turndesk", *components}
     assert {each["ref"] for each in document["dependencies"]} <= known
     for each in document["dependencies"]:

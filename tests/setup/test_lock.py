@@ -13,14 +13,14 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 from resources.setup.lock import (
-    HERE,
+    EXTRAS_BY_SET,
     PYTHONS,
-    SETS,
-    build_packages,
-    locked_file,
-    locked_packages,
-    project,
-    read_locked,
+    SETUP_FOLDER,
+    get_locked_file,
+    list_build_requirements,
+    parse_locked_file,
+    read_locked_packages,
+    read_project_file,
 )
 
 SYSTEMS = (("linux", "Linux"), ("darwin", "Darwin"), ("win32", "Windows"))
@@ -29,8 +29,8 @@ LOCK = "run: python -m resources.setup.lock"
 
 def _asked(extras: tuple[str, ...]) -> Iterator[Requirement]:
     """What pyproject.toml asks for with these optional dependencies."""
-    optional = project()["project"]["optional-dependencies"]
-    yield from map(Requirement, project()["project"]["dependencies"] + build_packages())
+    optional = read_project_file()["project"]["optional-dependencies"]
+    yield from map(Requirement, read_project_file()["project"]["dependencies"] + list_build_requirements())
     for extra in extras:
         for each in map(Requirement, optional[extra]):
             if each.name == "turndesk":
@@ -57,52 +57,52 @@ def _needs(name: str) -> set[str]:
     return found
 
 
-@pytest.mark.parametrize("name", SETS)
+@pytest.mark.parametrize("name", EXTRAS_BY_SET)
 def test_what_pyproject_asks_for_is_locked(name: str) -> None:
-    locked = locked_packages(name)
-    for each in _asked(SETS[name]):
+    locked = read_locked_packages(name)
+    for each in _asked(EXTRAS_BY_SET[name]):
         package = locked.get(canonicalize_name(each.name))
-        assert package, f"{each} is not in {locked_file(name).name}; {LOCK}"
+        assert package, f"{each} is not in {get_locked_file(name).name}; {LOCK}"
         assert each.specifier.contains(package.version), f"{package.name} {package.version}: {each}; {LOCK}"
 
 
 @pytest.mark.parametrize("name", ["tests", "desk"])
 def test_with_all_that_these_need_and_nothing_else(name: str) -> None:
-    locked = locked_packages(name)
+    locked = read_locked_packages(name)
     reached: set[str] = set()
-    ahead = {str(canonicalize_name(each.name)) for each in _asked(SETS[name])}
+    ahead = {str(canonicalize_name(each.name)) for each in _asked(EXTRAS_BY_SET[name])}
     while ahead:
         reached |= ahead
         ahead = {needed for each in ahead for needed in _needs(each)} - reached
     assert reached == set(locked), f"{reached ^ set(locked)}; {LOCK}"
 
 
-@pytest.mark.parametrize("name", SETS)
+@pytest.mark.parametrize("name", EXTRAS_BY_SET)
 def test_every_package_has_its_hashes(name: str) -> None:
-    text = locked_file(name).read_text(encoding="utf-8")
-    packages = list(read_locked(text))
+    text = get_locked_file(name).read_text(encoding="utf-8")
+    packages = list(parse_locked_file(text))
     assert all(package.hashes for package in packages)
     assert sum(len(package.hashes) for package in packages) == text.count("--hash=")
     assert len(packages) == len(re.findall(r"^\S+==", text, re.MULTILINE))
 
 
-@pytest.mark.parametrize("name", SETS)
+@pytest.mark.parametrize("name", EXTRAS_BY_SET)
 def test_no_place_to_fetch_from_is_written_down(name: str) -> None:
-    text = locked_file(name).read_text(encoding="utf-8")
+    text = get_locked_file(name).read_text(encoding="utf-8")
     assert "://" not in text
     assert not re.search(r"^--(?!hash)", text, re.MULTILINE)
 
 
 def test_the_same_package_is_the_same_everywhere() -> None:
-    tests = locked_packages("tests")
-    for name in SETS:
-        for package in locked_packages(name).values():
+    tests = read_locked_packages("tests")
+    for name in EXTRAS_BY_SET:
+        for package in read_locked_packages(name).values():
             assert package == tests.get(package.name, package), LOCK
 
 
 def test_what_runs_here_is_what_is_locked() -> None:
-    for package in locked_packages("tests").values():
-        if package.name in {Requirement(each).name for each in build_packages()}:
+    for package in read_locked_packages("tests").values():
+        if package.name in {Requirement(each).name for each in list_build_requirements()}:
             continue
         try:
             here = distribution(package.name).version
@@ -114,17 +114,17 @@ def test_what_runs_here_is_what_is_locked() -> None:
 
 def test_one_list_of_pythons() -> None:
     """lock.py, pyproject.toml and the set-up's own question say the same."""
-    asked = SpecifierSet(project()["project"]["requires-python"])
+    asked = SpecifierSet(read_project_file()["project"]["requires-python"])
     minors = [f"3.{minor}" for minor in range(8, 20)]
     assert tuple(each for each in minors if asked.contains(f"{each}.1")) == PYTHONS
     first, last = (tuple(map(int, each.split("."))) for each in (PYTHONS[0], PYTHONS[-1]))
-    assert f"{first} <= sys.version_info[:2] <= {last}" in (HERE / "environment.sh").read_text(
+    assert f"{first} <= sys.version_info[:2] <= {last}" in (SETUP_FOLDER / "environment.sh").read_text(
         encoding="utf-8"
     )
     assert first <= sys.version_info[:2] <= last
 
 
 def test_a_spoilt_lock_is_not_read_as_whole() -> None:
-    text = locked_file("desk").read_text(encoding="utf-8")
+    text = get_locked_file("desk").read_text(encoding="utf-8")
     spoilt = text.replace("--hash=sha256:", "--hash=md5:", 1)
-    assert sum(len(each.hashes) for each in read_locked(spoilt)) < spoilt.count("--hash=")
+    assert sum(len(each.hashes) for each in parse_locked_file(spoilt)) < spoilt.count("--hash=")

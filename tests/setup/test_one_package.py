@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from core.own_process import module_environment
-from resources.setup import one_package
-from resources.setup.lock import HOUSE
-from resources.setup.one_package import PACKAGES, in_one_package, moved
+from core.process_environment import make_module_environment
+from resources.setup import wheel_merge
+from resources.setup.lock import PROJECT_FOLDER
+from resources.setup.wheel_merge import PACKAGES, get_new_path, merge_packages
 
 INFO = "turndesk-1.2.dist-info/"
 FILES = {
@@ -39,14 +39,14 @@ def names(data: bytes) -> list[str]:
 
 
 def test_the_packages_are_inside_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    made = in_one_package(wheel(FILES))
+    made = merge_packages(wheel(FILES))
     assert {name.partition("/")[0] for name in names(made)} == {"turndesk", INFO[:-1]}
     assert {"turndesk/core/x.py", "turndesk/app/__init__.py", "turndesk/__main__.py"} <= set(names(made))
     assert names(made)[-1] == f"{INFO}RECORD"
 
 
 def test_the_record_has_the_hash_of_every_file() -> None:
-    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(FILES)))) as archive:
+    with zipfile.ZipFile(io.BytesIO(merge_packages(wheel(FILES)))) as archive:
         rows = [line.split(",") for line in archive.read(f"{INFO}RECORD").decode().splitlines()]
         assert {row[0] for row in rows} == set(archive.namelist())
         for name, digest, size in rows[:-1]:
@@ -61,12 +61,12 @@ def test_the_order_of_the_files_changes_nothing_and_the_stated_time_does(
 ) -> None:
     backwards = dict(reversed(FILES.items()))
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000000")
-    made = in_one_package(wheel(FILES))
-    assert in_one_package(wheel(backwards)) == made
+    made = merge_packages(wheel(FILES))
+    assert merge_packages(wheel(backwards)) == made
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1790000100")
-    assert in_one_package(wheel(FILES)) != made
+    assert merge_packages(wheel(FILES)) != made
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(FILES)))) as archive:
+    with zipfile.ZipFile(io.BytesIO(merge_packages(wheel(FILES)))) as archive:
         assert {each.date_time[0] for each in archive.infolist()} == {1980}
 
 
@@ -75,14 +75,14 @@ def test_the_order_of_the_files_changes_nothing_and_the_stated_time_does(
 )
 def test_a_file_of_another_package_is_rejected(name: str) -> None:
     with pytest.raises(ValueError, match="no package"):
-        moved(name)
+        get_new_path(name)
     with pytest.raises(ValueError, match="no package"):
-        in_one_package(wheel(FILES | {name: ""}))
+        merge_packages(wheel(FILES | {name: ""}))
 
 
 def test_a_wheel_without_a_record_is_rejected() -> None:
     with pytest.raises(StopIteration):
-        in_one_package(wheel({"app/x.py": ""}))
+        merge_packages(wheel({"app/x.py": ""}))
 
 
 @pytest.fixture
@@ -90,7 +90,7 @@ def installed(tmp_path: Path) -> Path:
     """An installed turndesk whose command prints where its packages are, and another program's app."""
     main = "from app.cli import other\ndef console() -> int:\n    print(other.__file__)\n    return 3\n"
     files = FILES | {"app/cli/__init__.py": "", "app/cli/main.py": main, "app/cli/other.py": ""}
-    with zipfile.ZipFile(io.BytesIO(in_one_package(wheel(files)))) as archive:
+    with zipfile.ZipFile(io.BytesIO(merge_packages(wheel(files)))) as archive:
         archive.extractall(tmp_path)
     (tmp_path / "app").mkdir()
     (tmp_path / "app" / "__init__.py").write_text("NAME = 'another program'\n")
@@ -121,13 +121,15 @@ def test_another_program_does_not_find_them(installed: Path) -> None:
 def test_every_process_of_turndesk_finds_its_modules() -> None:
     """A file that starts ``python -m`` of a module of TurnDesk gives it the environment for that."""
     starting = {
-        str(path.relative_to(HOUSE))
+        str(path.relative_to(PROJECT_FOLDER))
         for package in ("app", "core", "drivers")
-        for path in (HOUSE / package).rglob("*.py")
+        for path in (PROJECT_FOLDER / package).rglob("*.py")
         if "sys.executable" in (text := path.read_text(encoding="utf-8")) and '"-m"' in text
     }
     without = [
-        name for name in starting if "module_environment(" not in (HOUSE / name).read_text(encoding="utf-8")
+        name
+        for name in starting
+        if "module_environment(" not in (PROJECT_FOLDER / name).read_text(encoding="utf-8")
     ]
     assert len(starting) >= 4
     assert without == []
@@ -135,13 +137,13 @@ def test_every_process_of_turndesk_finds_its_modules() -> None:
 
 def test_the_environment_names_the_folder_of_the_packages_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PYTHONPATH", "/elsewhere")
-    assert module_environment(X="1")["PYTHONPATH"].split(":")[0] == str(HOUSE)
-    assert module_environment(X="1")["PYTHONPATH"].split(":")[1:] == ["/elsewhere"]
-    assert module_environment(X="1")["X"] == "1"
+    assert make_module_environment(X="1")["PYTHONPATH"].split(":")[0] == str(PROJECT_FOLDER)
+    assert make_module_environment(X="1")["PYTHONPATH"].split(":")[1:] == ["/elsewhere"]
+    assert make_module_environment(X="1")["X"] == "1"
     monkeypatch.delenv("PYTHONPATH")
-    assert module_environment()["PYTHONPATH"] == str(HOUSE)
+    assert make_module_environment()["PYTHONPATH"] == str(PROJECT_FOLDER)
 
 
 def test_the_packages_are_those_of_the_source_code() -> None:
-    assert [name for name in PACKAGES if not (HOUSE / name / "__init__.py").is_file()] == []
-    assert one_package._LAUNCHER.is_file()
+    assert [name for name in PACKAGES if not (PROJECT_FOLDER / name / "__init__.py").is_file()] == []
+    assert wheel_merge._LAUNCHER.is_file()

@@ -11,16 +11,16 @@ from pathlib import Path
 
 import pytest
 
-from app.cli.actions.desktop_entry import entry_text
+from app.cli.actions.desktop_entry import format_entry
 from app.cli.main import list_commands
 from resources.setup import release, release_check
 from resources.setup.bundle import BundleError
-from resources.setup.lock import HERE, PYTHONS
-from resources.setup.packages import debian_package, manual_page, same_bytes
-from resources.setup.packages.debian_package import TARGETS, debian_version
-from resources.setup.sbom import sbom
+from resources.setup.lock import PYTHONS, SETUP_FOLDER
+from resources.setup.packages import debian_package, manual_page, reproducible_archives
+from resources.setup.packages.debian_package import TARGETS, get_debian_version
+from resources.setup.sbom import build_sbom
 
-DEBIAN = HERE / "debian"
+DEBIAN = SETUP_FOLDER / "debian"
 WORDS = {"VERSION", "ARCHITECTURE", "PYTHON", "GLIBC", "SIZE", "FOLDER"}
 
 
@@ -43,11 +43,11 @@ def folder(tmp_path: Path) -> Path:
 def test_an_archive_has_the_same_bytes_at_another_time_and_of_another_owner(
     folder: Path, tmp_path: Path
 ) -> None:
-    same_bytes.set_times(folder)
-    same_bytes.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
+    reproducible_archives.set_times(folder)
+    reproducible_archives.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
     (folder / "a").touch()
-    same_bytes.set_times(folder)
-    same_bytes.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
+    reproducible_archives.set_times(folder)
+    reproducible_archives.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
     assert (tmp_path / "1.tar.gz").read_bytes() == (tmp_path / "2.tar.gz").read_bytes()
     with tarfile.open(tmp_path / "1.tar.gz") as archive:
         members = {each.name: each for each in archive.getmembers()}
@@ -57,9 +57,9 @@ def test_an_archive_has_the_same_bytes_at_another_time_and_of_another_owner(
 
 
 def test_another_content_has_other_bytes(folder: Path, tmp_path: Path) -> None:
-    same_bytes.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
+    reproducible_archives.write_tar_gz(folder, tmp_path / "1.tar.gz", "x")
     (folder / "a").write_text("b")
-    same_bytes.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
+    reproducible_archives.write_tar_gz(folder, tmp_path / "2.tar.gz", "x")
     assert (tmp_path / "1.tar.gz").read_bytes() != (tmp_path / "2.tar.gz").read_bytes()
 
 
@@ -72,7 +72,7 @@ def test_an_archive_of_others_is_put_in_order(tmp_path: Path) -> None:
                 member = tarfile.TarInfo(f"p/{name}")
                 member.size, member.mtime, member.uname = 1, 1000 + number, f"user{number}"
                 archive.addfile(member, io.BytesIO(name.encode()))
-        same_bytes.repack_tar_gz(path)
+        reproducible_archives.repack_tar_gz(path)
         made.append(path.read_bytes())
     assert made[0] == made[1]
 
@@ -81,15 +81,15 @@ def test_two_folders_are_compared_by_names_and_bytes(tmp_path: Path) -> None:
     for name, text in (("1/a", "x"), ("2/a", "x"), ("1/b", "x"), ("2/b", "y"), ("2/c", "")):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
-    assert release.differences(tmp_path / "1", tmp_path / "2") == ["b", "c"]
-    assert release.differences(tmp_path / "1", tmp_path / "1") == []
+    assert release.list_differences(tmp_path / "1", tmp_path / "2") == ["b", "c"]
+    assert release.list_differences(tmp_path / "1", tmp_path / "1") == []
 
 
 def test_sums_are_those_of_the_files(tmp_path: Path) -> None:
     (tmp_path / "a").write_bytes(b"abc")
-    release.write_sums(tmp_path)
-    release.write_sums(tmp_path)  # the list itself is not in the list
-    assert (tmp_path / release.SUMS).read_text() == f"{hashlib.sha256(b'abc').hexdigest()}  a\n"
+    release.write_checksums(tmp_path)
+    release.write_checksums(tmp_path)  # the list itself is not in the list
+    assert (tmp_path / release.CHECKSUM_FILE_NAME).read_text() == f"{hashlib.sha256(b'abc').hexdigest()}  a\n"
 
 
 def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -99,17 +99,17 @@ def test_an_existing_folder_is_not_replaced(tmp_path: Path, capsys: pytest.Captu
 
 def test_a_version_with_a_commit_precedes_its_release() -> None:
     target = TARGETS["debian12"]
-    assert debian_version("0.1.0", target) == "0.1.0+debian12"
-    assert debian_version("0.1.0-20261201-1a2b3c4", target) == "0.1.0~202612010830.1a2b3c4+debian12"
+    assert get_debian_version("0.1.0", target) == "0.1.0+debian12"
+    assert get_debian_version("0.1.0-20261201-1a2b3c4", target) == "0.1.0~202612010830.1a2b3c4+debian12"
 
 
 def test_a_changed_checkout_has_no_version() -> None:
     with pytest.raises(BundleError):
-        debian_version("0.1.0-20261201-1a2b3c4-changed", TARGETS["debian12"])
+        get_debian_version("0.1.0-20261201-1a2b3c4-changed", TARGETS["debian12"])
 
 
 def test_the_pythons_of_the_targets_are_locked() -> None:
-    assert {each.python for each in TARGETS.values()} <= set(PYTHONS)
+    assert {each.python_version for each in TARGETS.values()} <= set(PYTHONS)
 
 
 @pytest.mark.parametrize("name", ["control", "postinst", "prerm", "postrm"])
@@ -128,7 +128,7 @@ def test_scripts_are_shell_that_ends_at_an_error(name: str) -> None:
 
 def test_the_package_depends_on_the_libraries_of_the_set_up() -> None:
     control = (DEBIAN / "control").read_text(encoding="utf-8")
-    text = (HERE / "environment.sh").read_text(encoding="utf-8")
+    text = (SETUP_FOLDER / "environment.sh").read_text(encoding="utf-8")
     wanted = " ".join(re.findall(r'^(?:QT|WINDOW|WAYLAND)_LIBRARIES="(.*)"$', text, re.MULTILINE)).split()
     assert len(wanted) > 10
     assert [name for name in wanted if name not in control] == []
@@ -147,7 +147,7 @@ def test_the_copyright_names_every_package() -> None:
 
 
 def test_the_manual_page_has_every_command_and_no_bare_special_line() -> None:
-    page = manual_page.manual_page()
+    page = manual_page.format_manual_page()
     headings = {
         line.removeprefix(".SS turndesk ").split()[0] for line in page.splitlines() if line[:3] == ".SS"
     }
@@ -166,17 +166,17 @@ def test_the_manual_page_has_every_command_and_no_bare_special_line() -> None:
     ("text", "expected"), [(".x", r"\&.x"), ("'x", r"\&'x"), ("--a\\b", r"\-\-a\eb"), ("a.b", "a.b")]
 )
 def test_special_characters_of_the_manual_are_escaped(text: str, expected: str) -> None:
-    assert manual_page.escaped(text) == expected
+    assert manual_page.escape_text(text) == expected
 
 
 def test_the_menu_entry_is_that_of_the_command(tmp_path: Path) -> None:
-    assert "Exec=/usr/bin/turndesk %f" in entry_text("/usr/bin/turndesk %f")
+    assert "Exec=/usr/bin/turndesk %f" in format_entry("/usr/bin/turndesk %f")
 
 
 def test_the_sbom_of_a_release_is_the_same_each_time() -> None:
-    assert sbom("1.2", []) == sbom("1.2", [])
-    assert sbom("1.2", [])["serialNumber"] != sbom("1.3", [])["serialNumber"]
-    assert sbom("1.2", [])["metadata"]["timestamp"] == "2026-12-01T08:30:00+00:00"
+    assert build_sbom("1.2", []) == build_sbom("1.2", [])
+    assert build_sbom("1.2", [])["serialNumber"] != build_sbom("1.3", [])["serialNumber"]
+    assert build_sbom("1.2", [])["metadata"]["timestamp"] == "2026-12-01T08:30:00+00:00"
 
 
 def test_what_a_purge_may_leave_is_only_what_changes_anyway() -> None:

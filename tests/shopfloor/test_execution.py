@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from app.shopfloor.machine_reading import ExecutionTracker, find_controller_mode
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.executor.snapshot import MachineState, Snapshot, StartAction
 from tests.interrupted import broken_off
 from tests.texts import text
@@ -26,15 +26,15 @@ RUN, IDLE = (
         (MachineState.DISABLED, "", "STOPPED", "without power it is not ready"),
         (MachineState.IDLE, "", "READY", "the palms would start it"),
         (MachineState.RUN, "", "ACTIVE", "it executes"),
-        (MachineState.HOLDING, "", "FEED_HOLD", "motion is commanded to stop"),
+        (MachineState.STOPPING, "", "FEED_HOLD", "motion is commanded to stop"),
         (MachineState.HOLD, "", "FEED_HOLD", "somebody pressed it"),
         (
             MachineState.HOLD,
-            CATALOGUE["low-queue"].text.upper(),
+            CATALOG["low-queue"].text.upper(),
             "INTERRUPTED",
             "nobody pressed it, and somebody has to start it again",
         ),
-        (MachineState.BLOCK_END, "", "INTERRUPTED", "each block wants a press"),
+        (MachineState.SINGLE_BLOCK_STOP, "", "INTERRUPTED", "each block wants a press"),
         (MachineState.WAIT, "DWELL", "ACTIVE", "a dwell is a block like any other"),
         (MachineState.WAIT, text("executor.at-speed"), "ACTIVE", "the spindle runs up"),
         (MachineState.WAIT, text("executor.spindle-stop-wait"), "ACTIVE", "the spindle runs down"),
@@ -58,7 +58,7 @@ RUN, IDLE = (
         (MachineState.WAIT, text("executor.spindle-override-0"), "INTERRUPTED", "the pot has to be turned"),
         (MachineState.PROGRAM_STOP, "", "PROGRAM_STOPPED", "M00"),
         (MachineState.JOG, "", "READY", "no program is under way"),
-        (MachineState.HOME, "", "READY", "no program is under way"),
+        (MachineState.HOMING, "", "READY", "no program is under way"),
     ],
 )
 def test_states(state: MachineState, waits: str, told: str, why: str) -> None:
@@ -124,7 +124,7 @@ def test_a_program_that_was_given_up_is_stopped_and_not_completed() -> None:
         (replace(RUN, starts=StartAction.MDI_LINE, single_block=True), "MANUAL_DATA_INPUT"),
         (replace(RUN, starts=StartAction.RESTART), "AUTOMATIC"),
         (replace(IDLE, state=MachineState.JOG, single_block=True), "MANUAL"),
-        (replace(IDLE, state=MachineState.HOME), "MANUAL"),
+        (replace(IDLE, state=MachineState.HOMING), "MANUAL"),
         (replace(IDLE, state=MachineState.ESTOP), "AUTOMATIC"),
     ],
 )

@@ -10,7 +10,7 @@ from app.compose.machine.machine_files import load_shipped_machine
 from app.shopfloor.json_keys import FILE_KEYS
 from app.shopfloor.machine_reading import MachineReader
 from app.shopfloor.status_file import StatusFileWriter, make_status
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.executor.snapshot import Alarm, InterruptedJob, MachineState, Snapshot
 from tests.cli.json_output import declared_alone
 
@@ -20,7 +20,7 @@ INTERRUPTED = InterruptedJob(
 
 
 def shots() -> list[Snapshot]:
-    found = CATALOGUE["following"]
+    found = CATALOG["following"]
     alarm = Alarm(found.number, "following", found.text, "X", found.remedy, 4)
     running = Snapshot(
         state=MachineState.RUN, program="/p/pin.nc", counts=True, made=3, line=9, spindle_load=41.0

@@ -10,7 +10,7 @@ import pytest
 
 from app.compose.machine.machine_files import load_machine, load_shipped_machine
 from app.shopfloor.machine_reading import CONDITION_PLACES, MachineReader, ReadingValue, list_condition_keys
-from core.alarms import CATALOGUE, AlarmCode
+from core.alarms import CATALOG, AlarmCode
 from core.executor.raised_alarm import AlarmError, make_alarm, make_alarm_and_reaction
 from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.interpreter.shared.modal_state import ModalState
@@ -113,7 +113,7 @@ def test_an_input_called_part_is_a_part_in_the_chuck() -> None:
 
 
 def test_without_a_c_axis_its_angle_means_nothing() -> None:
-    assert values_of(AT, replace(LATHE, c_enabled=False))["Cabs"] is None
+    assert values_of(AT, replace(LATHE, is_c_enabled=False))["Cabs"] is None
 
 
 @pytest.mark.parametrize(("rpm", "told"), [(300.0, "ACTIVE"), (-300.0, "ACTIVE"), (1.0, "INACTIVE")])
@@ -217,7 +217,7 @@ def test_an_interrupted_job_is_a_warning_of_the_system_as_long_as_it_stands() ->
 
 def test_a_hold_that_nobody_pressed_is_a_warning() -> None:
     held = replace(AT, state=MachineState.HOLD, stop=make_alarm("low-queue", "", 4, 0.0))
-    assert active(held) == {"system": (("WARNING", "904", CATALOGUE["low-queue"].text.upper()),)}
+    assert active(held) == {"system": (("WARNING", "904", CATALOG["low-queue"].text.upper()),)}
     assert active(replace(held, stop=make_alarm("feed-hold", "H at the keyboard", 4, 0.0))) == {}
     assert active(replace(held, stop=None)) == {}
     assert active(replace(AT, state=MachineState.WAIT, waiting_for="DWELL")) == {}

@@ -11,7 +11,7 @@ import pytest
 
 from app.shopfloor.machine_reading import MachineReading
 from app.shopfloor.status_file import StatusDocument, StatusFileUpdater, StatusFileWriter, make_status
-from core.alarms import CATALOGUE
+from core.alarms import CATALOG
 from core.executor.raised_alarm import make_alarm
 from tests.interrupted import broken_off
 
@@ -68,7 +68,7 @@ def test_what_it_says(tmp_path: Path) -> None:
         "alarms": [
             {
                 **{"of": "Xservo", "level": "FAULT", "code": "102", "text": "FOLLOWING ERROR: X"},
-                **{"number": 102, "cause": "X", "remedy": CATALOGUE["following"].remedy, "line": 4},
+                **{"number": 102, "cause": "X", "remedy": CATALOG["following"].remedy, "line": 4},
             }
         ],
     }

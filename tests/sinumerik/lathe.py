@@ -72,7 +72,7 @@ def refused(text: str | ProgramSource, around: Setup | None = None) -> Diagnosti
 
 def times(text: str, machine: Machine = MODULO, around: Setup | None = None) -> list[tuple[Block, float]]:
     """Every block with the seconds that it takes by feeds and limits alone."""
-    timeline = Timeline.from_program(source(text), around or setup(machine), machine, ideal=True)
+    timeline = Timeline.from_program(source(text), around or setup(machine), machine, is_ideal=True)
     found = [(block, t1 - t0) for block, t0, t1 in iter_timed_blocks(timeline)]
     assert not timeline.has_errors, timeline.diagnostics
     return found

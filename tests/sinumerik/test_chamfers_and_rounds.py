@@ -7,7 +7,7 @@ from math import asin, cos, dist, pi, sin, sqrt
 
 import pytest
 
-from core.geometry.lines_and_arcs import arc_length
+from core.geometry.lines_and_arcs import compute_arc_length
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.sinumerik.lathe import good, refused, run, setup
 
@@ -53,7 +53,9 @@ def test_a_rounding() -> None:
     assert arc.kind is BlockKind.ARC
     assert (first.z, last.x0) == pytest.approx((-16, 14))
     ends = (arc.x0, arc.z0), (arc.x, arc.z)
-    assert arc_length(*ends, (arc.cx, arc.cz), clockwise=arc.clockwise) == pytest.approx(4 * pi / 2)
+    assert compute_arc_length(*ends, (arc.cx, arc.cz), is_clockwise=arc.clockwise) == pytest.approx(
+        4 * pi / 2
+    )
 
 
 @pytest.mark.parametrize("words", ["CHF=4", "CHR=4", "RND=4"])

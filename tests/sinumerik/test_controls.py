@@ -65,7 +65,7 @@ def test_the_machine_file_says_it() -> None:
     text = load_shipped_machine("sinumerik-modulo").text
     machine = parse_machine(text.replace("[machine]", '[machine]\ncontrol = "802d"'), "t")
     assert get_control_limits(machine).control_model == "802d"
-    assert load_shipped_machine("sinumerik-modulo").control == "840d"
+    assert load_shipped_machine("sinumerik-modulo").control_model == "840d"
     with raises_code(MachineFileError, "wrong-value", "machine.control"):
         parse_machine(text.replace("[machine]", '[machine]\ncontrol = "810"'), "t")
 

@@ -39,9 +39,9 @@ def timed(text: str, lathe: Machine) -> list[tuple[Block, float]]:
 
 def test_the_machine_has_a_slide_more(lathe: Machine) -> None:
     axis = lathe.find_axis("C")
-    assert (axis.rotary, axis.travel, lathe.third_axis) == (False, (-60.0, 60.0), "Y")
-    assert axis.vmax == pytest.approx(5000 / 60)
-    assert not lathe.spindle_is_c
+    assert (axis.is_rotary, axis.travel, lathe.third_axis_name) == (False, (-60.0, 60.0), "Y")
+    assert axis.max_speed == pytest.approx(5000 / 60)
+    assert not lathe.is_spindle_c_axis
 
 
 def test_alone_it_takes_f_as_its_own_speed(lathe: Machine) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from app.compose.desk_assembly import create_desk_and_executor
 from app.compose.runs.journal import Journal
-from app.compose.stored_offsets import create_setup_with, read_store_offsets, read_stored_offsets
+from app.compose.stored_offsets import create_setup_with_offsets, read_store_offsets, read_stored_offsets
 from app.offsets.active_offsets import R_PARAMETERS_SETTING, parse_r_parameters
 from app.special.operator_settings import RParametersFunction
 from app.special.special_functions import SpecialFunctionList
@@ -56,7 +56,7 @@ def test_the_store_keeps_them(tmp_path: Path) -> None:
         store.settings.save_setting(R_PARAMETERS_SETTING, {"1": 40.0, "299": -2.5}).result()
     with Store.open(tmp_path) as store:
         assert read_store_offsets(store).r_parameters == {1: 40.0, 299: -2.5}
-        assert create_setup_with(MODULO, read_store_offsets(store)).r[1] == 40.0
+        assert create_setup_with_offsets(MODULO, read_store_offsets(store)).r[1] == 40.0
 
 
 @pytest.mark.parametrize("kept", [None, 3, [1], {"R1": 3.0}, {"300": 1.0}, {"1": "x"}, {"-1": 2.0}])
@@ -75,7 +75,7 @@ def page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RParameter
     clock, journal = ManualClock(), Journal.open_default()
     desk, executor = create_desk_and_executor(str(file), read_stored_offsets, clock, journal)
     executor.run_tick()
-    functions = desk.page_registry.find(SpecialFunctionList)
+    functions = desk.page_registry.find_model(SpecialFunctionList)
     assert functions is not None
     (found,) = [each for each in functions.functions if isinstance(each, RParametersFunction)]
     yield found
@@ -103,7 +103,7 @@ def test_what_is_typed_is_kept_for_every_program(page: RParametersFunction) -> N
 def test_a_value_is_taken_away(page: RParametersFunction) -> None:
     types(page, "5")
     assert page.parameter_values == {0: 5.0}
-    page.function_keys()["F4"].action()
+    page.make_function_keys()["F4"].action()
     page._worker.wait_for_results(60.0)
     assert read_stored_offsets().r_parameters == {}
     assert (page.parameter_values, row(page, 0)) == ({}, ("R0", "–"))

@@ -137,7 +137,7 @@ def test_the_nose_touches_random_contours_everywhere(seed: int) -> None:
     for block in moves:
         element = make_element(block)
         for share in range(11):
-            px, pz = element.point_at(element.length * share / 10)
+            px, pz = element.get_point(element.length * share / 10)
             centre = px - across * R, pz - along * R
             nearest = min(_distance(a, b, centre) for a, b in pairwise(points))
             assert nearest == pytest.approx(R, abs=1e-6)

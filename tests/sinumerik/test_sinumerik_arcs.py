@@ -6,7 +6,7 @@ from math import dist, pi
 
 import pytest
 
-from core.geometry.lines_and_arcs import arc_length
+from core.geometry.lines_and_arcs import compute_arc_length
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from tests.sinumerik.lathe import good, refused, setup
 
@@ -22,7 +22,9 @@ def centre(block: Block) -> tuple[float, float]:
 
 
 def length(block: Block) -> float:
-    return arc_length((block.x0, block.z0), (block.x, block.z), centre(block), clockwise=block.clockwise)
+    return compute_arc_length(
+        (block.x0, block.z0), (block.x, block.z), centre(block), is_clockwise=block.clockwise
+    )
 
 
 QUARTERS = [  # a ball of radius 10 from its tip, as every book of turning has it: out along X+ and Z-

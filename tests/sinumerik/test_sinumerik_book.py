@@ -20,7 +20,7 @@ from core.language.sinumerik.word_table import GROUP_BY_FUNCTION, INEFFECTIVE_WO
 from core.language.source import Dialect, ProgramSource
 from core.machine.machine_model import Machine
 from core.proving.prove_program import prove
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 from tests.sinumerik.lathe import MODULO
 
 BOOK = get_code_book(Dialect.SINUMERIK)
@@ -28,7 +28,7 @@ ENTRIES = {entry.head: entry for entry in BOOK.entries}
 LIVE = load_shipped_machine("sinumerik-live")
 """Its spindle is C."""
 
-TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_edge_key(1, 2): ToolOffset(z=-3.0)}
+TOOLS = {1: ToolOffset(name="ROUGHER", quadrant=3), make_row_number(1, 2): ToolOffset(z=-3.0)}
 
 
 def errors_of(entry: CodeBookEntry, lines: str, machine: Machine = MODULO) -> list[Diagnostic]:

@@ -124,7 +124,7 @@ def test_held_while_c_turns_alone_and_gone_on(bench: Bench) -> None:
 
 
 def stands_behind(line: int, shot: Snapshot) -> bool:
-    return shot.state is MachineState.BLOCK_END and shot.line == line
+    return shot.state is MachineState.SINGLE_BLOCK_STOP and shot.line == line
 
 
 def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None:
@@ -139,7 +139,7 @@ def test_single_block_stops_between_a_move_and_a_turn_of_c(bench: Bench) -> None
 
 def test_an_offset_of_c_turns_the_part(bench: Bench) -> None:
     bench.desk.offset_book.change_fields(OffsetKind.ZERO, 54, {"c": 30.0, "z": -5.0}, "turned")
-    while not bench.desk.offset_book.zero:
+    while not bench.desk.offset_book.zero_offsets:
         bench.desk.update()
     bench.started()
     turned = bench.until(lambda s: s.line == 5)
@@ -200,7 +200,7 @@ def test_a_program_of_the_lathes_own_language_runs_in_mm_there_and_is_warned(
     loaded = bench.desk.program_loader.wait_until_loaded(60.0)
     assert [d.code for d in loaded.diagnostics] == ["units-unnamed"]
     assert loaded.job is not None
-    editor = bench.desk.page_registry.find(EditorModel)
+    editor = bench.desk.page_registry.find_model(EditorModel)
     assert editor is not None
     proved = editor.loading_steps.make_job(loaded.job.source, False)
     assert proved.digest == loaded.job.digest

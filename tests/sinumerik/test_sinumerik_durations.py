@@ -17,7 +17,7 @@ BEFORE = "N5 G94\nN10 G0 X10 Z30 C45\n"
 def slow_c(limit: float) -> Machine:
     """The same lathe with another limit of C, degrees/min."""
     x, z, c = MODULO.axes
-    return replace(MODULO, axes=(x, z, replace(c, vmax=limit / 60)))
+    return replace(MODULO, axes=(x, z, replace(c, max_speed=limit / 60)))
 
 
 def last(text: str, machine: Machine = MODULO) -> tuple[float, float]:

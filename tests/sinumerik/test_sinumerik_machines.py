@@ -23,7 +23,7 @@ HOME = (0.0, 0.0, 0.0)
 
 def changed(old: str, new: str) -> Machine:
     """The modulo lathe with another line in its file."""
-    text = resources.machine_file("sinumerik-modulo.toml")
+    text = resources.read_machine_file("sinumerik-modulo.toml")
     assert text.count(old) == 1
     return parse_machine(text.replace(old, new), "changed.toml")
 
@@ -36,17 +36,17 @@ def codes(text: str, machine: Machine) -> list[str]:
 def test_the_shipped_lathes_have_the_limits_of_the_specification() -> None:
     for machine in (MODULO, LINEAR):
         x, z, c = machine.axes
-        assert [x.vmax * 60, z.vmax * 60, c.vmax * 60] == pytest.approx([8000, 10000, 7200])
-        assert get_control_limits(machine).max_axis_speeds == (x.vmax, z.vmax, c.vmax)
+        assert [x.max_speed * 60, z.max_speed * 60, c.max_speed * 60] == pytest.approx([8000, 10000, 7200])
+        assert get_control_limits(machine).max_axis_speeds == (x.max_speed, z.max_speed, c.max_speed)
         assert machine.has_c_own_drive
-        assert not machine.spindle_is_c
+        assert not machine.is_spindle_c_axis
     assert (MODULO.is_c_modulo, MODULO.axes[2].travel) == (True, None)
     assert (LINEAR.is_c_modulo, LINEAR.axes[2].travel) == (False, (-360.0, 360.0))
 
 
 def test_the_shipped_gang_lathe_has_the_spindle_for_its_c() -> None:
     assert GT75.is_c_modulo
-    assert GT75.spindle_is_c
+    assert GT75.is_spindle_c_axis
 
 
 @pytest.mark.parametrize(
@@ -141,7 +141,7 @@ def test_fixed_points_refused(new: str, code: str, value: str) -> None:
 def test_fixed_points_need_no_order_and_a_mill_has_one() -> None:
     machine = changed("fixed_points = [299.0] ", "fixed_points = [100.0, 20.0, -20.0, 300.0] ")
     assert machine.axes[0].fixed_points == (100.0, 20.0, -20.0, 300.0)
-    mill = resources.machine_file("ac-table-mill.toml")
+    mill = resources.read_machine_file("ac-table-mill.toml")
     with raises_code(MachineFileError, "broken-rule", "axis.X.fixed_points", "M92"):
         parse_machine(mill.replace("fixed_points = [-100.0]", "fixed_points = [0.0, 1.0]"), "mill.toml")
 

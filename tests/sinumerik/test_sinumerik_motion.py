@@ -121,7 +121,7 @@ def test_setpoints_do_not_jump(machine: Machine) -> None:
     for stretch in found:
         at = stretch.chunk.profile.positions_at(np.arange(0.0, stretch.chunk.profile.duration_s, 0.001))
         speeds = np.abs(np.diff(np.vstack([last, at]), axis=0)) / 0.001
-        assert (speeds <= np.array([axis.vmax for axis in machine.axes]) * 1.001).all()
+        assert (speeds <= np.array([axis.max_speed for axis in machine.axes]) * 1.001).all()
         last = stretch.chunk.profile.positions_at(stretch.chunk.profile.duration_s)[0]
 
 

@@ -132,7 +132,7 @@ def test_the_end_takes_the_offsets_away(end: str) -> None:
 
 def test_so_does_a_program_that_is_given_up() -> None:
     modal = run("TRANS X4 Z3 C20\nG0 X1").blocks[-1].modal
-    left = compute_modal_after_end(modal, 0.0, reset=True)
+    left = compute_modal_after_end(modal, 0.0, resets_m_functions=True)
     assert (modal.offset_c, left.offset_x, left.offset_z, left.offset_c) == (20, 0, 0, 0)
 
 

@@ -12,7 +12,7 @@ from tests.sinumerik.lathe import LINEAR, MODULO, good, refused, run, setup
 
 
 def without_c() -> Setup:
-    return setup(replace(MODULO, c_enabled=False))
+    return setup(replace(MODULO, is_c_enabled=False))
 
 
 def one_speed() -> Setup:

@@ -9,7 +9,7 @@ from math import radians, sqrt, tan
 import numpy as np
 import pytest
 
-from core.geometry.lines_and_arcs import Arc, distance_to_point
+from core.geometry.lines_and_arcs import Arc, compute_distance_to_point
 from core.interpreter.shared.actions import Dwell
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -76,7 +76,7 @@ def material_left(blocks: list[Block], x: float, z: float) -> float:
             continue
         element = make_element(block)
         share = np.linspace(0.0, element.length, 400)
-        points = np.array([element.point_at(s) for s in share]) if element.length else np.empty((0, 2))
+        points = np.array([element.get_point(s) for s in share]) if element.length else np.empty((0, 2))
         if isinstance(element, Arc):
             assert (
                 abs(
@@ -122,7 +122,7 @@ def test_tapers_and_arcs_have_their_size_whatever_the_nose(nose: float, vari: in
     share = sqrt(0.5)
     for x, z in ((10, -5), (15, -15), (25 - 5 * share, -20 - 5 * share)):
         tip = x - nose, z - nose  # where the tip is when the centre lies on the point
-        assert min(distance_to_point(each, tip) for each in cuts) == pytest.approx(nose, abs=2e-3)
+        assert min(compute_distance_to_point(each, tip) for each in cuts) == pytest.approx(nose, abs=2e-3)
 
 
 def test_the_allowance_is_left_by_the_nose_too() -> None:
@@ -133,7 +133,9 @@ def test_the_allowance_is_left_by_the_nose_too() -> None:
         for b in good(text, with_nose(0.4, 3))
         if b.line == 3 and b.kind is not BlockKind.RAPID
     ]
-    assert min(distance_to_point(each, (15 - 0.4, -15.4)) for each in cuts) == pytest.approx(0.9, abs=2e-3)
+    assert min(compute_distance_to_point(each, (15 - 0.4, -15.4)) for each in cuts) == pytest.approx(
+        0.9, abs=2e-3
+    )
 
 
 def test_inside_the_nose_lies_on_the_other_side() -> None:
@@ -145,7 +147,7 @@ def test_inside_the_nose_lies_on_the_other_side() -> None:
         if b.line == 3 and b.kind is BlockKind.FEED
     ]
     tip = 17.5 + 0.4, -5 - 0.4
-    assert min(distance_to_point(each, tip) for each in cuts) == pytest.approx(0.4, abs=2e-3)
+    assert min(compute_distance_to_point(each, tip) for each in cuts) == pytest.approx(0.4, abs=2e-3)
 
 
 def test_along_x_the_nose_counts_too() -> None:
@@ -154,14 +156,16 @@ def test_along_x_the_nose_counts_too() -> None:
     text = CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("FACE",2,0.2,,,0.3,0.1,0.12,10)'
     moves = good(source(text, face), with_nose(0.4, 3))
     cuts = [make_element(b) for b in moves if b.line == 3 and b.kind is BlockKind.FEED]
-    assert min(distance_to_point(each, (15 - 0.4, -7.4)) for each in cuts) == pytest.approx(0.4, abs=2e-3)
+    assert min(compute_distance_to_point(each, (15 - 0.4, -7.4)) for each in cuts) == pytest.approx(
+        0.4, abs=2e-3
+    )
 
 
 def test_without_a_tip_quadrant_the_tip_runs_along_and_that_is_told() -> None:
     text = source(CUT.replace("G95", "T1 D1 G95") + 'CYCLE95("KONTUR",2,,,,0.3,0.1,0.12,5)', KONTUR)
     passed = run(text, with_nose(0.4, 0))
     assert [each.code for each in passed.found] == ["comp-no-quadrant"]
-    assert min(distance_to_point(make_element(b), (15, -15)) for b in passed.moves) == pytest.approx(
+    assert min(compute_distance_to_point(make_element(b), (15, -15)) for b in passed.moves) == pytest.approx(
         0.0, abs=1e-6
     )
 

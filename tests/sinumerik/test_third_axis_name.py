@@ -86,7 +86,7 @@ def test_a_line_of_mdi_knows_it_too() -> None:
 
 def test_the_machine_file_says_it() -> None:
     assert get_control_limits(of("Q1")).third_axis_name == "Q1"
-    assert load_shipped_machine("sinumerik-modulo").third_axis == "C"
+    assert load_shipped_machine("sinumerik-modulo").third_axis_name == "C"
     for wrong in ("X", "Z", "Q", "SPINDLE", "Q10", ""):
         with raises_code(MachineFileError, "wrong-value", "axis.C.name"):
             of(wrong)
@@ -95,5 +95,5 @@ def test_the_machine_file_says_it() -> None:
 def test_positions_and_keys_call_it_so() -> None:
     machine = of("Q1")
     assert [way.displayed_axis for way in make_jog_directions(machine) if way.axis == "C"] == ["Q1", "Q1"]
-    shown = make_position_readout(Snapshot(), ReadoutKind.POSITION, True, True, machine.third_axis)
+    shown = make_position_readout(Snapshot(), ReadoutKind.POSITION, True, True, machine.third_axis_name)
     assert [axis.name for axis in shown.axes] == ["X", "Z", "Q1"]

@@ -43,7 +43,7 @@ def test_the_lead_grows_and_shrinks() -> None:
 def test_the_way_of_a_growing_lead() -> None:
     (grown,) = threads("G34 Z-15 K1 F0.2")
     curve = build_thread_curve([grown], LIMITS)
-    assert curve.length == pytest.approx(10.0)  # turns, the first lead being 1
+    assert curve.length_mm == pytest.approx(10.0)  # turns, the first lead being 1
     for turns in np.linspace(0.0, 10.0, 101):
         assert curve.evaluate(turns)[1] == pytest.approx(5.0 - turns - 0.1 * turns * turns, abs=2e-4)
 
@@ -51,19 +51,19 @@ def test_the_way_of_a_growing_lead() -> None:
 def test_the_way_of_a_chain_is_followed_within_what_the_slides_can() -> None:
     chain = threads("G33 Z-10 K1\nX26 Z-20 K2")
     path = ThreadPath.from_blocks(chain, LIMITS)
-    assert path.length == pytest.approx(15.0 + 5.0)  # turns times 1 mm: 15, and 10 mm by 2
+    assert path.length_mm == pytest.approx(15.0 + 5.0)  # turns times 1 mm: 15, and 10 mm by 2
     speed = 10.0  # 10 turns a second
     segments, leaves = path.plan_remaining_pass(0.0, 0.0, speed, [])
     assert leaves == pytest.approx(2.0, abs=0.01)
-    at = np.searchsorted(segments.t, 1.75, side="right") - 1
-    u = 1.75 - segments.t[at]
-    p = segments.p[at] + segments.v[at] * u + 0.5 * segments.a[at] * u * u
+    at = np.searchsorted(segments.start_times_s, 1.75, side="right") - 1
+    u = 1.75 - segments.start_times_s[at]
+    p = segments.positions[at] + segments.velocities[at] * u + 0.5 * segments.accelerations[at] * u * u
     # 17.5 turns: 2.5 of the second thread, 5 mm of Z and a quarter of 3 mm of X for each 10 of them.
     assert p[:2] == pytest.approx((10.0 + 3.0 * 0.5, -10.0 - 5.0), abs=1e-3)
-    ends = segments.v + segments.a * segments.dt[:, None]
-    jumps = np.abs(segments.v[1:] - ends[:-1])[:, :2]
+    ends = segments.velocities + segments.accelerations * segments.durations_s[:, None]
+    jumps = np.abs(segments.velocities[1:] - ends[:-1])[:, :2]
     assert jumps.max() <= 0.5 * 3000.0 * 0.01  # no step of speed beyond what a few milliseconds take
-    assert segments.p[0, 1] == pytest.approx(5.0)
+    assert segments.positions[0, 1] == pytest.approx(5.0)
 
 
 def test_a_start_angle_begins_further_back() -> None:

@@ -36,7 +36,7 @@ def ways(text: str, radius: float = 0.0) -> list[Block]:
 
 def slides(block: Block, count: int = 9) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     assert block.plane is not None
-    return block.plane.machine_positions(np.linspace(0.0, 1.0, count))
+    return block.plane.compute_machine_positions(np.linspace(0.0, 1.0, count))
 
 
 def error(text: str, radius: float = 0.0) -> tuple[str, str]:
@@ -185,7 +185,7 @@ def test_refusals(text: str, code: str, part: str) -> None:
 
 
 def test_a_machine_without_c_or_live_tool() -> None:
-    still = replace(around(), limits=replace(around().limits, c_enabled=False))
+    still = replace(around(), limits=replace(around().limits, is_c_enabled=False))
     assert refused("TRANSMIT", still).code == "14401"
     assert refused(
         "S2=100 M2=3", replace(around(), limits=replace(around().limits, live_tool_output=""))

@@ -7,7 +7,7 @@ from math import cos, radians, sin, tan
 
 import pytest
 
-from core.geometry.lines_and_arcs import Point, distance_to_point
+from core.geometry.lines_and_arcs import Point, compute_distance_to_point
 from core.interpreter.shared.contour_stage import make_element
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import Setup, ToolOffset
@@ -84,7 +84,7 @@ def _nearest_nose(blocks: list[Block], around: Setup, point: Point) -> float:
     edge = around.tools[1]
     z, x = TIP_DIRECTIONS[edge.quadrant]
     tip = point[0] + x * edge.nose_radius, point[1] + z * edge.nose_radius
-    return min(distance_to_point(make_element(b), tip) for b in blocks) - edge.nose_radius
+    return min(compute_distance_to_point(make_element(b), tip) for b in blocks) - edge.nose_radius
 
 
 @pytest.mark.parametrize(("form", "width"), [("A", 5.2), ("B", 3.8)])

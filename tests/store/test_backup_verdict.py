@@ -16,7 +16,7 @@ from tests.coded import raises_code
 
 
 def judged(folder: Path, path: Path) -> BackupVerdict:
-    with closing(store_connection.connect_store(folder / "turndesk.db", read_only=True)) as now:
+    with closing(store_connection.connect_store(folder / "turndesk.db", is_read_only=True)) as now:
         return check_backup(now, path)
 
 

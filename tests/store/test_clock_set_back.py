@@ -71,4 +71,4 @@ def test_an_older_store_is_numbered_by_its_times(folder: Path, monkeypatch: pyte
                 store.offsets.tool_offsets.undo_last_step().result()
         assert store.offsets.tool_offsets.read_rows() == {}
     assert backup.find_all_problems(folder / STORE_FILE_NAME) == ()
-    assert database.check_file(folder / STORE_FILE_NAME, thorough=True) == len(database.load_migrations())
+    assert database.check_file(folder / STORE_FILE_NAME, is_thorough=True) == len(database.load_migrations())

@@ -16,15 +16,15 @@ from core.store.store import Store
 from core.store.store_errors import StoreError
 from core.store.store_export import export_store
 from core.store.store_rows import OffsetKind, ToolRow
-from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_edge_key
+from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_row_number
 from tests.coded import raises_code
 
 WHY = {"why": "test", "who": "test"}
-T3_D2 = make_edge_key(3, 2)
+T3_D2 = make_row_number(3, 2)
 
 
 def test_the_numbers_of_rows() -> None:
-    assert (make_edge_key(3, 1), T3_D2) == (3, 200_003)
+    assert (make_row_number(3, 1), T3_D2) == (3, 200_003)
     assert (get_tool_number(T3_D2), get_edge_number(T3_D2), format_edge_name(T3_D2)) == (3, 2, "T3 D2")
     assert (get_tool_number(3), get_edge_number(3), format_edge_name(3)) == (3, 1, "T3")
 
@@ -48,8 +48,8 @@ def test_an_edge_is_kept_undone_and_exported(tmp_path: Path) -> None:
     ("number", "values", "code", "value"),
     [
         (T3_D2, {"x": 1.0, "z": 1.0}, "never-set", "T3 D2"),
-        (make_edge_key(33, 2), {"x": 1.0}, "unknown-number", make_edge_key(33, 2)),
-        (make_edge_key(3, 10), {"x": 1.0}, "unknown-number", make_edge_key(3, 10)),
+        (make_row_number(33, 2), {"x": 1.0}, "unknown-number", make_row_number(33, 2)),
+        (make_row_number(3, 10), {"x": 1.0}, "unknown-number", make_row_number(3, 10)),
         (100_003, {"x": 1.0}, "unknown-number", 100_003),
     ],
 )

@@ -208,7 +208,7 @@ def test_what_the_system_says_is_what_is_told(tmp_path: Path) -> None:
         13: StoreErrorCause.FORBIDDEN,
         30: StoreErrorCause.FORBIDDEN,
     }
-    causes |= {5: StoreErrorCause.FAILING, 2: StoreErrorCause.GONE, 40: StoreErrorCause.OTHER}
+    causes |= {5: StoreErrorCause.FAILING, 2: StoreErrorCause.MISSING, 40: StoreErrorCause.OTHER}
     assert {number: find_cause(tmp_path, OSError(number, "x")) for number in causes} == causes
 
 

@@ -65,7 +65,7 @@ def test_what_is_not_stored_for_two_seconds_is_reported(disk: Disk, tmp_path: Pa
     disk.now += SLOW_WRITE_S - 0.1
     assert (journal.trouble, journal.held) == ("", "")
     disk.now += 0.2
-    assert journal.trouble == str(StoreErrorCause.HANGS.make_error(tmp_path / STORE_FILE_NAME, ""))
+    assert journal.trouble == str(StoreErrorCause.NOT_RESPONDING.make_error(tmp_path / STORE_FILE_NAME, ""))
     assert journal.held
     disk.release()
     journal.require_store().events.log_event("start", "behind").result(LONG)

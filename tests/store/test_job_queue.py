@@ -44,7 +44,7 @@ def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> Non
     count(store, "pin.nc", 3)
     count(store, "cap.nc", 9)
     (row,) = store.jobs.read_jobs()
-    assert (row.parts_made, row.parts_left, row.is_done, row.target_part_count, row.note) == (
+    assert (row.parts_made, row.remaining_part_count, row.is_done, row.target_part_count, row.note) == (
         3,
         2,
         False,
@@ -55,7 +55,7 @@ def test_only_parts_of_the_job_under_way_are_counted_for_it(store: Store) -> Non
     assert store.jobs.read_jobs()[0].parts_made == 2
     count(store, "pin.nc", 4)
     (row,) = store.jobs.read_jobs()
-    assert (row.parts_made, row.parts_left, row.is_done) == (6, 0, True)
+    assert (row.parts_made, row.remaining_part_count, row.is_done) == (6, 0, True)
 
 
 def test_another_job_on_the_desk_leaves_what_was_made(store: Store) -> None:
@@ -214,6 +214,6 @@ def test_a_killed_control_has_its_queue_with_its_counts(folder: Path) -> None:
 
 def test_a_row_reckons_by_the_count_from_which_it_began() -> None:
     row = JobRow(1, "pin.nc", 50, parts_made_before=10, base_part_count=100, part_count=117)
-    assert (row.parts_made, row.parts_left, row.target_part_count) == (27, 23, 140)
+    assert (row.parts_made, row.remaining_part_count, row.target_part_count) == (27, 23, 140)
     assert row._replace(base_part_count=None).parts_made == 10
     assert row._replace(part_count=80).parts_made == 0

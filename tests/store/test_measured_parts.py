@@ -218,7 +218,7 @@ def test_an_export_and_a_backup_have_it(store: Store, folder: Path, tmp_path: Pa
 def test_a_reading_without_its_feature_is_found(store: Store, folder: Path) -> None:
     read(store, feature(store), 1, 12.7)
     store.close()
-    with store_connection.connect_store(folder / STORE_FILE_NAME, read_only=False) as connection:
+    with store_connection.connect_store(folder / STORE_FILE_NAME, is_read_only=False) as connection:
         connection.execute("PRAGMA foreign_keys = OFF")
         connection.execute("DELETE FROM part_features")
     assert any("part_readings" in problem for problem in backup.find_problems(folder / STORE_FILE_NAME))

@@ -221,9 +221,9 @@ def test_older_store_is_brought_up_and_kept_beside(closed: Path, monkeypatch: py
         Store.open(closed.parent, read_only=True)
     with Store.open(closed.parent) as store:
         assert store.offsets.tool_offsets.read_rows() == {1: ToolRow(1.0, 0.0, 0.0)}
-    assert database.check_file(closed, thorough=True) == len(newer)
+    assert database.check_file(closed, is_thorough=True) == len(newer)
     kept = closed.with_name(f"turndesk-version-{len(newer) - 1}.db")
-    assert database.check_file(kept, thorough=True) == len(newer) - 1
+    assert database.check_file(kept, is_thorough=True) == len(newer) - 1
 
 
 @contextmanager

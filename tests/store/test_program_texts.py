@@ -69,7 +69,7 @@ def test_a_copy_and_a_renamed_program_retain_them(own: Path, tmp_path: Path) -> 
     made(journal, path, 2, 9.0)
     (own / "copy.nc").write_text(GOOD)
     path.rename(own / "bolt.nc")
-    journal.move_program_data("pin.nc", "bolt.nc")
+    journal.rename_program("pin.nc", "bolt.nc")
     for program in listed(journal, own).values():
         assert (program.run_row.proof, program.run_row.parts, program.run_row.best) == ("PROVED", 2, 9.0)
     assert journal.runs.read_part_count("bolt.nc") == 2

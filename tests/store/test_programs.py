@@ -85,8 +85,8 @@ def test_events_newest_first_and_searched(store: Store) -> None:
     store.events.log_events(rows)
     store.events.log_event("stop", "feed hold").result()
     assert [row.kind for row in store.events.read_events()] == ["stop", "start", "alarm"]
-    assert store.events.read_events(search="FOLLOWING") == (rows[0],)
-    assert store.events.read_events(search="%") == ()  # no pattern, a text
+    assert store.events.read_events(search_text="FOLLOWING") == (rows[0],)
+    assert store.events.read_events(search_text="%") == ()  # no pattern, a text
     assert len(store.events.read_events(limit=1)) == 1
 
 

@@ -337,4 +337,4 @@ def test_a_store_of_before_gets_sums_for_its_histories(kept: Path, monkeypatch: 
     spoil(kept, "UPDATE offset_changes SET old_x = 7 WHERE id = 2")
     spoil(kept, "UPDATE part_counts SET count = 40")
     assert len(backup.find_all_problems(kept / STORE_FILE_NAME)) == 1
-    assert database.check_file(kept / STORE_FILE_NAME, thorough=True) == len(database.load_migrations())
+    assert database.check_file(kept / STORE_FILE_NAME, is_thorough=True) == len(database.load_migrations())

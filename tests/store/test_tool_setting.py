@@ -58,7 +58,7 @@ def test_an_old_store_comes_up_with_everything_in_it(folder: Path) -> None:
         store.offsets.tool_offsets.undo_last_step().result()
         assert store.offsets.tool_offsets.read_rows() == {3: ToolRow(30.0, -12.7, 0.381)}
     kept = folder / "turndesk-version-1.db"
-    assert database.check_file(kept, thorough=True) == 1
+    assert database.check_file(kept, is_thorough=True) == 1
 
 
 def test_every_field_is_kept_with_its_history(store: Store) -> None:

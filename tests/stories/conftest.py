@@ -67,7 +67,7 @@ class Story:
         return operator
 
     def _machine(self, name: str, changes: Mapping[str, str]) -> Path:
-        text = resources.machine_file(name)
+        text = resources.read_machine_file(name)
         for old, new in changes.items():
             assert old in text, old
             text = text.replace(old, new, 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compose.optional_features import extras
-from core.alarms import CATALOGUE, AlarmCode
+from core.alarms import CATALOG, AlarmCode
 from tests.stories.conftest import Story
 from tests.stories.operator import Operator, Told
 from tests.texts import fragment
@@ -25,7 +25,7 @@ PAGES = (
     *(
         (("F1", page.key.lower()), page.name)
         for extra in extras().values()
-        for page in extra.pages
+        for page in extra.page_descriptions
         if page.key
     ),
     (("F1",), "MAIN MENU"),
@@ -51,7 +51,7 @@ def in_status(operator: Operator, number: int) -> Told:
 
 
 def is_told_on_every_page(operator: Operator, code: AlarmCode, exactly: str = "") -> None:
-    entry = CATALOGUE[code]
+    entry = CATALOG[code]
     for keys, page in PAGES:
         if page == "MDI" and operator.state == "FEED HOLD":
             continue  # it does not open while a program is under way
@@ -65,7 +65,7 @@ def is_told_on_every_page(operator: Operator, code: AlarmCode, exactly: str = ""
 def is_in_f7(operator: Operator, *codes: AlarmCode) -> None:
     operator.key("F7")
     for code in codes:
-        entry = CATALOGUE[code]
+        entry = CATALOG[code]
         operator.sees(f"{entry.number}  ·  {entry.text.upper()}")
     operator.key("Escape")
     operator.until(
@@ -80,14 +80,14 @@ def test_a_jammed_slide_is_named_with_cause_and_remedy_on_every_page(story: Stor
     operator.breaks("jam", "Z")
     operator.reaches("ALARM")
     number, text = operator.machine["alarms"][0]
-    found = [code for code, entry in CATALOGUE.items() if entry.number == number]
+    found = [code for code, entry in CATALOG.items() if entry.number == number]
     operator.rests()
     is_told_on_every_page(operator, found[0], "Z")
     is_in_f7(operator, found[0])
     told = in_status(operator, number)
     assert told["text"].startswith(text)
     assert "Z" in told["cause"]
-    assert told["remedy"] == CATALOGUE[found[0]].remedy
+    assert told["remedy"] == CATALOG[found[0]].remedy
     operator.until(lambda: any(each.startswith(str(number)) for each in operator.events("alarm")), "the log")
 
 
@@ -104,7 +104,7 @@ def test_an_estop_is_in_f7_with_its_reason_also_after_the_computer_was_off(story
     again = story.begins(LONG)
     again.key("F7")
     again.sees("701  ·  E-STOP")
-    again.sees(CATALOGUE["estop"].remedy)
+    again.sees(CATALOG["estop"].remedy)
     assert not again.shows("No alarm")
 
 
@@ -113,7 +113,7 @@ def is_told_on_every_page_as_estop(operator: Operator) -> None:
         operator.keys(*keys)
         operator.opens(page)
         operator.sees(fragment("screen.e-stop-make-safe"))
-        operator.sees(CATALOGUE["estop"].causes[0])
+        operator.sees(CATALOG["estop"].causes[0])
 
 
 def test_every_stop_is_in_f7_with_who_or_what_stopped(story: Story) -> None:
@@ -166,7 +166,7 @@ def test_a_silent_station_is_a_hold_with_its_cause_and_goes_on(story: Story) -> 
     operator.reaches("FEED HOLD")
     operator.rests()
     is_told_on_every_page(operator, "station-silent")
-    assert in_status(operator, 601)["cause"] == CATALOGUE["station-silent"].causes[0]
+    assert in_status(operator, 601)["cause"] == CATALOG["station-silent"].causes[0]
     operator.breaks("station_silent", False)
     operator.keys("F1", "F2")
     operator.during(0.5)

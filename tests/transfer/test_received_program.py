@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.programs.atomic_files import FileOperationError
-from app.transfer.line_transfer import ReceivedProgram, find_unused_name, store_received
+from app.transfer.line_transfer import ReceivedProgram, find_unused_name, store_received_program
 from tests.texts import pattern
 
 
@@ -16,21 +16,21 @@ def received(name: str = "O77.nc") -> ReceivedProgram:
 
 
 def test_a_new_file_with_its_ending(tmp_path: Path) -> None:
-    path = store_received(received(), tmp_path / "programs", "O77")
+    path = store_received_program(received(), tmp_path / "programs", "O77")
     assert path == tmp_path / "programs" / "O77.nc"
     assert path.read_bytes() == b"M30\n"
     assert [each.name for each in path.parent.iterdir()] == ["O77.nc"]
 
 
 def test_a_klartext_program_that_is_given_another_name_stays_one(tmp_path: Path) -> None:
-    assert store_received(received("PLATE.h"), tmp_path, "ROOF").name == "ROOF.h"
+    assert store_received_program(received("PLATE.h"), tmp_path, "ROOF").name == "ROOF.h"
 
 
 @pytest.mark.parametrize("name", ["O77", "O77.nc", "o77.NC"])
 def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
     (tmp_path / "O77.nc").write_bytes(b"OLD\n")
     with pytest.raises(FileOperationError, match=pattern("files.name-taken", file="O77.nc")):
-        store_received(received(), tmp_path, name)
+        store_received_program(received(), tmp_path, name)
     assert (tmp_path / "O77.nc").read_bytes() == b"OLD\n"
     assert len(list(tmp_path.iterdir())) == 1
 
@@ -38,14 +38,14 @@ def test_what_is_there_stays(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize("name", ["", "  ", "../O77", "a/b", ".hidden"])
 def test_names_that_are_none(tmp_path: Path, name: str) -> None:
     with pytest.raises(FileOperationError):
-        store_received(received(), tmp_path, name)
+        store_received_program(received(), tmp_path, name)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_disk_that_takes_nothing_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(FileOperationError, match=pattern("files.not-written", path=tmp_path / "file")):
-        store_received(received(), tmp_path / "file", "O77")
+        store_received_program(received(), tmp_path / "file", "O77")
 
 
 def test_a_name_that_is_free_is_offered(tmp_path: Path) -> None:

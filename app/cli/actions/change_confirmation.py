@@ -20,7 +20,7 @@ from app.offsets.change_rules import (
     describe_suspicions,
     find_followers,
     find_table_suspicions,
-    find_travel,
+    find_travel_limits,
 )
 from core.message import Message
 from core.store.store_rows import FIELDS_BY_KIND, MM_PER_INCH, FieldType, FieldValue, OffsetKind
@@ -69,7 +69,9 @@ def _machine_travel(store: Store, args: argparse.Namespace) -> TravelLimits:
     """Return the travel of the command's machine in mm. Raises CommandError if its file is invalid."""
     from app.compose.machine.machine_setup import load_machine_in_use, read_machine
 
-    return find_travel(read_machine(args.machine) if args.machine else load_machine_in_use(store.settings))
+    return find_travel_limits(
+        read_machine(args.machine) if args.machine else load_machine_in_use(store.settings)
+    )
 
 
 def _describe_suspicions(suspicions: Mapping[OffsetKind, tuple[Suspicion, ...]], tools: Iterable[int]) -> str:
@@ -87,7 +89,7 @@ def _describe_suspicions(suspicions: Mapping[OffsetKind, tuple[Suspicion, ...]],
 
 def _reason(tools: Iterable[int], each: Suspicion) -> str:
     if each.kind is SuspicionKind.NEW_MASTER:
-        return f"followers: {', '.join(map(format_edge_name, find_followers(tools, each.number)))}"
+        return f"followers: {', '.join(map(format_edge_name, find_followers(tools, each.row_number)))}"
     words = {
         SuspicionKind.OUTSIDE_TRAVEL: "the value is outside the axis travel",
         SuspicionKind.WRONG_SIDE: "the tool would cut on the other side of the part",
@@ -99,10 +101,10 @@ def _reason(tools: Iterable[int], each: Suspicion) -> str:
 def _format_change(kind: OffsetKind, suspicion: Suspicion) -> str:
     """Return a change as text, such as ``T1 x +1.20000 → -15.00000 in``."""
     letter = {
-        OffsetKind.TOOL: format_edge_name(suspicion.number),
-        OffsetKind.SECONDARY: f"D{suspicion.number}",
+        OffsetKind.TOOL: format_edge_name(suspicion.row_number),
+        OffsetKind.SECONDARY: f"D{suspicion.row_number}",
     }
-    name = letter.get(kind, f"TOOL{suspicion.number}")
+    name = letter.get(kind, f"TOOL{suspicion.row_number}")
     field = FIELDS_BY_KIND[kind][suspicion.name]
     old = "not set" if suspicion.old_value is None else _shown(field.field_type, suspicion.old_value)
     unit = {FieldType.LENGTH: " in", FieldType.METRIC_LENGTH: " mm"}.get(field.field_type, "")

@@ -81,18 +81,18 @@ def install_entries(*, autostart: bool) -> list[Path]:
     try:
         for path in (entry, icon, types, *((start,) if autostart else ())):
             path.parent.mkdir(parents=True, exist_ok=True)
-        entry.write_text(entry_text(f"{_command()} %f"), encoding="utf-8")
+        entry.write_text(format_entry(f"{_command()} %f"), encoding="utf-8")
         shutil.copyfile(str(shipped / f"{ENTRY_NAME}.svg"), icon)
         shutil.copyfile(str(shipped / f"{ENTRY_NAME}.xml"), types)
         if autostart:
-            start.write_text(entry_text(f"{_command()} --kiosk"), encoding="utf-8")
+            start.write_text(format_entry(f"{_command()} --kiosk"), encoding="utf-8")
     except OSError as error:
         raise make_write_error(error.filename, error) from error
     _update_databases(entry.parent, types.parent.parent)
     return [entry, icon, types, *([start] if autostart else [])]
 
 
-def entry_text(command: str) -> str:
+def format_entry(command: str) -> str:
     """Return the text of a desktop entry that runs ``command``."""
     return _ENTRY.format(command=command)
 

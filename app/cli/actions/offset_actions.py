@@ -42,7 +42,7 @@ from core.store.store_rows import (
     convert_to_inches,
     replace_fields,
 )
-from core.tool_edges import format_edge_name, make_edge_key
+from core.tool_edges import format_edge_name, make_row_number
 
 if TYPE_CHECKING:
     from core.store.store import Store
@@ -236,7 +236,7 @@ def _named(text: str) -> tuple[OffsetKind, int]:
         return _MILL_KIND[of_mill[1].upper()], int(of_mill[2])  # the store reports invalid numbers
     edge = _EDGE.fullmatch(text)
     if edge and int(edge[1]) in OFFSET_NUMBERS:
-        return OffsetKind.TOOL, make_edge_key(int(edge[1]), int(edge[2]))
+        return OffsetKind.TOOL, make_row_number(int(edge[1]), int(edge[2]))
     match = _OFFSET.fullmatch(text)
     kind = _KIND[match[1].upper()] if match else OffsetKind.TOOL
     if match and int(match[2]) in (ZERO_CODES if kind is OffsetKind.ZERO else OFFSET_NUMBERS):

@@ -18,19 +18,19 @@ from typing import NamedTuple
 import resources
 from app import VERSION
 from app.cli.bug_report.private_texts import (
-    event_line,
-    machine_without_names,
-    program_without_comments,
-    text_of_event,
+    format_without_names,
+    mask_machine_file,
+    mask_program_texts,
+    remove_record_name,
 )
-from app.cli.bug_report.replaced_names import Replacements
-from app.compose.machine.machine_setup import machine_file_in_use
+from app.cli.bug_report.replaced_names import PrivateValueReplacer
+from app.compose.machine.machine_setup import read_machine_file_in_use
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import find_data_folder
 from core.message import CodedError, Message
 from core.store.store import Store
 
-LINES = 40  # newest lines of each log
+MAX_LOG_LINES = 40  # newest lines of each log
 _MOST_BYTES = 200_000  # of a program, a machine file or a crash file
 _PACKAGES = ("PySide6-Essentials", "numpy", "pyqtgraph", "pyserial", "canopen", "python-can", "psycopg")
 _DISPLAY = ("XDG_SESSION_TYPE", "QT_QPA_PLATFORM", "LANG")
@@ -38,7 +38,7 @@ _WITH_NAMES = ("who", "program", "person")
 """Columns of the store that contain names of users and programs, in any table."""
 
 
-class Part(NamedTuple):
+class ReportPart(NamedTuple):
     """One titled part of the bug report."""
 
     title: str
@@ -56,7 +56,7 @@ class _Stored(NamedTuple):
     damage: str = ""
 
 
-def bug_report(machine_file: str | None = None, program: Path | None = None) -> str:
+def generate_bug_report(machine_file: str | None = None, program: Path | None = None) -> str:
     """Return the text of the bug report. Raises CommandError if a named file cannot be read.
 
     Without ``machine_file``, the report contains the machine file in use. Without ``program``, it contains
@@ -66,15 +66,15 @@ def bug_report(machine_file: str | None = None, program: Path | None = None) -> 
     programs = {*stored.programs, *_names_in(find_data_folder() / "programs")} | (
         {program.name} if program else set()
     )
-    replacements = Replacements(
+    replacements = PrivateValueReplacer(
         people={*stored.people, *_users()},
         programs={*programs, *_names_of_runs()},
         computers={socket.gethostname(), platform.node()},
         public=_shipped_names(),
     )
     parts = [
-        Part("TurnDesk", f"turndesk {VERSION}\n{_system()}"),
-        Part("Store", stored.damage or "can be read"),
+        ReportPart("TurnDesk", f"turndesk {VERSION}\n{_system()}"),
+        ReportPart("Store", stored.damage or "can be read"),
         *_machine_part(machine_file or stored.machine_file, replacements, named=machine_file is not None),
         *_program_part(program, stored.latest),
         *_log_parts(stored.events),
@@ -118,14 +118,16 @@ def _stored() -> _Stored:
             runs = sorted(
                 (row for row in store.runs.read_records() if row.started), key=lambda row: row.started or ""
             )
-            events = store.events.read_events(limit=LINES)
-            machine = machine_file_in_use(store.settings)
+            events = store.events.read_events(limit=MAX_LOG_LINES)
+            machine = read_machine_file_in_use(store.settings)
             return _Stored(
                 frozenset(people),
                 frozenset(programs),
                 machine,
                 _latest(store, runs[-1].program) if runs else None,
-                tuple(f"{row.at} {row.kind} line {row.line}: {text_of_event(row.text)}" for row in events),
+                tuple(
+                    f"{row.at} {row.kind} line {row.line}: {format_without_names(row.text)}" for row in events
+                ),
             )
     except CodedError as error:
         return _Stored(damage=f"cannot be read: {error.code}")
@@ -194,39 +196,41 @@ def _shipped_strings() -> frozenset[str]:
     return frozenset(found)
 
 
-def _machine_part(place: str | None, replacements: Replacements, *, named: bool) -> Iterator[Part]:
+def _machine_part(
+    place: str | None, replacements: PrivateValueReplacer, *, named: bool
+) -> Iterator[ReportPart]:
     """Yield the report part with the machine file.
 
     Raises CommandError if the user named a file that cannot be read.
     """
     if place is None:
-        yield Part("Machine file", "the shipped simulated lathe")
-    elif not Path(place).exists() and place.removesuffix(".toml") in resources.machine_names():
-        yield Part("Machine file", f"shipped: {place}")
+        yield ReportPart("Machine file", "the shipped simulated lathe")
+    elif not Path(place).exists() and place.removesuffix(".toml") in resources.list_machine_names():
+        yield ReportPart("Machine file", f"shipped: {place}")
     else:
         text = _read(Path(place), must_exist=named)
-        yield Part("Machine file", machine_without_names(text, _shipped_strings(), replacements))
+        yield ReportPart("Machine file", mask_machine_file(text, _shipped_strings(), replacements))
 
 
-def _program_part(path: Path | None, latest: tuple[str, str] | None) -> Iterator[Part]:
+def _program_part(path: Path | None, latest: tuple[str, str] | None) -> Iterator[ReportPart]:
     if path is not None:
-        yield Part(f"Program {path.suffix}", program_without_comments(_read(path, must_exist=True)))
+        yield ReportPart(f"Program {path.suffix}", mask_program_texts(_read(path, must_exist=True)))
     elif latest is not None:
-        yield Part(
-            f"Program that was started last {Path(latest[0]).suffix}", program_without_comments(latest[1])
+        yield ReportPart(
+            f"Program that was started last {Path(latest[0]).suffix}", mask_program_texts(latest[1])
         )
 
 
-def _log_parts(events: tuple[str, ...]) -> Iterator[Part]:
+def _log_parts(events: tuple[str, ...]) -> Iterator[ReportPart]:
     folder = find_data_folder() / "logs"
     if crash := _newest(folder, "crash-*.txt"):
-        yield Part("Newest crash file", _read(crash, must_exist=False))
+        yield ReportPart("Newest crash file", _read(crash, must_exist=False))
     if (log := folder / "turndesk.log").is_file():
-        yield Part("Log of faults", _last_lines(log, str))
+        yield ReportPart("Log of faults", _last_lines(log, str))
     if run := _newest(folder, "*.jsonl"):
-        yield Part("Newest run without a screen", _last_lines(run, event_line))
+        yield ReportPart("Newest run without a screen", _last_lines(run, remove_record_name))
     if events:
-        yield Part("Newest events", "\n".join(events))
+        yield ReportPart("Newest events", "\n".join(events))
 
 
 def _newest(folder: Path, pattern: str) -> Path | None:
@@ -236,7 +240,7 @@ def _newest(folder: Path, pattern: str) -> Path | None:
 
 
 def _last_lines(path: Path, change: Callable[[str], str]) -> str:
-    return "\n".join(change(line) for line in _read(path, must_exist=False).splitlines()[-LINES:])
+    return "\n".join(change(line) for line in _read(path, must_exist=False).splitlines()[-MAX_LOG_LINES:])
 
 
 def _read(path: Path, *, must_exist: bool) -> str:

@@ -23,29 +23,33 @@ _dropped: list[type[BaseException]] = []
 _NAMES = 100  # file names tried, the largest number of crashes in one second
 
 
-def report_crash(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+def report_crash(
+    error_type: type[BaseException], error: BaseException, error_traceback: TracebackType | None
+) -> None:
     """Print one line about an uncaught exception, and write its traceback to a crash file.
 
     The function is installed as ``sys.excepthook``.
     """
-    where = write_crash_file(kind, error, trace)
-    what = str(error).splitlines()[0] if str(error) else kind.__name__
+    where = write_crash_file(error_type, error, error_traceback)
+    what = str(error).splitlines()[0] if str(error) else error_type.__name__
     sys.stderr.write(f"turndesk: a fault in TurnDesk itself ({what}); please report it with {where}\n")
 
 
-def report_thread(thread_error: threading.ExceptHookArgs) -> None:
+def report_thread_exception(thread_error: threading.ExceptHookArgs) -> None:
     """Report an exception that ended a thread, while the other threads continue."""
     if thread_error.exc_value is not None and not isinstance(thread_error.exc_value, SystemExit):
         report_crash(thread_error.exc_type, thread_error.exc_value, thread_error.exc_traceback)
 
 
-def write_crash_file(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> str:
+def write_crash_file(
+    error_type: type[BaseException], error: BaseException, error_traceback: TracebackType | None
+) -> str:
     """Write a crash file to the log folder, or to the system's temporary folder, and return its path."""
     import tempfile
     import traceback
     from pathlib import Path
 
-    text = "".join(traceback.format_exception(kind, error, trace))
+    text = "".join(traceback.format_exception(error_type, error, error_traceback))
     head = (
         f"{time.strftime('%Y-%m-%d %H:%M:%S%z')}  {' '.join(sys.argv)}  {threading.current_thread().name}\n"
     )

@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Callable, Collection, Iterator
 
-from app.cli.bug_report.replaced_names import Replacements
+from app.cli.bug_report.replaced_names import PrivateValueReplacer
 from core.message import Message
 
 _COMMENTS = re.compile(
@@ -23,7 +23,7 @@ _NETWORK = ("sharing", "announce", "status_page", "mtconnect", "office", "http",
 """Tables of the machine file in which every string may name a computer, a person or a folder."""
 
 
-def program_without_comments(text: str) -> str:
+def mask_program_texts(text: str) -> str:
     """Return a program with ``x`` for each letter of its comments, strings and names.
 
     The length and position of each text do not change.
@@ -36,10 +36,10 @@ def program_without_comments(text: str) -> str:
     return _COMMENTS.sub(hidden, text)
 
 
-def machine_without_names(text: str, known: Collection[str], replacements: Replacements) -> str:
+def mask_machine_file(text: str, public_strings: Collection[str], replacer: PrivateValueReplacer) -> str:
     """Return the text of a machine file without comments and private strings.
 
-    A string is retained if it is in ``known``, the strings of the shipped machine files. Outside the
+    A string is retained if it is in ``public_strings``, the strings of the shipped machine files. Outside the
     network tables, a string with the form of a terminal name is also retained. The text does not need to be
     valid TOML.
     """
@@ -51,9 +51,9 @@ def machine_without_names(text: str, known: Collection[str], replacements: Repla
 
         def replaced(match: re.Match[str], is_network: bool = is_network) -> str:
             value = match[0][1:-1]
-            if value in known or (not is_network and _TERMINAL.fullmatch(value)):
+            if value in public_strings or (not is_network and _TERMINAL.fullmatch(value)):
                 return match[0]
-            return f'"{replacements.placeholder("TEXT", value)}"'
+            return f'"{replacer.get_placeholder("TEXT", value)}"'
 
         lines.append("".join(_parts(line, replaced)))
     return "\n".join(lines)
@@ -77,17 +77,17 @@ def _parts(line: str, replaced: Callable[[re.Match[str]], str]) -> Iterator[str]
         end = string.end()
 
 
-def event_line(line: str) -> str:
+def remove_record_name(log_line: str) -> str:
     """Return a line of a run's event log without the name of the run's scope recording."""
     try:
-        event = json.loads(line)
+        event = json.loads(log_line)
         event.pop("record", None)
     except (ValueError, AttributeError, TypeError):
-        return line
+        return log_line
     return json.dumps(event, ensure_ascii=False)
 
 
-def text_of_event(text: str) -> str:
+def format_without_names(text: str) -> str:
     """Return a message as its template and numeric values, without names.
 
     A plain text is returned unchanged.

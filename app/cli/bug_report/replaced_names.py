@@ -34,7 +34,7 @@ _FILE = re.compile(rf"(?<![\w./\\-])[\w.()+-]*\w\.(?:{_SUFFIXES.replace(' ', '|'
 _SHORTEST = 2  # characters of a name that is replaced wherever it occurs
 
 
-class Replacements:
+class PrivateValueReplacer:
     """Replacements for the private values in one report.
 
     ``people`` are names of users, ``programs`` are names of program files, and ``computers`` are names of
@@ -66,9 +66,9 @@ class Replacements:
         name = name.strip()
         if len(name) >= _SHORTEST and any(each.isalpha() for each in name):
             stem = name.removesuffix(suffix) if suffix else name
-            self._known.setdefault(name.casefold(), (self.placeholder(kind, stem), suffix))
+            self._known.setdefault(name.casefold(), (self.get_placeholder(kind, stem), suffix))
 
-    def placeholder(self, kind: str, value: str) -> str:
+    def get_placeholder(self, kind: str, value: str) -> str:
         """Return the replacement of a value. Values that differ only in case have the same replacement."""
         key = f"{kind}:{value.casefold()}"
         if key not in self._given:
@@ -89,7 +89,7 @@ class Replacements:
         return _FILE.sub(lambda found: self._file(found[0]), text)
 
     def _as(self, kind: str) -> Callable[[re.Match[str]], str]:
-        return lambda found: self.placeholder(kind, found[0])
+        return lambda found: self.get_placeholder(kind, found[0])
 
     def _without_known(self, text: str) -> str:
         names = sorted(self._known, key=len, reverse=True)
@@ -111,10 +111,10 @@ class Replacements:
         if name.casefold() in self._public:
             return f"…/{name}"
         suffix = PurePath(name).suffix if _FILE.fullmatch(name) else ""
-        return self.placeholder("PATH", path) + suffix
+        return self.get_placeholder("PATH", path) + suffix
 
     def _file(self, name: str) -> str:
         if name.casefold() in self._public or re.match(r"[A-Z]+-\d+\.", name):
             return name
         suffix = PurePath(name).suffix
-        return self.placeholder("FILE", name.removesuffix(suffix)) + suffix
+        return self.get_placeholder("FILE", name.removesuffix(suffix)) + suffix

@@ -29,19 +29,21 @@ def make_comparison_json(
     """
     from core.proving.offset_comparison import ProvedPart, prove_other_offsets
 
-    assert job.other_offsets is not None
-    this = ProvedPart(job.setup, job.part_setting, report, part)
+    assert job.comparison_offsets is not None
+    this = ProvedPart(job.setup, job.part_settings, report, part)
     found = prove_other_offsets(
-        source, this, job.other_offsets.setup, job.machine, ideal=job.uses_ideal_times
+        source, this, job.comparison_offsets.setup, job.machine, is_ideal=job.uses_ideal_times
     )
     there, length, volume = (
         found.report,
         get_length_converter(report.dialect),
         get_volume_converter(report.dialect),
     )
-    furthest = max((abs(p.difference) for p in found.feature_pairs if p.difference is not None), default=0.0)
+    furthest = max(
+        (abs(p.difference_mm) for p in found.feature_pairs if p.difference_mm is not None), default=0.0
+    )
     return {
-        "offsets": job.other_offsets.name,
+        "offsets": job.comparison_offsets.name,
         "features": [_pair_json(pair, report.dialect) for pair in found.feature_pairs],
         "differing": found.differing_feature_count,
         "largest": length(furthest),
@@ -58,10 +60,10 @@ def _pair_json(pair: Pair, dialect: Dialect) -> Json:
     length = get_length_converter(dialect)
     one = pair.this_feature or pair.other_feature
     assert one is not None
-    difference = pair.difference
+    difference = pair.difference_mm
     return {
         "kind": str(one.kind),
-        "reach": [_round_value(length(each)) for each in one.extent],
+        "reach": [_round_value(length(each)) for each in one.extent_mm],
         "here": None if pair.this_feature is None else _round_value(length(pair.this_feature.at)),
         "there": None if pair.other_feature is None else _round_value(length(pair.other_feature.at)),
         "difference": None if difference is None else _round_value(length(difference)),
@@ -76,10 +78,10 @@ def _round_value(value: float) -> float:
 # --- Text output
 
 
-def format_comparison(comparison: Json, *, metric: bool, dialect: Dialect) -> str:
+def format_comparison(comparison: Json, *, is_metric: bool, dialect: Dialect) -> str:
     """Return the comparison as text for the proof, in the unit that the program uses."""
-    scale = MM_PER_INCH if metric and dialect is Dialect.OMNITURN else 1.0
-    unit = "mm" if metric or dialect is not Dialect.OMNITURN else "in"
+    scale = MM_PER_INCH if is_metric and dialect is Dialect.OMNITURN else 1.0
+    unit = "mm" if is_metric or dialect is not Dialect.OMNITURN else "in"
     pairs = comparison["features"]
     cycle, gone, added = comparison["cycle_time_s"], comparison["gone"], comparison["added"]
     assert isinstance(pairs, list)

@@ -73,9 +73,9 @@ def to_inches_per_minute(mm_s: float) -> float:
     return round(mm_s * 60 / MM_PER_INCH, 6)
 
 
-def round_seconds(t: float) -> float:
+def round_seconds(seconds: float) -> float:
     """Return a time in seconds, rounded to the microsecond."""
-    return round(t, 6)
+    return round(seconds, 6)
 
 
 def round_degrees(angle: float) -> float:

@@ -336,7 +336,7 @@ measure | list | | Values that must be measured on the machine, as sentences.
 """
     ),
 )
-WHERE = JsonOutput(
+WHERE_OUTPUT = JsonOutput(
     "where --json",
     "One object. A place may not exist yet.",
     declare_keys(
@@ -429,7 +429,14 @@ _OWN_OUTPUTS = (
         MACHINE_CHECK_OUTPUT,
         MACHINE_HAL_OUTPUT,
     ),
-    *(ALARMS_OUTPUT, WHERE, OFFSETS_SHOW_OUTPUT, OFFSETS_HISTORY_OUTPUT, STORE_VERIFY_OUTPUT, SCOPE_OUTPUT),
+    *(
+        ALARMS_OUTPUT,
+        WHERE_OUTPUT,
+        OFFSETS_SHOW_OUTPUT,
+        OFFSETS_HISTORY_OUTPUT,
+        STORE_VERIFY_OUTPUT,
+        SCOPE_OUTPUT,
+    ),
 )
 ALL_OUTPUTS = tuple(
     insert_after(

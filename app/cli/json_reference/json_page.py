@@ -129,9 +129,9 @@ def _wrapped(text: str) -> list[str]:
     return textwrap.wrap(text, 100, break_long_words=False, break_on_hyphens=False)
 
 
-def main(argv: list[str]) -> int:
+def main(arguments: list[str]) -> int:
     """Write the reference page to the file named in the arguments."""
-    Path(argv[0]).write_text(generate_page(), encoding="utf-8")
+    Path(arguments[0]).write_text(generate_page(), encoding="utf-8")
     return 0
 
 

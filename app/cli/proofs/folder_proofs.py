@@ -18,7 +18,7 @@ from app.cli.part_options import apply_stored_part
 from app.cli.program_options import read_source
 from app.cli.proofs.progress_bar import ProgressBar
 from app.cli.proofs.proof_cache import ProofCache
-from app.cli.proofs.proof_job import FittingJobs, ProofJob, describe_machine_choice
+from app.cli.proofs.proof_job import JobsByMachine, ProofJob, describe_machine_choice
 from app.cli.proofs.proof_pool import (
     WORKER_KILLED_TEXT,
     LocalWorkers,
@@ -30,7 +30,7 @@ from app.cli.proofs.proof_work import (
     Proof,
     VersionMismatchError,
     get_code_hash,
-    prove_packed,
+    prove_pickled,
 )
 from app.cli.proofs.report_file import ReportFile, open_report
 from app.compose.optional_features import find_worker_class
@@ -121,12 +121,12 @@ def _is_program(path: Path) -> bool:
     return path.suffix.lower() in PROGRAM_EXTENSIONS and not path.name.startswith(".") and path.is_file()
 
 
-def prove_programs(args: argparse.Namespace, fitting_jobs: FittingJobs) -> int:
+def prove_programs(args: argparse.Namespace, jobs: JobsByMachine) -> int:
     """Prove all programs. Return 1 if a program has errors, or 2 if a program cannot be read."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     files = find_programs(args.files)
     with open_report(args) as report:
-        run = _Run(args, fitting_jobs, files, _workers(args), report)
+        run = _Run(args, jobs, files, _workers(args), report)
         run.prove()
     return run.print_outcome()
 
@@ -154,7 +154,7 @@ class _Run:
     """One call of the command, with the programs to prove and the results reported so far."""
 
     def __init__(
-        self, args: argparse.Namespace, jobs: FittingJobs, files: ProgramFiles, workers: WorkerSource,
+        self, args: argparse.Namespace, jobs: JobsByMachine, files: ProgramFiles, workers: WorkerSource,
         report: ReportFile | None,
     ) -> None:  # fmt: skip
         from app.desk.data_folder import find_data_folder
@@ -204,7 +204,7 @@ class _Run:
         return max(_status(proof) for _, proof in rows)
 
     def _submit(self, executor: Executor, unit: _Unit) -> Future[Proof]:
-        return executor.submit(prove_packed, unit.job.pickled_job, self._version, unit.source)
+        return executor.submit(prove_pickled, unit.job.pickled_job, self._version, unit.source)
 
     def _iterate_units(self) -> Iterator[_Unit]:
         """Yield each program that has no saved proof, when a worker becomes available."""
@@ -212,14 +212,14 @@ class _Run:
             try:
                 source = read_source(path, self._args)
                 machine = self._jobs.select_machine_name(source)
-                common = self._jobs.get_job_for(machine)
+                common = self._jobs.get_job(machine)
                 job = self._create_job(source, common)
             except CommandError as error:
                 self._add(index, Proof({}, failure_reason=str(error)))
                 continue
             cache, own = (
                 self._get_cache(machine, common),
-                _program_data(job.part_setting) if job is not common else None,
+                _program_data(job.part_settings) if job is not common else None,
             )
             key = cache.get_key(source, own) if cache is not None else ""
             found = cache.find_proof(key) if cache is not None else None
@@ -242,7 +242,7 @@ class _Run:
         if kept is None:
             return common
         return replace(
-            common, part_setting=apply_stored_part(common.part_setting, source.name, kept, self._args)
+            common, part_settings=apply_stored_part(common.part_settings, source.name, kept, self._args)
         )
 
     def _kept(self, unit: _Unit, made: Proof | BaseException) -> Proof:

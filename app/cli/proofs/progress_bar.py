@@ -36,20 +36,20 @@ class ProgressBar:
             sys.stderr.write("\r\x1b[K")
             sys.stderr.flush()
 
-    def report_progress(self, done: float) -> None:
+    def report_progress(self, done_amount: float) -> None:
         """Report the progress. The call takes little time unless the bar must be drawn."""
         if not self._terminal or time.monotonic() < self._next:
             return
         self._next = time.monotonic() + REDRAW_INTERVAL_S
         self._drawn = True
-        sys.stderr.write("\r\x1b[K" + self.format_bar(done))
+        sys.stderr.write("\r\x1b[K" + self.format_bar(done_amount))
         sys.stderr.flush()
 
-    def format_bar(self, done: float) -> str:
-        """Return the text of the bar for the progress ``done``."""
-        if not 0 < done <= self.total:
-            return f"{self.description}: {done:,.0f}"
-        share = done / self.total
+    def format_bar(self, done_amount: float) -> str:
+        """Return the text of the bar for the progress ``done_amount``."""
+        if not 0 < done_amount <= self.total:
+            return f"{self.description}: {done_amount:,.0f}"
+        share = done_amount / self.total
         filled = round(share * BAR_WIDTH)
         bar = f"{'█' * filled}{'·' * (BAR_WIDTH - filled)}"
         return Message(

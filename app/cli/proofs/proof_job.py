@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class OtherOffsets:
+class ComparisonOffsets:
     """Offsets for a comparison, given as the name of their file and the setup that uses them."""
 
     name: str
@@ -32,11 +32,11 @@ class ProofJob:
 
     machine: Machine
     setup: Setup
-    part_setting: PartSettings
+    part_settings: PartSettings
     uses_ideal_times: bool = False
-    optional_stop: bool = False
+    has_optional_stop: bool = False
     needs_report_section: bool = False  # whether a section for a report is required
-    other_offsets: OtherOffsets | None = None
+    comparison_offsets: ComparisonOffsets | None = None
 
     @cached_property
     def pickled_job(self) -> bytes:
@@ -47,14 +47,14 @@ class ProofJob:
 
 
 @dataclass(slots=True)
-class FittingJobs:
+class JobsByMachine:
     """Proof jobs by machine.
 
     There is one job for the machine of the options, and one for each shipped machine that a program needs.
     ``create_job`` creates a job.
     """
 
-    args: argparse.Namespace
+    arguments: argparse.Namespace
     create_job: Callable[[argparse.Namespace], ProofJob]
     # by machine; the empty name means the machine of the options
     _made: dict[str, ProofJob] = field(default_factory=dict)
@@ -64,16 +64,16 @@ class FittingJobs:
 
         An empty text means the machine of the options.
         """
-        if self.args.machine is not None:
+        if self.arguments.machine is not None:
             return ""
         from app.compose.machine.machine_selection import select_machine
 
         return select_machine(source)
 
-    def get_job_for(self, machine: str) -> ProofJob:
+    def get_job(self, machine: str) -> ProofJob:
         """Return the job for this machine. Raises CommandError if the machine or an option is invalid."""
         if machine not in self._made:
-            args = self.args
+            args = self.arguments
             if machine:
                 args = argparse.Namespace(**{**vars(args), "machine": machine})
             self._made[machine] = self.create_job(args)

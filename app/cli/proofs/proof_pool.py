@@ -61,10 +61,10 @@ class LocalWorkers:
     Units must be module-level functions, and their arguments must be picklable.
     """
 
-    def __init__(self, jobs: int) -> None:
-        self.worker_count = jobs
+    def __init__(self, worker_count: int) -> None:
+        self.worker_count = worker_count
         self.killed_exception: type[BaseException] = BrokenExecutor
-        self.max_units_in_progress = jobs + _EXTRA_UNITS
+        self.max_units_in_progress = worker_count + _EXTRA_UNITS
         self._before = set(multiprocessing.active_children())
         method = "forkserver" if sys.platform == "linux" else "spawn"
         self._context = multiprocessing.get_context(method)

@@ -50,7 +50,7 @@ class VersionMismatchError(Exception):
     """Error for a worker that has a different version of TurnDesk, whose proofs would differ."""
 
 
-def prove_packed(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
+def prove_pickled(pickled_job: bytes, version: str, source: ProgramSource) -> Proof:
     """Prove one program in a worker. Raises VersionMismatchError if the versions differ.
 
     An empty ``version`` disables the check.
@@ -67,7 +67,7 @@ def prove_program(job: ProofJob, source: ProgramSource) -> Proof:
     from app.cli.figures.proof_output import make_report_json
 
     found = prove_with_findings(job, source)
-    json = make_report_json(source.name, found.report, found.part, optional_stop=job.optional_stop)
+    json = make_report_json(source.name, found.report, found.part, optional_stop=job.has_optional_stop)
     return Proof(
         json if found.comparison is None else {**json, "compare": found.comparison}, found.report_section
     )
@@ -83,31 +83,33 @@ class ProofFindings(NamedTuple):
 
 
 def prove_with_findings(
-    job: ProofJob, source: ProgramSource, progress: Callable[[float], None] | None = None
+    job: ProofJob, source: ProgramSource, report_progress: Callable[[float], None] | None = None
 ) -> ProofFindings:
     """Prove one program, and add the comparison and the report section if the job requires them."""
     from core.proving.part_proof import prove_with_part, require_tool_offsets
 
     record = _run_record(job)
     see = record.add_span if record is not None else None
-    around = (job.setup, job.machine, job.part_setting)
-    report, part = prove_with_part(source, *around, progress, ideal=job.uses_ideal_times, on_span=see)
+    around = (job.setup, job.machine, job.part_settings)
+    report, part = prove_with_part(
+        source, *around, report_progress, is_ideal=job.uses_ideal_times, on_span=see
+    )
     report = require_tool_offsets(report, job.setup)
     compare: Json | None = None
-    if job.other_offsets is not None:
+    if job.comparison_offsets is not None:
         from app.cli.figures.comparison_output import make_comparison_json
 
         compare = make_comparison_json(job, source, report, part)
     if record is None:
         return ProofFindings(report, part, "", compare)
-    from app.report.report_page import ProgramReport, make_comparison
+    from app.report.report_page import ProgramReport, make_offset_comparison
 
     section = ProgramReport(source, report, part, record, job.machine, job.setup).make_html()
     if compare is not None:
         from app.cli.figures.comparison_output import format_comparison
 
-        section += make_comparison(
-            format_comparison(compare, metric=report.is_metric, dialect=report.dialect)
+        section += make_offset_comparison(
+            format_comparison(compare, is_metric=report.is_metric, dialect=report.dialect)
         )
     return ProofFindings(report, part, section, compare)
 
@@ -118,7 +120,7 @@ def _run_record(job: ProofJob) -> RunRecorder | None:
         return None
     from app.report.run_record import RunRecorder
 
-    return RunRecorder(job.part_setting)
+    return RunRecorder(job.part_settings)
 
 
 @lru_cache(maxsize=4)

@@ -65,10 +65,12 @@ class _PdfPages:
     def __init__(self, path: Path, paper: str | None) -> None:
         from app.report.html_tables import make_headline
         from app.report.pdf_file import PaperSize
-        from app.screen.pdf_pages import PdfWriter, find_default_paper
+        from app.screen.pdf_pages import PdfWriter, find_default_paper_size
 
         self._head = make_headline(_TITLE, _now())
-        self._pages = PdfWriter(path, _TITLE, PaperSize(paper) if paper is not None else find_default_paper())
+        self._pages = PdfWriter(
+            path, _TITLE, PaperSize(paper) if paper is not None else find_default_paper_size()
+        )
 
     def add_page(self, name: str, html: str) -> None:
         self._pages.add_pages(self._head + html, name)
@@ -78,7 +80,7 @@ class _PdfPages:
         self._pages.close()
 
     def close(self) -> None:
-        self._pages.discard()
+        self._pages.discard_file()
 
 
 class ReportFile:

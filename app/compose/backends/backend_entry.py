@@ -30,7 +30,7 @@ NO_PRIORITY_TEXT = (
     "without real-time priority"  # start of the warning for drives that need each setpoint on time
 )
 STATION_INPUTS = ("start", "hold")  # a machine without these inputs has no operator station
-PlayFunction = Callable[
+DeviceSimulation = Callable[
     [Machine, Callable[[], bool], Callable[[str], None], Callable[[], Iterable[str]]], None
 ]  # machine, whether to continue, output of messages, typed lines
 
@@ -61,7 +61,7 @@ class Backend:
     creates the drivers that the driver host runs. ``connect`` connects the machine in the control's
     process, including an inverter. A backend with both functions uses the driver host if the machine file
     specifies one. ``is_simulated`` returns whether the machine and its devices are simulated on this
-    computer. ``play_devices`` simulates only the devices, to try a machine file without hardware.
+    computer. ``simulate_devices`` simulates only the devices, to try a machine file without hardware.
     ``survey_nodes`` asks every node or checks every pin, and yields name, address, fault and details.
     ``list_measured_rows`` returns the rows of ``turndesk machine check`` whose values hardware reports. By
     default, no row counts as checked.
@@ -71,7 +71,7 @@ class Backend:
     create_drivers: Callable[[Machine, Clock], DriverBundle] | None = None
     connect: Callable[[Machine, Clock], ConnectedMachine] | None = None
     is_simulated: Callable[[Machine], bool] = lambda _machine: False
-    play_devices: PlayFunction | None = None
+    simulate_devices: DeviceSimulation | None = None
     survey_nodes: Callable[[Machine, Clock], Iterable[tuple[str, str, str, str]]] | None = None
     list_measured_rows: Callable[[Machine], Iterable[str]] = lambda _machine: ()
 
@@ -96,12 +96,12 @@ def _backend(word: str) -> Backend:
     return found
 
 
-def list_playable_backends() -> list[str]:
+def list_simulatable_backends() -> list[str]:
     """Return the names of the backends whose devices can be simulated without the rest of the machine."""
-    return [word for word in BACKENDS if _backend(word).play_devices is not None]
+    return [word for word in BACKENDS if _backend(word).simulate_devices is not None]
 
 
-class AxisFields(TypedDict):
+class AxisArguments(TypedDict):
     """Keyword arguments for ``drivers.setpoint_queue.AxisProperties``."""
 
     name: str
@@ -116,19 +116,19 @@ class AxisFields(TypedDict):
     corner: float
 
 
-def get_axis_fields(axis: Axis, machine: Machine) -> AxisFields:
+def get_axis_arguments(axis: Axis, machine: Machine) -> AxisArguments:
     """Return the axis data that every driver with a setpoint queue needs."""
     return {
         "name": axis.name,
-        "vmax": axis.vmax,
-        "amax": axis.amax,
-        "count": axis.count,
+        "vmax": axis.max_speed,
+        "amax": axis.max_acceleration,
+        "count": axis.count_size,
         "following_window": axis.following_window,
-        "following_time": axis.following_time,
+        "following_time": axis.following_time_s,
         "travel": axis.travel,
-        "absolute": axis.absolute,
+        "absolute": axis.is_position_absolute,
         "home_speed": axis.home_speed or 10.0,
-        "corner": axis.amax * machine.timing.setpoint,
+        "corner": axis.max_acceleration * machine.timing.setpoint,
     }
 
 
@@ -137,7 +137,7 @@ def has_station(machine: Machine) -> bool:
     return any(name in machine.inputs for name in STATION_INPUTS)
 
 
-def wired_inputs(machine: Machine) -> list[str]:
+def list_input_rows(machine: Machine) -> list[str]:
     """Return the names of the rows of ``turndesk machine check`` for the inputs.
 
     The result includes the operator station if it is wired to inputs.

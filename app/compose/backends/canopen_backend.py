@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.compose.backends.backend_entry import Backend, get_axis_fields, has_station, wired_inputs
+from app.compose.backends.backend_entry import Backend, get_axis_arguments, has_station, list_input_rows
 from core.machine.hardware_model import HomingModel
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
@@ -20,7 +20,13 @@ from drivers.canopen.canopen_config import (
     PotConfig,
     SpindleConfig,
 )
-from drivers.canopen.canopen_nodes import FIRST_MODULE, CanNode, CanTerminal, ObjectValues, parse_terminal
+from drivers.canopen.canopen_nodes import (
+    FIRST_MODULE_ADDRESS,
+    CanNode,
+    CanTerminal,
+    ObjectValues,
+    parse_terminal,
+)
 from drivers.canopen.canopen_table import CanopenTable, EncoderTable
 from drivers.canopen.drive_profiles import CIA402_PROFILE, PROFILES
 from drivers.driver_host.host_server import DriverBundle
@@ -35,7 +41,7 @@ _LIBRARY_NAMES = frozenset(("can", "canopen", "msgpack"))
 
 
 def connect_canopen_machine(
-    machine: Machine, clock: Clock, idle: Callable[[], None] | None = None
+    machine: Machine, clock: Clock, process_peers: Callable[[], None] | None = None
 ) -> CanopenMachine:
     """Connect to the bus that the machine file specifies.
 
@@ -45,10 +51,10 @@ def connect_canopen_machine(
         from drivers.canopen.canopen_machine import CanopenMachine
     except ImportError as error:
         raise DriverError(describe_missing_library(error)) from error
-    return CanopenMachine(create_canopen_config(machine), clock, idle)
+    return CanopenMachine(create_canopen_config(machine), clock, process_peers)
 
 
-def create_canopen_peers(machine: Machine, clock: Clock) -> CanopenDevices:
+def create_simulated_devices(machine: Machine, clock: Clock) -> CanopenDevices:
     """Return simulated drives and terminals for the bus of a machine file.
 
     Raises DriverError if a library or the bus configuration is missing.
@@ -115,7 +121,7 @@ def create_canopen_config(machine: Machine) -> CanopenConfig:
 def _axis(axis: Axis, machine: Machine, node: CanNode | None) -> AxisConfig:
     home = machine.hardware.homing_models.get(axis.name) or HomingModel()
     return AxisConfig(
-        **get_axis_fields(axis, machine),
+        **get_axis_arguments(axis, machine),
         node=node,
         profile=PROFILES.get(node.drive, CIA402_PROFILE) if node is not None else CIA402_PROFILE,
         counts_per_rev=node.counts_per_rev if node is not None else 0,
@@ -129,7 +135,7 @@ def _spindle(machine: Machine, nodes: dict[str, CanNode]) -> SpindleConfig | Non
     node = nodes.get("spindle")
     if node is None or machine.hardware.spindle_driver != "cia402":
         return None
-    model, is_c = machine.spindle, machine.c_enabled and machine.spindle_is_c and "C" not in nodes
+    model, is_c = machine.spindle, machine.is_c_enabled and machine.is_spindle_c_axis and "C" not in nodes
     return SpindleConfig(node, model.max_rpm, model.accel, model.decel, is_c)
 
 
@@ -150,7 +156,7 @@ def _terminal(text: str, first: str) -> CanTerminal:
     found = parse_terminal(text)
     if found is None:
         raise DriverError(Message("terminal {text} is not a valid bus address", text=f"{text!r}"))
-    return replace(found, node=first) if found.node == FIRST_MODULE else found
+    return replace(found, node=first) if found.node == FIRST_MODULE_ADDRESS else found
 
 
 def _is_simulated(machine: Machine) -> bool:
@@ -164,7 +170,7 @@ def create_canopen_drivers(machine: Machine, clock: Clock) -> DriverBundle:
 
     Raises DriverError if connecting fails.
     """
-    peers = create_canopen_peers(machine, clock) if _is_simulated(machine) else None
+    peers = create_simulated_devices(machine, clock) if _is_simulated(machine) else None
     try:
         # A stopped clock does not let the peers run, so they are served between the steps.
         owned = connect_canopen_machine(machine, clock, peers.process_frames if peers is not None else None)
@@ -212,12 +218,17 @@ def _play(
 ) -> None:
     from app.compose.backends.simulated_devices import simulate_devices
 
-    simulate_devices(machine, going, say, typed, create_canopen_peers)
+    simulate_devices(machine, going, say, typed, create_simulated_devices)
 
 
 def _survey(machine: Machine, clock: Clock) -> Iterator[tuple[str, str, str, str]]:
     for answer in survey_canopen_bus(machine, clock):
-        yield Message("node {answer}", answer=answer.name), str(answer.node), answer.error_text, answer.detail
+        yield (
+            Message("node {answer}", answer=answer.name),
+            str(answer.node_id),
+            answer.error_text,
+            answer.detail,
+        )
 
 
 def _measured_rows(machine: Machine) -> Iterator[str]:
@@ -228,14 +239,14 @@ def _measured_rows(machine: Machine) -> Iterator[str]:
         yield "spindle"
     if config.spindle is not None and config.spindle.is_c_axis:
         yield "C"
-    yield from wired_inputs(machine)
+    yield from list_input_rows(machine)
 
 
 BACKEND = Backend(
     "bus",
     create_drivers=create_canopen_drivers,
     is_simulated=_is_simulated,
-    play_devices=_play,
+    simulate_devices=_play,
     survey_nodes=_survey,
     list_measured_rows=_measured_rows,
 )

@@ -16,14 +16,14 @@ from core.ports import Clock
 HAS_DRIVER_HOST = sys.platform != "win32"
 
 
-def connect_machine(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
+def connect_machine(machine: Machine, clock: Clock, lock_descriptor: int | None = None) -> ConnectedMachine:
     """Return the ports and functions that the executor needs.
 
     Raises DriverError if a device does not respond.
 
     ``lock`` is a file descriptor that a driver host process inherits and does not close before it ends.
     """
-    connected = _connected(remove_feature_inputs(machine), clock, lock)
+    connected = _connected(remove_feature_inputs(machine), clock, lock_descriptor)
     for extra in extras().values():
         connected = extra.add_ports(machine, connected)
     return connected

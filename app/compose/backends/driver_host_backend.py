@@ -17,14 +17,16 @@ from drivers.driver_host.host_server import DriverHost
 from drivers.wakeups import RealClock
 
 
-def connect_driver_host(machine: Machine, clock: Clock, lock: int | None = None) -> ConnectedMachine:
+def connect_driver_host(
+    machine: Machine, clock: Clock, lock_descriptor: int | None = None
+) -> ConnectedMachine:
     """Start the driver host and return the connected machine.
 
     Raises DriverError if the host does not respond.
 
     ``lock`` is a file descriptor that the driver host process does not close before it ends.
     """
-    line, close = _open_connection(machine, clock, lock)
+    line, close = _open_connection(machine, clock, lock_descriptor)
     try:
         ports = create_host_ports(line)
     except DriverError:

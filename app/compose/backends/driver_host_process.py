@@ -17,8 +17,8 @@ from app.compose.backends.backend_entry import NO_PRIORITY_TEXT, find_backend, h
 from app.compose.backends.inverter_backend import add_inverter
 from core.machine.machine_model import Machine
 from core.message import Message as Text
-from core.own_process import module_environment
 from core.ports import Clock, DriverError
+from core.process_environment import make_module_environment
 from drivers.canopen.canopen_nodes import CYCLIC_MODES, MAX_SYNC_DELAY_FRACTION
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.driver_host.host_connection import HostConnection, HostLink, SocketLink, clear_host_faults
@@ -38,7 +38,7 @@ from drivers.driver_host.host_messages import (
     read_fault,
 )
 from drivers.driver_host.host_server import DriverBundle
-from drivers.wakeups import ConnectionAttempt, ProcessBell, RealClock
+from drivers.wakeups import ConnectionAttempt, ProcessWakeup, RealClock
 
 
 def create_host_drivers(machine: Machine, clock: Clock) -> DriverBundle:
@@ -72,14 +72,14 @@ _END_TIMEOUT_S = 10.0
 class DriverHostProcess:
     """A driver host in a separate process, with the connection to the process.
 
-    The process does not close the file descriptor ``lock`` before it ends.
+    The process does not close the file descriptor ``lock_descriptor`` before it ends.
     """
 
-    def __init__(self, machine: Machine, clock: RealClock, lock: int | None = None) -> None:
+    def __init__(self, machine: Machine, clock: RealClock, lock_descriptor: int | None = None) -> None:
         self._machine, self._clock = machine, clock
-        self._held = () if lock is None else (lock,)
+        self._held = () if lock_descriptor is None else (lock_descriptor,)
         self._closed = False
-        self._bell = ProcessBell()  # retained when the driver host is restarted
+        self._bell = ProcessWakeup()  # retained when the driver host is restarted
         try:
             link = self._start_process()
         except DriverError:
@@ -109,15 +109,15 @@ class DriverHostProcess:
                 "app.compose.backends.driver_host_process",
                 str(theirs.fileno()),
                 repr(clock.origin_s),
-                str(self._bell.far_socket.fileno()),
+                str(self._bell.remote_socket.fileno()),
             ]
             # A separate session, so that Ctrl-C reaches only the control, which then ends the driver host
             # properly.
             self.process = subprocess.Popen(
                 command,
-                env=module_environment(),
+                env=make_module_environment(),
                 stdin=subprocess.PIPE,
-                pass_fds=(theirs.fileno(), self._bell.far_socket.fileno(), *self._held),
+                pass_fds=(theirs.fileno(), self._bell.remote_socket.fileno(), *self._held),
                 start_new_session=True,
             )
         assert self.process.stdin is not None

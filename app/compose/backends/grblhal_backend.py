@@ -44,7 +44,7 @@ def create_grblhal_config(machine: Machine) -> GrblConfig:
     return GrblConfig(
         table=model,
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
-        rpm_max=machine.spindle.max_rpm,
+        max_rpm=machine.spindle.max_rpm,
         outputs={name: GrblOutput(out.terminal, out.safe_state) for name, out in machine.outputs.items()},
         inputs={
             name: GrblInput(wired.terminal, wired.is_active_low) for name, wired in machine.inputs.items()
@@ -75,7 +75,14 @@ def _play_devices(
 def _axis(axis: Axis, machine: Machine) -> GrblAxis:
     home = machine.hardware.homing_models.get(axis.name)
     here = home.offset if home is not None and home.method in _HOME_HERE_METHODS else None
-    return GrblAxis(axis.name, axis.vmax, axis.amax, axis.absolute, axis.name in _WIRED_AXES, here)
+    return GrblAxis(
+        axis.name,
+        axis.max_speed,
+        axis.max_acceleration,
+        axis.is_position_absolute,
+        axis.name in _WIRED_AXES,
+        here,
+    )
 
 
 def _connect_controller(machine: Machine, clock: Clock) -> ConnectedMachine:
@@ -107,5 +114,8 @@ def _measured_rows(machine: Machine) -> Iterator[str]:
 
 
 BACKEND = Backend(
-    "controller", connect=_connect_controller, play_devices=_play_devices, list_measured_rows=_measured_rows
+    "controller",
+    connect=_connect_controller,
+    simulate_devices=_play_devices,
+    list_measured_rows=_measured_rows,
 )

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import resources
-from app.compose.backends.backend_entry import Backend, get_axis_fields, has_station, wired_inputs
+from app.compose.backends.backend_entry import Backend, get_axis_arguments, has_station, list_input_rows
 from core.machine.hardware_model import HomingModel
 from core.machine.machine_model import Axis, Machine
 from core.ports import Clock, DriverError
@@ -28,7 +28,7 @@ def create_hal_config(machine: Machine) -> HalConfig:
         raise DriverError("{source}: the [hal] table is missing", source=machine.source)
     spindle = machine.spindle
     return HalConfig(
-        table=hal,
+        hal_table=hal,
         hal_file=_hal_path(machine, hal.file),
         commit_time_s=machine.timing.commit,
         axes=tuple(_axis(axis, machine, hal) for axis in machine.axes),
@@ -57,13 +57,13 @@ def create_hal_config(machine: Machine) -> HalConfig:
 def _hal_path(machine: Machine, name: str) -> Path:
     """Return the path of the HAL file, which is in the machine file's folder or is a shipped file."""
     local_path = Path(machine.source).parent / name
-    return resources.hal_file(name) if not Path(machine.source).exists() else local_path.resolve()
+    return resources.get_hal_path(name) if not Path(machine.source).exists() else local_path.resolve()
 
 
 def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:
     home = machine.hardware.homing_models.get(axis.name) or HomingModel()
     return HalAxis(
-        **get_axis_fields(axis, machine),
+        **get_axis_arguments(axis, machine),
         pins=hal.axes.get(axis.name),
         home_method=home.method,
         home_latch_speed=home.latch,
@@ -73,7 +73,7 @@ def _axis(axis: Axis, machine: Machine, hal: HalTable) -> HalAxis:
 
 
 def _is_spindle(axis: Axis, machine: Machine, hal: HalTable) -> bool:
-    spindle_is_c = machine.spindle_is_c and machine.hardware.spindle_driver == "hal"
+    spindle_is_c = machine.is_spindle_c_axis and machine.hardware.spindle_driver == "hal"
     return axis.name == "C" and spindle_is_c and axis.name in hal.axes
 
 
@@ -114,7 +114,7 @@ def _measured_rows(machine: Machine) -> Iterator[str]:
         yield from hal.axes
     if machine.spindle.encoder_ppr:
         yield "spindle"
-    yield from wired_inputs(machine)
+    yield from list_input_rows(machine)
 
 
 BACKEND = Backend(

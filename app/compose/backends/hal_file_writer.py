@@ -99,7 +99,7 @@ def build_hal_file(machine: Machine) -> HalFile:
     if machine.hardware.spindle_driver != "hal":  # an inverter on a separate serial line
         board = replace(board, spindle=replace(board.spindle, full_speed=0.0, pwm="", channel=-1))
     axes = [
-        LatheAxis(axis.name, axis.count, axis.vmax, axis.amax)
+        LatheAxis(axis.name, axis.count_size, axis.max_speed, axis.max_acceleration)
         for axis in machine.axes
         if axis.name in hal.axes
     ]
@@ -110,10 +110,10 @@ def build_hal_file(machine: Machine) -> HalFile:
         servo_thread=hal.thread,
         period_s=hal.period,
         axes=tuple(axes),
-        rpm_max=machine.spindle.max_rpm,
-        rpm_accel=machine.spindle.accel,
-        encoder_lines=machine.spindle.encoder_ppr,
-        spindle_is_c=machine.spindle_is_c and machine.hardware.spindle_driver == "hal",
+        max_rpm=machine.spindle.max_rpm,
+        acceleration_rpm_s=machine.spindle.accel,
+        encoder_line_count=machine.spindle.encoder_ppr,
+        is_spindle_c_axis=machine.is_spindle_c_axis and machine.hardware.spindle_driver == "hal",
         terminal_names={path: name for path, name in _terminal_names(machine, hal) if name},
     )
     file = _BOARD_BUILDERS[board.kind](lathe)

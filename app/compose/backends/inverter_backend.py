@@ -25,7 +25,7 @@ def add_inverter(
     machine: Machine,
     ports: MachinePorts,
     clock: Clock,
-    close: Callable[[], None],
+    close_devices: Callable[[], None],
     encoder: SpindleEncoder | None = None,
 ) -> tuple[MachinePorts, Callable[[], None]]:
     """Return the ports with the inverter as spindle, and a function that closes the devices.
@@ -37,12 +37,12 @@ def add_inverter(
     try:
         thread, joined = _attended(machine, ports, clock, encoder)
     except DriverError:
-        close()
+        close_devices()
         raise
 
     def let_go() -> None:
         thread.close()
-        close()
+        close_devices()
 
     return joined, let_go
 
@@ -111,7 +111,7 @@ def find_unknown_parts(ports: MachinePorts, spindle: InverterSpindle) -> frozens
 
 def halt_with_inverter(ports: MachinePorts, spindle: InverterSpindle) -> None:
     """Stop the inverter and then the other devices. Any thread may call this function."""
-    spindle.coast()
+    spindle.start_coasting()
     if ports.halt_machine is not None:
         ports.halt_machine()
 
@@ -122,9 +122,9 @@ class AxisOnlySamples:
     The scope record gets the values of the real spindle at each tick.
     """
 
-    def __init__(self, inner: SampleSource, axes: int, load: Callable[[], float]) -> None:
-        self.sample_rate_hz, self._inner, self._load = inner.sample_rate_hz, inner, load
-        self._spindle = slice(1 + 3 * axes, 4 + 3 * axes)
+    def __init__(self, samples: SampleSource, axis_count: int, read_load: Callable[[], float]) -> None:
+        self.sample_rate_hz, self._inner, self._load = samples.sample_rate_hz, samples, read_load
+        self._spindle = slice(1 + 3 * axis_count, 4 + 3 * axis_count)
 
     def take(self, max_rows: int = 8192) -> FloatArray:
         """Return the samples with unknown spindle speed and revolutions.
@@ -140,12 +140,12 @@ class AxisOnlySamples:
 class FaultClearingAxes:
     """An ``AxisSink`` that clears the faults of the spindle together with the faults of the axes."""
 
-    def __init__(self, inner: AxisSink, clear_spindle: Callable[[], None]) -> None:
-        self._clear, self._beside = inner.clear_fault, clear_spindle
-        self.axes, self.commit = inner.axes, inner.commit
-        self.now, self.horizon, self.demand_at = inner.now, inner.horizon, inner.demand_at
-        self.splice, self.sample, self.enable = inner.splice, inner.sample, inner.enable
-        self.stop, self.home = inner.stop, inner.home
+    def __init__(self, axis_sink: AxisSink, clear_spindle: Callable[[], None]) -> None:
+        self._clear, self._beside = axis_sink.clear_fault, clear_spindle
+        self.axes, self.commit = axis_sink.axes, axis_sink.commit
+        self.now, self.horizon, self.demand_at = axis_sink.now, axis_sink.horizon, axis_sink.demand_at
+        self.splice, self.sample, self.enable = axis_sink.splice, axis_sink.sample, axis_sink.enable
+        self.stop, self.home = axis_sink.stop, axis_sink.home
 
     def clear_fault(self) -> None:
         """Clear the faults of the spindle and of the axes.

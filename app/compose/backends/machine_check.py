@@ -135,7 +135,7 @@ def _rows(machine: Machine, connected: ConnectedMachine) -> Iterator[CheckRow]:
     station = ports.station.read_state()
     yield CheckRow("station", "", "E-stop" if station.estop else "ok", _hands(station))
     yield from connected.list_more_rows()
-    for kind, states in (("input", ports.io.inputs()), ("output", ports.io.outputs())):
+    for kind, states in (("input", ports.io.inputs()), ("output", ports.io.get_outputs())):
         for name, on in states.items():
             yield CheckRow(
                 Message("{kind} {name}", kind=kind, name=name),
@@ -173,7 +173,7 @@ def _hands(station: StationState) -> str:
 
 
 def _place(axis: Axis, at: float, machine: Machine) -> str:
-    return format_value(at, FileUnit.DEGREES if axis.rotary else FileUnit.LENGTH, machine.is_inch)
+    return format_value(at, FileUnit.DEGREES if axis.is_rotary else FileUnit.LENGTH, machine.is_inch)
 
 
 def _node_address(machine: Machine, name: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from app.compose.backends.backend_entry import Backend, ConnectedMachine, get_axis_fields, has_inverter
+from app.compose.backends.backend_entry import Backend, ConnectedMachine, get_axis_arguments, has_inverter
 from core.machine.machine_model import Axis, Machine
 from core.machine.setter_table import SetterModel
 from core.ports import Clock
@@ -34,9 +34,9 @@ def create_sim_config(machine: Machine) -> SimConfig:
     return SimConfig(
         axes=tuple(_axis(axis, machine) for axis in machine.axes),
         spindle=SimSpindle(
-            rpm_max=spindle.max_rpm,
-            accel=spindle.accel,
-            decel=spindle.decel,
+            max_rpm=spindle.max_rpm,
+            acceleration_rpm_per_s=spindle.accel,
+            deceleration_rpm_per_s=spindle.decel,
             pulses_per_rev=spindle.encoder_ppr,
             can_orient=spindle.oriented,
             orient_rpm=spindle.orient_rpm,
@@ -48,8 +48,8 @@ def create_sim_config(machine: Machine) -> SimConfig:
         },
         inputs=tuple(machine.inputs),
         commit_time_s=machine.timing.commit,
-        faults=sim.faults,
-        seed=sim.seed,
+        planned_faults=sim.faults,
+        random_seed=sim.seed,
         setter=_tool_setter(machine, sim.tips),
         has_load_input="spindle_load" in machine.hardware.analog_inputs,
     )
@@ -65,7 +65,7 @@ def _tool_setter(machine: Machine, tips: tuple[tuple[float, float], ...]) -> Sim
 
 
 def _axis(axis: Axis, machine: Machine) -> SimAxis:
-    return SimAxis(**get_axis_fields(axis, machine), own_drive=not machine.spindle_is_c)
+    return SimAxis(**get_axis_arguments(axis, machine), own_drive=not machine.is_spindle_c_axis)
 
 
 def _create_drivers(machine: Machine, clock: Clock) -> DriverBundle:

@@ -56,12 +56,12 @@ class LineReader:
                 yield words
 
 
-def execute_command(command: str, peers: CanopenDevices) -> str:
+def execute_command(command: str, devices: CanopenDevices) -> str:
     """Execute one typed command, and return the result or the error as text."""
     name, *values = command.split()
     try:
         act = _COMMANDS[name]
-        act(peers, *values)
+        act(devices, *values)
     except (KeyError, TypeError, ValueError):
         return Message("{line}: unknown command; use {help}", line=command, help=HELP_TEXT)
     except DriverError as error:
@@ -118,7 +118,7 @@ def simulate_devices(
     should_continue: Callable[[], bool],
     print_line: Callable[[str], None],
     read_lines: Callable[[], Iterable[str]],
-    create_peers: Callable[[Machine, Clock], CanopenDevices],
+    create_devices: Callable[[Machine, Clock], CanopenDevices],
 ) -> None:
     """Simulate the devices on the machine file's bus while ``should_continue`` returns True.
 
@@ -133,7 +133,7 @@ def simulate_devices(
             "the drives; use udp_multicast"
         )
     clock, zero, epoch = ManualClock(), time.monotonic(), time.time()
-    peers = create_peers(machine, clock)
+    peers = create_devices(machine, clock)
     lock_host_memory()
     # drives respond on time; if priority is refused, the driver host has already reported it
     request_real_time(REAL_TIME_PRIORITY - 10)

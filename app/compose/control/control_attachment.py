@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from app.compose.control.control_start import StartedControl, socket_paths, start_control
+from app.compose.control.control_start import StartedControl, list_socket_paths, start_control
 from app.compose.control.process_rights_check import USES_OWN_PROCESS
 from app.compose.machine.machine_setup import read_machine
 from app.desk.command_errors import convert_to_command_error
@@ -15,10 +15,10 @@ from core.machine.machine_model import Machine
 if TYPE_CHECKING:
     from app.compose.control.control_client import ControlClient
 
-    Begun: TypeAlias = tuple[Machine, ControlClient | StartedControl | None]
+    MachineAndControl: TypeAlias = tuple[Machine, ControlClient | StartedControl | None]
 
 
-def find_or_start_control(machine_file: str | None) -> Begun:
+def find_or_start_control(machine_file: str | None) -> MachineAndControl:
     """Return the machine of the file and its control, without waiting for the control.
 
     The control is None if it runs in a thread of the screen's process. Raises CommandError if the machine
@@ -32,7 +32,7 @@ def find_or_start_control(machine_file: str | None) -> Begun:
 
 
 def _found(machine: Machine, folder: Path) -> ControlClient | None:
-    paths = [path for path in socket_paths(folder) if path.is_socket()]
+    paths = [path for path in list_socket_paths(folder) if path.is_socket()]
     if not paths:
         return None
     from app.compose.control.control_client import find_control

@@ -21,27 +21,27 @@ from app.compose.control.control_messages import (
     SCREEN_CONNECTED,
     CloseRequest,
     CommandMessage,
-    ControlFailed,
+    ControlFailedMessage,
     EventMessage,
-    EventStored,
+    EventStoredMessage,
     HelloMessage,
     InputChange,
     InterruptedJobNote,
-    MachineClosed,
-    ScreenAlive,
+    MachineClosedMessage,
+    ScreenAliveMessage,
     SnapshotMessage,
     StationAction,
     StopSocketMessage,
-    ThreadEnded,
+    ThreadEndedMessage,
     is_own_user,
 )
 from app.compose.control.control_start import StartedControl
 from app.compose.control.descriptor_passing import SharedMemory, receive_descriptor, send_descriptor
 from app.compose.control.process_handle import ProcessHandle
 from app.compose.runs.receipt import Receipt
-from app.desk.data_folder import RECORDS_FOLDER
+from app.desk.data_folder import RECORDS_FOLDER_NAME
 from core.executor.commands import Command, LoadJob, SupplyProof
-from core.executor.raised_alarm import Attempt, ReportedAttempt, make_alarm
+from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt, make_alarm
 from core.executor.snapshot import CYCLE_STATES, InterruptedJob, LogEvent, MachineState, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -81,7 +81,7 @@ class ControlEventHandlers:
     on_event: Callable[[LogEvent, Receipt | None], None]
     on_interrupted_job: Callable[[InterruptedJob | None], None]
     on_thread_end: Callable[[str], None]
-    on_change_at_rest: Callable[[], None] = lambda: None
+    on_rest_change: Callable[[], None] = lambda: None
 
 
 class ControlClient:
@@ -91,7 +91,7 @@ class ControlClient:
     """
 
     def __init__(
-        self, started_control: StartedControl, folder: Path, records: ControlRecordings | None = None
+        self, started_control: StartedControl, folder: Path, recordings: ControlRecordings | None = None
     ) -> None:
         """Wait for the first message of the control.
 
@@ -103,10 +103,12 @@ class ControlClient:
         self.hello_message = hello
         self.is_attached = process is None  # connected to a control that another screen has started
         memory = SharedMemory(receive_descriptor(connection))
-        ring = ScopeRing.from_layout(hello.recorded, memory.memory_view)
-        self.control_records = records or ControlRecordings(ring, folder / RECORDS_FOLDER, hello.disk_error)
+        ring = ScopeRing.from_layout(hello.ring_layout, memory.memory_view)
+        self.control_records = recordings or ControlRecordings(
+            ring, folder / RECORDS_FOLDER_NAME, hello.disk_error
+        )
         self.control_records.ring, self.control_records.storage_error = ring, hello.disk_error
-        self.handle = ProcessHandle(hello.process)
+        self.handle = ProcessHandle(hello.process_id)
         self.clock = RealClock(hello.clock_zero_s)
         self.snapshot: Snapshot = hello.snapshot
         self.heard_at = time.monotonic()  # s, time of the last message
@@ -122,9 +124,9 @@ class ControlClient:
         self._kept: dict[type[Command], Command] = {}
         self._keeping = threading.Lock()  # worker threads also send commands
 
-    def start_threads(self, events: ControlEventHandlers) -> None:
+    def start_threads(self, handlers: ControlEventHandlers) -> None:
         """Start the threads that receive and send messages."""
-        self._events = events
+        self._events = handlers
         for run, name in ((self._listen, "control-events"), (self._send, "control-posts")):
             self._threads.append(threading.Thread(target=run, name=name, daemon=True))
             self._threads[-1].start()
@@ -149,21 +151,21 @@ class ControlClient:
         """Call the method ``name`` of the simulated operator station with these values."""
         self._outbox.put(StationAction(name, values, self.clock.now()))
 
-    def pass_line(self, line: socket) -> None:
+    def pass_stop_socket(self, stop_socket: socket) -> None:
         """Pass a socket to the control, and close the socket in this process.
 
         The control receives stop keys from the socket.
         """
-        self._outbox.put(line)
+        self._outbox.put(stop_socket)
 
     @property
-    def silent_for(self) -> float:
+    def silent_time_s(self) -> float:
         """Return the time since the last message of the control, in seconds."""
         return time.monotonic() - self.heard_at
 
-    def set_input(self, name: str, state: bool) -> None:
+    def set_input(self, name: str, is_on: bool) -> None:
         """Switch an input of a simulated machine on or off."""
-        self._outbox.put(InputChange(name, state))
+        self._outbox.put(InputChange(name, is_on))
 
     def report_alive(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen is processing its keys.
@@ -173,7 +175,7 @@ class ControlClient:
         now = self.clock.now()
         if now >= self._next_alive and not self.is_lost:
             self._next_alive = now + ALIVE_INTERVAL_S
-            self._outbox.put(ScreenAlive())
+            self._outbox.put(ScreenAliveMessage())
         if self._kept and snapshot.state not in CYCLE_STATES:
             with self._keeping:
                 for command in self._kept.values():
@@ -208,9 +210,9 @@ class ControlClient:
                 _log.error("the process of the control does not end; it is killed")
                 self.control_process.kill()
                 self.control_process.wait(JOIN_TIMEOUT_S)
-        self.forget()
+        self.close_connection()
 
-    def forget(self) -> None:
+    def close_connection(self) -> None:
         """End the threads and the connection to a control whose process has ended."""
         self._closing = True
         self._outbox.put(None)
@@ -257,17 +259,17 @@ class ControlClient:
                 self.snapshot = snapshot
                 self._came.set()
                 if stirred:
-                    with Attempt():  # the window may be closing
-                        events.on_change_at_rest()
+                    with CaughtAttempt():  # the window may be closing
+                        events.on_rest_change()
             case EventMessage(number, event):
                 self.control_records.handle_event(event)
                 origin = EventOrigin(self.hello_message.identity, number)
-                events.on_event(event, Receipt(origin, partial(self._outbox.put, EventStored(number))))
+                events.on_event(event, Receipt(origin, partial(self._outbox.put, EventStoredMessage(number))))
             case InterruptedJobNote(job):
                 events.on_interrupted_job(job)
-            case ThreadEnded(name):
+            case ThreadEndedMessage(name):
                 events.on_thread_end(name)
-            case MachineClosed():
+            case MachineClosedMessage():
                 self._closed.set()
             case _:
                 _log.error("the screen does not know this message of the control: %r", message)
@@ -280,17 +282,17 @@ class ControlClient:
         self.snapshot = replace(last, state=MachineState.FAULT, alarms=(*last.alarms, alarm))
         self.is_lost = True
         events.on_event(LogEvent(last.t, "alarm", alarm.text, alarm.line, alarm), None)
-        events.on_change_at_rest()
+        events.on_rest_change()
 
 
 class ControlStationControls(PostedControls):
     """Simulated operator station of the control, whose methods can be called from any thread.
 
-    ``hand`` sends the name of a method and its values to the station.
+    ``operate_station`` sends the name of a method and its values to the station.
     """
 
-    def __init__(self, hand: Callable[..., None]) -> None:
-        self._hand = hand
+    def __init__(self, operate_station: Callable[..., None]) -> None:
+        self._hand = operate_station
 
     def post_action(self, name: str, *values: object) -> None:
         """Call the method with this name at the simulated station of the control."""
@@ -334,7 +336,7 @@ def _receive_hello(connection: Connection, timeout_s: float) -> HelloMessage:
     match message:
         case HelloMessage() if message.version == PROTOCOL_VERSION:
             return message
-        case ControlFailed(why):
+        case ControlFailedMessage(why):
             raise DriverError(why, reason=why if why == SCREEN_CONNECTED else "")
         case None:
             raise DriverError(

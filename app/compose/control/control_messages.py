@@ -53,7 +53,7 @@ class InputChange(NamedTuple):
     is_on: bool
 
 
-class ScreenAlive(NamedTuple):
+class ScreenAliveMessage(NamedTuple):
     """Report that the screen has processed its keys and drawn the state of the machine."""
 
 
@@ -61,7 +61,7 @@ class StopSocketMessage(NamedTuple):
     """Announcement that the next data is the file descriptor of a socket for stop keys."""
 
 
-class EventStored(NamedTuple):
+class EventStoredMessage(NamedTuple):
     """Confirmation that the event with this number is stored and must not be sent again."""
 
     number: int
@@ -78,13 +78,13 @@ class HelloMessage(NamedTuple):
     """First message of the control, which is followed by the file descriptor of the scope's shared memory."""
 
     version: int
-    process: int  # number of its process
+    process_id: int  # number of its process
     identity: str  # differs from that of each other control; numbers of events belong to it
     machine: Machine  # machine of the control
     clock_zero_s: float  # zero of its clock, in s of the computer's monotonic clock
     warnings: tuple[str, ...]
     rights: tuple[ProcessRight, ...]  # rights that the system has granted or refused
-    recorded: RingLayout
+    ring_layout: RingLayout
     disk_error: str  # reason why the scope does not write its file; empty if it does
     has_on_screen_station: bool  # whether the operator station on the screen operates this machine
     can_switch_inputs: bool  # whether the screen can switch the inputs of this machine
@@ -92,7 +92,7 @@ class HelloMessage(NamedTuple):
     interrupted_job: InterruptedJob | None  # job that a power failure would interrupt now
 
 
-class ControlFailed(NamedTuple):
+class ControlFailedMessage(NamedTuple):
     """Last message of a control that cannot be used, with the reason."""
 
     reason: str
@@ -121,13 +121,13 @@ class InterruptedJobNote(NamedTuple):
     job: InterruptedJob | None
 
 
-class ThreadEnded(NamedTuple):
+class ThreadEndedMessage(NamedTuple):
     """Report that a thread of the control process has ended unexpectedly."""
 
     name: str
 
 
-class MachineClosed(NamedTuple):
+class MachineClosedMessage(NamedTuple):
     """Report that the machine is stopped and its drivers are closed."""
 
 

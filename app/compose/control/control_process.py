@@ -15,9 +15,9 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from app.compose.control.control_messages import ControlFailed, is_own_user
-from app.compose.control.control_place import ControlPlace, ScreenListener
+from app.compose.control.control_messages import ControlFailedMessage, is_own_user
 from app.compose.control.control_server import CHECK_INTERVAL_S, ControlServer
+from app.compose.control.control_slot import ControlSlot, ScreenListener
 from app.compose.control.process_rights_check import acquire_rights
 from app.compose.runs.error_log import ErrorLog
 from core.machine.machine_model import Machine
@@ -25,7 +25,7 @@ from core.ports import DriverError
 from drivers.wakeups import RealClock
 
 _SWITCH_INTERVAL_S = 0.001  # s after which a thread that reads a program yields to the executor
-LOG_FILE = "control.log"
+LOG_FILE_NAME = "control.log"
 
 
 def main(arguments: list[str]) -> int:
@@ -34,14 +34,14 @@ def main(arguments: list[str]) -> int:
     machine = pickle.load(sys.stdin.buffer)  # from the parent process, over a pipe that no other process has
     assert isinstance(machine, Machine)
     sys.setswitchinterval(_SWITCH_INTERVAL_S)
-    log = ErrorLog(LOG_FILE)
+    log = ErrorLog(LOG_FILE_NAME)
     rights = acquire_rights()
     try:
-        place = ControlPlace(folder)
-        server = ControlServer(machine, clock, folder, rights, place.drivers)
+        place = ControlSlot(folder)
+        server = ControlServer(machine, clock, folder, rights, place.drivers_lock)
     except DriverError as error:
         with suppress(OSError):
-            first.send(ControlFailed(error.fault if isinstance(error.fault, str) else str(error)))
+            first.send(ControlFailedMessage(error.fault if isinstance(error.fault, str) else str(error)))
         log.close()
         return 1
     gc.collect()
@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> int:
         signal.signal(number, lambda *_: server.closing_event.set())
     server.start()
     _serve_connection(server, first)  # before another screen can find the control
-    listener = place.listen()
+    listener = place.create_listener()
     if listener is not None:
         threading.Thread(target=_serve_screens, args=(server, listener), name="screens", daemon=True).start()
     while not server.closing_event.wait(CHECK_INTERVAL_S):
@@ -67,7 +67,7 @@ def _serve_screens(server: ControlServer, listener: ScreenListener) -> None:
     """Accept one screen after another that connects to the control."""
     while not server.closing_event.is_set():
         with suppress(OSError, EOFError):
-            connection = listener.accept()
+            connection = listener.accept_screen()
             if is_own_user(connection):
                 _serve_connection(server, connection)
             else:

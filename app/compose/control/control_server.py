@@ -26,11 +26,11 @@ from app.compose.control.control_messages import (
     SCREEN_CONNECTED,
     CloseRequest,
     CommandMessage,
-    ControlFailed,
-    EventStored,
+    ControlFailedMessage,
+    EventStoredMessage,
     HelloMessage,
     InputChange,
-    ScreenAlive,
+    ScreenAliveMessage,
     StationAction,
     StopSocketMessage,
 )
@@ -40,14 +40,14 @@ from app.compose.control.descriptor_passing import (
     receive_descriptor,
     send_descriptor,
 )
-from app.compose.control.process_rights_check import READING, ProcessRight
+from app.compose.control.process_rights_check import READING_PRIORITY, ProcessRight
 from app.compose.control.screen_outbox import NOT_SAVED, ScreenOutbox
-from app.compose.control.unattended_notes import LeftEvents, remove_note, save_events, save_note
+from app.compose.control.unattended_notes import UnconfirmedEvents, remove_note, save_events, save_note
 from app.compose.optional_features import extras
 from app.desk.stop_keys.stop_records import StopKind, StopPress
 from core.closing_steps import ClosingStep, close_in_order
 from core.executor.commands import (
-    MOTION_COMMANDS,
+    MOTION_COMMAND_TYPES,
     BlockNextPart,
     ChangeOffsets,
     Command,
@@ -60,9 +60,9 @@ from core.executor.commands import (
     StopSpindle,
 )
 from core.executor.executor import Executor
-from core.executor.raised_alarm import Attempt, ReportedAttempt
-from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt
 from core.executor.safety.watchdog import WATCHDOG_THREAD_NAME, ExecutorThread, Watchdog
+from core.executor.scope_recorder import ScopeRecorder, list_recorded_signals
 from core.executor.snapshot import (
     ACTIVE_STATES,
     STOPPED_STATES,
@@ -76,16 +76,16 @@ from core.machine.machine_model import Machine
 from core.message import Message
 from core.ports import DriverError
 from core.store.store_rows import EventOrigin, EventRow, format_utc
-from drivers.process_rights import lower_thread
+from drivers.process_rights import lower_thread_priority
 from drivers.wakeups import RealClock
 
 _log = logging.getLogger(__name__)
 CHECK_INTERVAL_S = 0.1  # s between two checks of the screen
-SILENT_CHECKS = 30  # checks without a message after which the screen is treated as hung (3 s)
-REST_CHECKS = 150  # checks without a screen after which a machine at rest is closed (15 s)
-STOPPED_CHECKS = 600  # the same for a stopped program (60 s)
+SILENT_CHECK_COUNT = 30  # checks without a message after which the screen is treated as hung (3 s)
+REST_CHECK_COUNT = 150  # checks without a screen after which a machine at rest is closed (15 s)
+STOPPED_CHECK_COUNT = 600  # the same for a stopped program (60 s)
 _STARTING_ACTIONS = frozenset({"press_left", "press_right"})
-_MOVING_STATES = frozenset({MachineState.RUN, MachineState.WAIT, MachineState.JOG, MachineState.HOME})
+_MOVING_STATES = frozenset({MachineState.RUN, MachineState.WAIT, MachineState.JOG, MachineState.HOMING})
 _STOPPING_ACTIONS = frozenset({"press_hold", "press_estop"})
 JOIN_TIMEOUT_S = 1.0  # s that closing waits for the last messages to the screen
 EXECUTOR_TIMEOUT_S = 12.0  # s, for drives that are switching on; then the machine is halted
@@ -98,9 +98,9 @@ _NO_SCREEN_TEXT = Message("TurnDesk, because the screen did not respond")
 class ControlServer:
     """Server for the control of one machine, with the connection to its screen.
 
-    ``folder`` is the data folder, in which the scope writes its records. ``lock`` is the descriptor of a
-    file that a driver host does not close before it ends. Raises DriverError if the machine cannot be
-    connected.
+    ``folder`` is the data folder, in which the scope writes its records. ``lock_descriptor`` is the
+    descriptor of a file that a driver host does not close before it ends. Raises DriverError if the machine
+    cannot be connected.
     """
 
     def __init__(
@@ -109,14 +109,14 @@ class ControlServer:
         clock: RealClock,
         folder: Path,
         rights: tuple[ProcessRight, ...],
-        lock: int | None = None,
+        lock_descriptor: int | None = None,
     ) -> None:
         self._machine, self._clock, self._folder, self._rights = machine, clock, folder, rights
         self._identity = uuid4().hex  # of this control, for the numbers of its events
-        self._connected = connect_machine(machine, clock, lock)
+        self._connected = connect_machine(machine, clock, lock_descriptor)
         recorded = list_recorded_signals(machine, self._connected.ports)
         self._memory = SharedMemory.create(recorded.size_bytes)
-        self.recorder = Recorder(recorded, folder / "records", memory=self._memory.memory_view)
+        self.recorder = ScopeRecorder(recorded, folder / "records", memory=self._memory.memory_view)
         self.outbox = ScreenOutbox(lambda: self.executor.snapshot)
         self.executor = Executor(
             machine,
@@ -129,7 +129,7 @@ class ControlServer:
         self.executor.on_change_at_rest = self.outbox.request_changed_snapshot
         self._thread = ExecutorThread(self.executor, clock)
         self._watchdog = Watchdog(
-            self._thread, self.executor.halt_function, list_watched_threads(), self.outbox.add_thread_end
+            self._thread, self.executor.halt_function, list_watched_threads(), self.outbox.report_thread_end
         )
         self._noted: InterruptedJob | None = None
         self._reading: SharedProgram | None = None
@@ -164,7 +164,7 @@ class ControlServer:
                 ClosingStep("recorder", self.recorder.close),
             )
         )
-        self.outbox.add_closed()
+        self.outbox.report_closed()
         if self._sender is not None:
             self._sender.join(JOIN_TIMEOUT_S)
         close_in_order([ClosingStep("events", self._save_events)])
@@ -176,7 +176,7 @@ class ControlServer:
             began = datetime.now(UTC) - timedelta(seconds=self._clock.now())
             rows = tuple(_row(each.event, began) for each in left)
             origins = tuple(EventOrigin(self._identity, each.number) for each in left)
-            save_events(self._folder, LeftEvents(self.executor.snapshot.program, rows, origins))
+            save_events(self._folder, UnconfirmedEvents(self.executor.snapshot.program, rows, origins))
 
     # --- Executor thread ------------------------------------------------------------------------------
 
@@ -203,7 +203,7 @@ class ControlServer:
                 timeout=JOIN_TIMEOUT_S
             ):  # a screen that was just killed may still be connected
                 with suppress(OSError):
-                    connection.send(ControlFailed(SCREEN_CONNECTED))
+                    connection.send(ControlFailedMessage(SCREEN_CONNECTED))
                 return
             try:
                 if not self.closing_event.is_set():
@@ -216,7 +216,7 @@ class ControlServer:
         sender = threading.Thread(
             target=self._send, args=(connection, gone), name="control-sender", daemon=True
         )
-        with Attempt() as talk:
+        with CaughtAttempt() as talk:
             connection.send(self._hello())
             send_descriptor(connection, self._memory.descriptor)
             self._quiet, self._met, self._screen = 0, False, connection
@@ -276,9 +276,9 @@ class ControlServer:
                 self._set_input(name, on)
             case StopSocketMessage() if self._screen is not None:
                 handle_stop_keys(receive_descriptor(self._screen), self._stop)
-            case EventStored(number):
+            case EventStoredMessage(number):
                 self.outbox.confirm_events(number)
-            case ScreenAlive():
+            case ScreenAliveMessage():
                 # only this message counts, because the screen's other threads run even while it hangs
                 self._quiet, self._met = 0, True
             case CloseRequest():
@@ -303,10 +303,10 @@ class ControlServer:
         With a real-time policy, the thread has the lowest priority, so that reading never delays a tick by
         a time slice.
         """
-        lower_thread(READING)
+        lower_thread_priority(READING_PRIORITY)
         while not self.closing_event.is_set():
             command, at = self._posts.get()
-            if not (isinstance(command, MOTION_COMMANDS) and at <= self._stopped_at):
+            if not (isinstance(command, MOTION_COMMAND_TYPES) and at <= self._stopped_at):
                 with ReportedAttempt(self.executor.handle_failure):
                     self.executor.post(self._attach_reading(command), at)
 
@@ -340,7 +340,7 @@ class ControlServer:
         if job.setup.begin is not None and job.setup.begin.is_mdi_line:
             return command
         if self._reading is None or not self._reading.has_same_source(job.shared_program):
-            job.shared_program.read()
+            job.shared_program.parse_text()
             self._reading = job.shared_program
             gc.collect(1)
             gc.freeze()  # scanning a long program for reference cycles would delay the executor's thread
@@ -357,7 +357,7 @@ class ControlServer:
         """
         self._quiet += 1
         self._away = 0 if self._screen is not None else self._away + 1
-        silent = self._quiet >= SILENT_CHECKS if self._met else self._alone
+        silent = self._quiet >= SILENT_CHECK_COUNT if self._met else self._alone
         alone = self._away > 0 or silent
         if alone is not self._alone:
             self._alone = alone
@@ -369,7 +369,7 @@ class ControlServer:
             self.executor.post(
                 FeedHold(_NO_SCREEN_TEXT)
             )  # also if the machine's own buttons have started the motion
-        longest = STOPPED_CHECKS if state in STOPPED_STATES else REST_CHECKS
+        longest = STOPPED_CHECK_COUNT if state in STOPPED_STATES else REST_CHECK_COUNT
         if self._away >= longest and state not in ACTIVE_STATES:
             self.closing_event.set()
 
@@ -393,7 +393,7 @@ class ControlServer:
 def _row(event: LogEvent, began: datetime) -> EventRow:
     """Return the event as a row of the event log. ``began`` is the zero of the control's clock."""
     at = format_utc(began + timedelta(seconds=event.time_s))
-    return EventRow(at, event.kind, event.text, event.line, event.record_name)
+    return EventRow(at, event.kind, event.text, event.line_number, event.record_name)
 
 
 def list_watched_threads() -> tuple[str, ...]:

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.machine.machine_model import Machine
-from core.own_process import module_environment
+from core.process_environment import make_module_environment
 
 _PATH_LENGTH = 100  # =
-# names of the places of controls in a data folder; see control_place.py
-PLACES = ("control", "control-2", "control-3", "control-4")
+# names of the places of controls in a data folder; see control_slot.py
+SLOT_NAMES = ("control", "control-2", "control-3", "control-4")
 
 
 class StartedControl(NamedTuple):
@@ -38,21 +38,21 @@ class StartedControl(NamedTuple):
             self.process.wait()
 
 
-def socket_paths(folder: Path) -> list[Path]:
+def list_socket_paths(folder: Path) -> list[Path]:
     """Return the paths of the sockets at which controls of this data folder listen.
 
     The usual path is the first. The list is empty if the paths are too long for a socket. Another screen
     cannot find such a control.
     """
-    paths = [folder / f"{name}.sock" for name in PLACES]
+    paths = [folder / f"{name}.sock" for name in SLOT_NAMES]
     return paths if all(len(os.fsencode(path)) < _PATH_LENGTH for path in paths) else []
 
 
-def start_control(machine: Machine, folder: Path, zero: float | None = None) -> StartedControl:
+def start_control(machine: Machine, folder: Path, clock_zero_s: float | None = None) -> StartedControl:
     """Start the control process for this machine and data folder without waiting for it.
 
-    ``zero`` is the zero of the control's clock, in seconds of the computer's monotonic clock. None means
-    now.
+    ``clock_zero_s`` is the zero of the control's clock, in seconds of the computer's monotonic clock. None
+    means now.
     """
     ours, theirs = socket.socketpair()
     with theirs:
@@ -61,13 +61,13 @@ def start_control(machine: Machine, folder: Path, zero: float | None = None) -> 
             "-m",
             "app.compose.control.control_process",
             str(theirs.fileno()),
-            repr(time.monotonic() if zero is None else zero),
+            repr(time.monotonic() if clock_zero_s is None else clock_zero_s),
             str(folder),
         ]
         # A separate session, so that Ctrl-C reaches only the screen, which then ends the control properly.
         process = subprocess.Popen(
             command,
-            env=module_environment(),
+            env=make_module_environment(),
             stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL,
             pass_fds=(theirs.fileno(),),

@@ -15,10 +15,10 @@ from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, StopPress
 _MARK = b"f"  # a descriptor must be sent together with a byte
 
 
-def send_descriptor(connection: Connection, file: int) -> None:
+def send_descriptor(connection: Connection, descriptor: int) -> None:
     """Send a file descriptor to the process at the other end. Raises OSError if the connection ends."""
     with fromfd(connection.fileno(), AF_UNIX, SOCK_STREAM) as sock:
-        send_fds(sock, [_MARK], [file])
+        send_fds(sock, [_MARK], [descriptor])
 
 
 def receive_descriptor(connection: Connection) -> int:
@@ -39,15 +39,17 @@ class SharedMemory:
     ``memory_view`` is a view of its bytes.
     """
 
-    def __init__(self, file: int) -> None:
-        self.descriptor = file
-        self.memory_view = memoryview(mmap.mmap(file, 0))
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+        self.memory_view = memoryview(mmap.mmap(descriptor, 0))
 
     @classmethod
-    def create(cls, size: int) -> SharedMemory:
-        """Return new memory of ``size`` bytes that are all zero. Raises OSError if it cannot be allocated."""
+    def create(cls, size_bytes: int) -> SharedMemory:
+        """Return new memory of ``size_bytes`` bytes that are all zero. Raises OSError if it cannot be
+        allocated.
+        """
         file = os.memfd_create("turndesk-scope")
-        os.ftruncate(file, size)
+        os.ftruncate(file, size_bytes)
         return cls(file)
 
 

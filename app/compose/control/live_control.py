@@ -25,31 +25,35 @@ from core.ports import DriverError
 _log = logging.getLogger(__name__)
 # s without a message after which a control is ended; no setpoint queue is longer, so the axes are at rest,
 # and a driver host has switched spindle and outputs off
-HANGS = 5.0
-ENDS_IN = 3.0  # s for a control that can still close its drivers in order
-DIES_IN = 5.0  # s between SIGKILL and the end of the process
+HANG_TIMEOUT_S = 5.0
+END_TIMEOUT_S = 3.0  # s for a control that can still close its drivers in order
+KILL_TIMEOUT_S = 5.0  # s between SIGKILL and the end of the process
 _LOOK = 0.1  # =
-Say = Callable[[str], None]
+ShowText = Callable[[str], None]
 
 
 class LiveControl:
     """The control process of the screen, which ``restart`` replaces after it has ended or does not respond.
 
     A machine never has two controls at the same time. The old process has ended before a new control
-    starts, and the new control waits until the old driver host has ended (``control_place.py``). Methods
+    starts, and the new control waits until the old driver host has ended (``control_slot.py``). Methods
     can be called from any thread. Only ``close`` waits.
     """
 
     def __init__(self, client: ControlClient, machine: Machine, folder: Path) -> None:
         self._client, self._machine, self._folder = client, machine, folder
         self._state = PostedState(client.hello_message.interrupted_job)
-        self.hands = ControlStationControls(self.hand) if client.hello_message.has_on_screen_station else None
+        self.hands = (
+            ControlStationControls(self.operate_station)
+            if client.hello_message.has_on_screen_station
+            else None
+        )
         self._line: socket | None = None  # end of the control of the stop keys' socket
         self._lock = threading.Lock()  # locked briefly while the client is replaced
         self._worker: threading.Thread | None = None
         self._closing = threading.Event()
         self._events: ControlEventHandlers | None = None
-        self._say: Say = _log.info
+        self._say: ShowText = _log.info
 
     @property
     def snapshot(self) -> Snapshot:
@@ -61,46 +65,46 @@ class LiveControl:
         """Return the connection to the current control."""
         return self._client
 
-    def begin(self, events: ControlEventHandlers, say: Say) -> None:
-        """Start to receive and send messages. ``say`` shows the operator the progress of a restart."""
-        self._events = replace(events, on_interrupted_job=self._note)
-        self._noted, self._say = events.on_interrupted_job, say
+    def start_threads(self, handlers: ControlEventHandlers, show_text: ShowText) -> None:
+        """Start to receive and send messages. ``show_text`` shows the operator the progress of a restart."""
+        self._events = replace(handlers, on_interrupted_job=self._note)
+        self._noted, self._say = handlers.on_interrupted_job, show_text
         self._client.start_threads(self._events)
 
-    def post(self, command: Command) -> None:
+    def post_command(self, command: Command) -> None:
         """Send a command to the control. Reset starts a new control if the current control has ended."""
         if isinstance(command, Reset) and self._client.is_lost:
             self.restart()
             return
         with self._lock:
-            self._state.see(command)
+            self._state.note_command(command)
             self._client.post_command(command)
 
-    def hand(self, name: str, *values: object) -> None:
+    def operate_station(self, name: str, *values: object) -> None:
         """Call the method ``name`` of the simulated operator station with these values."""
         with self._lock:
-            self._state.see_hand(name, values)
+            self._state.note_station_action(name, values)
             self._client.operate_station(name, *values)
 
-    def set_input(self, name: str, on: bool) -> None:
+    def set_input(self, name: str, is_on: bool) -> None:
         """Switch an input of a simulated machine on or off."""
-        self._client.set_input(name, on)
+        self._client.set_input(name, is_on)
 
-    def see(self, snapshot: Snapshot) -> None:
+    def report_alive(self, snapshot: Snapshot) -> None:
         """Report to the control that the screen is processing its keys.
 
         The screen calls this method once per frame.
         """
         self._client.report_alive(snapshot)
 
-    def open_stop_line(self) -> socket | None:
+    def open_stop_socket(self) -> socket | None:
         """Return a socket that sends stop keys directly to the current control, without this process."""
         ours, theirs = socketpair(AF_UNIX, SOCK_SEQPACKET)
         with self._lock:
             if self._line is not None:
                 self._line.close()
             self._line = theirs
-            self._client.pass_line(theirs.dup())
+            self._client.pass_stop_socket(theirs.dup())
         return ours
 
     def close(self) -> None:
@@ -108,7 +112,7 @@ class LiveControl:
         self._closing.set()
         worker = self._worker
         if worker is not None:
-            worker.join(HANGS + ENDS_IN + DIES_IN)
+            worker.join(HANG_TIMEOUT_S + END_TIMEOUT_S + KILL_TIMEOUT_S)
         self._client.stop_and_close()
         if self._line is not None:
             self._line.close()
@@ -121,12 +125,12 @@ class LiveControl:
         A restart that is already in progress continues.
         """
         with self._lock:
-            if not self._closing.is_set() and not self.restarting:
+            if not self._closing.is_set() and not self.is_restarting:
                 self._worker = threading.Thread(target=self._restart, name="control-restart", daemon=True)
                 self._worker.start()
 
     @property
-    def restarting(self) -> bool:
+    def is_restarting(self) -> bool:
         """Return whether a restart is in progress."""
         return self._worker is not None and self._worker.is_alive()
 
@@ -143,7 +147,7 @@ class LiveControl:
         """
         self._say(tr("CONTROL HANGS: IT IS ENDED AFTER 5 S. PRESS E-STOP"))
         last_response_at = client.heard_at
-        while client.silent_for < HANGS and not client.is_lost:
+        while client.silent_time_s < HANG_TIMEOUT_S and not client.is_lost:
             if client.heard_at != last_response_at:
                 self._say(tr("THE CONTROL RESPONDS AGAIN. IT WAS NOT RESTARTED"))
                 return False
@@ -154,10 +158,10 @@ class LiveControl:
     def _has_ended(self, client: ControlClient) -> bool:
         """Ask the process to end, kill it if necessary, and return whether it has ended."""
         client.ask_to_end()
-        ended = client.handle.wait(ENDS_IN) or client.handle.kill(DIES_IN)
+        ended = client.handle.wait_for_end(END_TIMEOUT_S) or client.handle.kill_process(KILL_TIMEOUT_S)
         if ended and client.control_process is not None:
             with suppress(subprocess.TimeoutExpired):
-                client.control_process.wait(DIES_IN)
+                client.control_process.wait(KILL_TIMEOUT_S)
         if not ended:
             self._say(tr("THE CONTROL CANNOT BE ENDED. RESTART THE COMPUTER"))
         return ended
@@ -176,25 +180,25 @@ class LiveControl:
         with self._lock:
             self._pass_state(new, old.snapshot)
             self._client = new
-        old.forget()
+        old.close_connection()
         new.start_threads(self._events)
         self._events.on_event(
             LogEvent(new.clock.now(), "warning", Message("the control was started again")), None
         )
         self._say(tr("THE CONTROL HAS STARTED AGAIN. CHECK TOOL, PART AND POSITION"))
-        self._events.on_change_at_rest()
+        self._events.on_rest_change()
 
     def _pass_state(self, new: ControlClient, last: Snapshot) -> None:
         """Send the program and the values that the screen shows to a new control."""
-        for name, values in self._state.hands():
+        for name, values in self._state.list_station_actions():
             new.operate_station(name, *values)
-        for command in self._state.commands(last):
+        for command in self._state.list_commands(last):
             new.post_command(command)
         if self._line is not None:
-            new.pass_line(self._line.dup())
+            new.pass_stop_socket(self._line.dup())
 
     def _note(self, job: InterruptedJob | None) -> None:
-        self._state.interrupted = job
+        self._state.interrupted_job = job
         self._noted(job)
 
     def _failed(self, error: BaseException) -> None:

@@ -9,7 +9,7 @@ from core.executor.commands import ChangeOffsets, Command, LoadJob, PrepareStart
 from core.executor.job import Job, Proof
 from core.executor.snapshot import InterruptedJob, Snapshot, StartAction
 
-Hand = tuple[str, tuple[object, ...]]
+StationCall = tuple[str, tuple[object, ...]]
 # Commands that set one value: the last of each kind is posted again.
 _VALUES: Final = (
     commands.UseOffsets,
@@ -32,16 +32,16 @@ _STATION: Final = {
 class PostedState:
     """The loaded program, the operator's values, and the settings of the simulated station."""
 
-    def __init__(self, interrupted: InterruptedJob | None) -> None:
-        self.interrupted = interrupted  # the job that the end of the control would interrupt
+    def __init__(self, interrupted_job: InterruptedJob | None) -> None:
+        self.interrupted_job = interrupted_job  # the job that the end of the control would interrupt
         self._job: Job | None = None
         self._proof: Proof | None = None
         self._renewal: ChangeOffsets | None = None  # a change of offsets that has no new job yet
         self._starts = StartAction.PROGRAM
         self._values: dict[type[Command], Command] = {}
-        self._station: dict[str, Hand] = {}
+        self._station: dict[str, StationCall] = {}
 
-    def see(self, command: Command) -> None:
+    def note_command(self, command: Command) -> None:
         """Update the state for a command that was sent."""
         match command:
             case LoadJob(job, proof) | ChangeOffsets(Job() as job, proof):
@@ -55,32 +55,32 @@ class PostedState:
             case _ if isinstance(command, _VALUES):
                 self._values[type(command)] = command
 
-    def see_hand(self, name: str, values: tuple[object, ...]) -> None:
+    def note_station_action(self, name: str, values: tuple[object, ...]) -> None:
         """Update the state for an action at the simulated station."""
         if name in _STATION:
             self._station[_STATION[name]] = name, values
 
-    def commands(self, last: Snapshot) -> list[Command]:
+    def list_commands(self, last_snapshot: Snapshot) -> list[Command]:
         """Return the commands that restore this state in a new control. No command starts a motion.
 
-        ``last`` is the last snapshot of the previous control.
+        ``last_snapshot`` is the last snapshot of the previous control.
         """
         found = list[Command]()
-        if self.interrupted is not None:
-            found.append(commands.ReportInterruptedJob(self.interrupted, logged=True))
+        if self.interrupted_job is not None:
+            found.append(commands.ReportInterruptedJob(self.interrupted_job, logged=True))
         found += self._values.values()
-        found += [SetSwitch(name, on=True) for name in _SWITCHES if getattr(last, name)]
+        found += [SetSwitch(name, on=True) for name in _SWITCHES if getattr(last_snapshot, name)]
         if self._job is not None:
             proof = self._proof
             known = proof is not None and proof.digest == self._job.digest
             found.append(LoadJob(self._job, proof if known else None))
-            found.append(commands.SetPartCount(last.made))
+            found.append(commands.SetPartCount(last_snapshot.made))
         if self._renewal is not None:
             found.append(self._renewal)
         if self._starts is not StartAction.PROGRAM:  # a line or a restart must be prepared again
             found.append(PrepareStart(StartAction.MDI_LINE))
         return found
 
-    def hands(self) -> list[Hand]:
+    def list_station_actions(self) -> list[StationCall]:
         """Return the station actions that restore this state at the simulated station of a new control."""
         return list(self._station.values())

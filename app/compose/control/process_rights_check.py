@@ -15,7 +15,7 @@ USES_OWN_PROCESS = (
     sys.platform == "linux"
 )  # on other systems the control runs in a thread of the screen's process
 REAL_TIME_PRIORITY = 40  # priority of SCHED_RR, below that of the driver host, whose bus has a shorter period
-READING = 1  # priority of the thread that reads programs, below that of the executor
+READING_PRIORITY = 1  # priority of the thread that reads programs, below that of the executor
 NICE_VALUE = -10
 _AUTOGROUP = Path("/proc/sys/kernel/sched_autogroup_enabled")
 

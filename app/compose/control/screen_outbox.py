@@ -12,9 +12,9 @@ from multiprocessing.reduction import ForkingPickler
 from app.compose.control.control_messages import (
     EventMessage,
     InterruptedJobNote,
-    MachineClosed,
+    MachineClosedMessage,
     SnapshotMessage,
-    ThreadEnded,
+    ThreadEndedMessage,
 )
 from core.executor.raised_alarm import ReportedAttempt
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
@@ -33,10 +33,10 @@ class ScreenOutbox:
     confirms that the event is stored. Otherwise the next screen receives the event again.
     """
 
-    def __init__(self, snapshot: Callable[[], Snapshot]) -> None:
-        self._snapshot = snapshot
+    def __init__(self, read_snapshot: Callable[[], Snapshot]) -> None:
+        self._snapshot = read_snapshot
         self._events: deque[EventMessage] = deque(maxlen=MAX_WAITING_EVENTS)
-        self._ended: deque[ThreadEnded] = deque()
+        self._ended: deque[ThreadEndedMessage] = deque()
         self._noted: InterruptedJobNote | None = None
         self._ready = threading.Event()
         self._lock = threading.Lock()  # locked briefly while an event gets its number
@@ -77,12 +77,12 @@ class ScreenOutbox:
         self._noted = InterruptedJobNote(job)
         self._ready.set()
 
-    def add_thread_end(self, name: str) -> None:
+    def report_thread_end(self, name: str) -> None:
         """Add the message that a thread has ended unexpectedly."""
-        self._ended.append(ThreadEnded(name))
+        self._ended.append(ThreadEndedMessage(name))
         self._ready.set()
 
-    def add_closed(self) -> None:
+    def report_closed(self) -> None:
         """Request that the sender reports that the machine is closed."""
         self._closed = True
         self._ready.set()
@@ -120,7 +120,7 @@ class ScreenOutbox:
             send_message(connection, SnapshotMessage(snapshot, stirred))
             self._shown = snapshot
         if closed:
-            send_message(connection, MachineClosed())
+            send_message(connection, MachineClosedMessage())
         return closed
 
 

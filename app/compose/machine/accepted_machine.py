@@ -42,9 +42,9 @@ def create_record(machine: Machine) -> dict[str, object]:
     return {_TEXT: machine.text, _DRIVES: _hashes(machine)}
 
 
-def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[KeyChange, ...] | None:
+def list_differences(machine: Machine, settings: SettingsReader) -> tuple[KeyChange, ...] | None:
     """Return the differences from the accepted machine file, or None if this file was never accepted."""
-    record = persistence.read_setting(get_settings_key(machine))
+    record = settings.read_setting(get_settings_key(machine))
     if not isinstance(record, dict) or not isinstance(record.get(_TEXT), str):
         return None
     changes = compare_machine_files(record[_TEXT], machine.text)
@@ -63,11 +63,11 @@ def list_differences(machine: Machine, persistence: SettingsReader) -> tuple[Key
 
 
 def review_changes(
-    machine: Machine, persistence: Persistence, report: Callable[[str], None]
+    machine: Machine, persistence: Persistence, log_text: Callable[[str], None]
 ) -> MachineFileChanges:
     """Return the changes of the machine file for the screen.
 
-    A new machine file is accepted automatically, because the operator has chosen it. ``report`` writes to
+    A new machine file is accepted automatically, because the operator has chosen it. ``log_text`` writes to
     the event log.
     """
     changes = list_differences(machine, persistence)
@@ -80,7 +80,7 @@ def review_changes(
             path=machine.source,
             name=name,
         )
-        report(Message("{done}: {changes}", done=done, changes=what) if what else done)
+        log_text(Message("{done}: {changes}", done=done, changes=what) if what else done)
 
     if changes is None:
         keep()
@@ -90,7 +90,7 @@ def review_changes(
 def guard_commands(
     post_command: Callable[[Command], None],
     reviewed_changes: MachineFileChanges,
-    reject: Callable[[str], None],
+    report_refusal: Callable[[str], None],
 ) -> Callable[[Command], None]:
     """Return a function that posts commands, but rejects switching on the drives in some cases.
 
@@ -99,7 +99,7 @@ def guard_commands(
 
     def give(command: Command) -> None:
         if reviewed_changes.barred and isinstance(command, EnableDrives):
-            reject(reviewed_changes.barred)
+            report_refusal(reviewed_changes.barred)
         else:
             post_command(command)
 

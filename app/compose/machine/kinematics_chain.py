@@ -28,7 +28,7 @@ def build_kinematics(machine: Machine) -> Kinematics | None:
 
 def _slide(axis: Axis) -> LinearAxis:
     low, high = axis.travel or (-math.inf, math.inf)
-    return LinearAxis(axis.name, low, high, axis.vmax)
+    return LinearAxis(axis.name, low, high, axis.max_speed)
 
 
 def _rotary(model: RotaryModel, axis: Axis) -> RotaryAxis:
@@ -37,9 +37,9 @@ def _rotary(model: RotaryModel, axis: Axis) -> RotaryAxis:
         name=axis.name,
         is_table=model.is_table,
         direction=model.unit_vector,
-        point=model.point,
+        point_on_axis=model.point,
         travel_min=low,
         travel_max=high,
         is_modulo=model.modulo,
-        vmax=axis.vmax,
+        vmax=axis.max_speed,
     )

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TypeGuard
 
 import resources
-from app.compose.machine.driver_modules import all_drivers, drivers_of
+from app.compose.machine.driver_modules import load_all_drivers, load_used_drivers
 from core.machine import machine_file
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -24,9 +24,9 @@ def parse_machine(text: str, source: str) -> Machine:
     """
     data = machine_file.parse_tables(text, source)
     try:
-        machine = machine_file.machine_of(data, text, source, drivers_of(data))
+        machine = machine_file.build_machine(data, text, source, load_used_drivers(data))
     except MachineFileError:  # the findings name the possible values of all drivers
-        machine = machine_file.machine_of(data, text, source, all_drivers())
+        machine = machine_file.build_machine(data, text, source, load_all_drivers())
     if machine.silenced_checks:
         _known_checks(machine.silenced_checks, source)
     return machine
@@ -63,15 +63,15 @@ def load_named_machine(name: str | None) -> Machine:
     return load_machine(Path(name) if name else None)
 
 
-def machine_path(name: str | None) -> Path:
+def find_machine_path(name: str | None) -> Path:
     """Return the path of the file that ``load_named_machine`` reads."""
     if name and not _is_shipped(name):
         return Path(name).absolute()
-    return resources.machine_path(f"{name}.toml" if name else DEFAULT_MACHINE_FILE)
+    return resources.get_machine_path(f"{name}.toml" if name else DEFAULT_MACHINE_FILE)
 
 
 def _is_shipped(name: str | None) -> TypeGuard[str]:
-    return bool(name) and name in resources.machine_names() and not Path(name).exists()
+    return bool(name) and name in resources.list_machine_names() and not Path(name).exists()
 
 
 def load_shipped_machine(name: str) -> Machine:
@@ -80,4 +80,4 @@ def load_shipped_machine(name: str) -> Machine:
 
 
 def _shipped(name: str) -> Machine:
-    return parse_machine(resources.machine_file(name), name)
+    return parse_machine(resources.read_machine_file(name), name)

@@ -24,14 +24,14 @@ def select_machine(source: ProgramSource) -> str:
     if source.dialect is not Dialect.KLARTEXT:
         return ""
     reading = SharedProgram(source)
-    having = list_mills_with(find_rotary_axes(source)) or MILL_NAMES
+    having = list_mills_with_axes(find_rotary_axes(source)) or MILL_NAMES
     return next((name for name in having if _runs(reading, name)), having[0])
 
 
-def list_mills_with(axes: frozenset[str]) -> tuple[str, ...]:
+def list_mills_with_axes(axis_names: frozenset[str]) -> tuple[str, ...]:
     """Return the shipped mills that have all of these rotary axes."""
     return tuple(
-        name for name in MILL_NAMES if axes <= {axis.name for axis in load_shipped_machine(name).axes}
+        name for name in MILL_NAMES if axis_names <= {axis.name for axis in load_shipped_machine(name).axes}
     )
 
 
@@ -43,7 +43,7 @@ def find_rotary_axes(source: ProgramSource) -> frozenset[str]:
 
 def _runs(reading: SharedProgram, name: str) -> bool:
     run = reading.start_pass(create_setup(load_shipped_machine(name), tool_offsets={}, secondary_offsets={}))
-    for block in run.generate_blocks(to_first_error=True):
+    for block in run.generate_blocks(stops_at_first_error=True):
         if block.n >= _MAX_CHECKED_BLOCKS:
             break
     return not run.has_errors

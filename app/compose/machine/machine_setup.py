@@ -42,31 +42,31 @@ def get_control_limits(machine: Machine) -> ControlLimits:
     """Return the properties of a machine that the interpreter needs."""
     c_axis = machine.axes[2]
     return ControlLimits(
-        max_feed=machine.limits.max_feed,
+        max_feed_mm_s=machine.limits.max_feed,
         max_rpm=machine.spindle.max_rpm,
         resolution_mm=machine.limits.resolution,
-        z_acceleration=machine.axes[1].amax,
+        z_acceleration_mm_s2=machine.axes[1].max_acceleration,
         can_unclamp_while_turning=machine.interlocks.unclamp_while_turning,
         can_start_with_collet_open=machine.interlocks.spindle_with_collet_open,
         m_outputs=machine.m_codes,
         disabled_m_codes=machine.disabled_m_codes,
         ignored_m_codes=machine.ignored_m_codes,
-        c_enabled=machine.c_enabled,
-        has_c_feedback=machine.c_feedback,
-        c_max_rpm=c_axis.vmax / 6.0,  # 1 rpm is 6 degrees a second
-        c_acceleration=c_axis.amax,
-        c_resolution_deg=c_axis.count,
+        is_c_enabled=machine.is_c_enabled,
+        has_c_feedback=machine.has_c_feedback,
+        c_max_rpm=c_axis.max_speed / 6.0,  # 1 rpm is 6 degrees a second
+        c_acceleration_deg_s2=c_axis.max_acceleration,
+        c_resolution_deg=c_axis.count_size,
         is_c_modulo=machine.is_c_modulo,
         is_c_linear=machine.is_third_axis_linear,
         c_travel_range=c_axis.travel if machine.is_third_axis_linear else None,
-        is_spindle_c_axis=machine.spindle_is_c,
+        is_spindle_c_axis=machine.is_spindle_c_axis,
         live_tool_output=machine.live_tool_output,
-        control_model=machine.control,
-        third_axis_name=machine.third_axis,
+        control_model=machine.control_model,
+        third_axis_name=machine.third_axis_name,
         is_spindle_controlled=machine.spindle.controlled,
         can_orient_spindle=machine.spindle.oriented,
         fixed_points={axis.name: axis.fixed_points for axis in machine.axes if axis.fixed_points},
-        max_axis_speeds=(machine.axes[0].vmax, machine.axes[1].vmax, c_axis.vmax),
+        max_axis_speeds=(machine.axes[0].max_speed, machine.axes[1].max_speed, c_axis.max_speed),
     )
 
 
@@ -88,9 +88,9 @@ def create_setup(
     secondary_offsets: Mapping[int, SecondaryOffset],
     zero_offsets: Mapping[int, ZeroOffset] | None = None,
     r_parameters: Mapping[int, float] | None = None,
-    inputs: Mapping[str, bool] | None = None,
+    input_states: Mapping[str, bool] | None = None,
     block_delete: bool = False,
-    strict: bool = False,
+    is_strict: bool = False,
 ) -> Setup:
     """Return the setup of a program after power-up at machine home. Unspecified inputs are open."""
     return Setup(
@@ -102,10 +102,10 @@ def create_setup(
         r=r_parameters or {},
         limits=get_control_limits(machine),
         block_delete=block_delete,
-        strict=strict,
+        strict=is_strict,
         metric=not machine.is_inch,
         last_rapid=machine.limits.manual_rapid,
-        inputs=InputStates(dict(inputs or {})),
+        inputs=InputStates(dict(input_states or {})),
     )
 
 
@@ -126,7 +126,7 @@ def store_machine(machine_file: str | None, persistence: Persistence) -> None:
         persistence.save_setting(_SETTINGS_KEY, place)
 
 
-def machine_file_in_use(settings: SettingsReader) -> str | None:
+def read_machine_file_in_use(settings: SettingsReader) -> str | None:
     """Return the path of the machine file in use, or the name of a shipped machine.
 
     The result is None if neither is stored.
@@ -138,7 +138,7 @@ def machine_file_in_use(settings: SettingsReader) -> str | None:
 def load_machine_in_use(settings: SettingsReader) -> Machine:
     """Return the machine in use. Raises CommandError if its file cannot be read."""
     try:
-        return read_machine(machine_file_in_use(settings))
+        return read_machine(read_machine_file_in_use(settings))
     except CommandError as error:
         raise CommandError(
             Message("the travel of the current machine is unknown: {error}. Use --machine FILE", error=error),

@@ -28,7 +28,7 @@ _FORMAT_PREFIX = "turndesk setup "
 ARCHIVE_FORMAT = f"{_FORMAT_PREFIX}1"
 MANIFEST, STORE, PROGRAMS, MACHINE = "manifest.json", "store.db", "programs", "machine"
 COMPANION_SUFFIXES = (".hal", ".xml")  # suffixes of files that belong to a machine file and have its name
-MAX_MEMBERS = 10_000
+MAX_MEMBER_COUNT = 10_000
 MAX_DEPTH = 8  # parts of a name: nested folders and the file
 _MIB = 1024 * 1024
 MAX_BYTES_BY_KIND = {MANIFEST: 4 * _MIB, STORE: 512 * _MIB, PROGRAMS: 64 * _MIB, MACHINE: 16 * _MIB}
@@ -189,10 +189,12 @@ def _check_directory(source: Path, raw: BinaryIO) -> None:
     if not end.startswith(b"PK\5\6"):
         raise zipfile.BadZipFile("the end of the file is missing")
     (members, directory) = struct.unpack("<10xHL6x", end)
-    if members > MAX_MEMBERS or directory > _MAX_DIRECTORY_BYTES or end_64.startswith(b"PK\6\7"):
+    if members > MAX_MEMBER_COUNT or directory > _MAX_DIRECTORY_BYTES or end_64.startswith(b"PK\6\7"):
         raise CommandError(
             Message(
-                "{source} contains more than {most_members} files", source=source, most_members=MAX_MEMBERS
+                "{source} contains more than {most_members} files",
+                source=source,
+                most_members=MAX_MEMBER_COUNT,
             ),
             "too-many-members",
         )

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 from app.desk.data_folder import find_data_folder
-from core.file_replacement import NEW_FILE_MODE
+from core.file_replacement import PRIVATE_FILE_MODE
 from core.message import Message
 
 _MAX_BYTES = 1_000_000  # bytes of each of three files
@@ -84,7 +84,7 @@ class _File(logging.handlers.RotatingFileHandler):
     error_text = ""
 
     def _open(self) -> io.TextIOWrapper:
-        Path(self.baseFilename).touch(NEW_FILE_MODE)
+        Path(self.baseFilename).touch(PRIVATE_FILE_MODE)
         return super()._open()
 
     def emit(self, record: logging.LogRecord) -> None:

@@ -15,15 +15,15 @@ from app.compose.optional_features import extras
 from app.compose.runs.journal import Journal
 from app.compose.runs.run_log import EventLog
 from app.desk.command_errors import CommandError, convert_to_command_error
-from app.desk.data_folder import RECORDS_FOLDER, find_data_folder
+from app.desk.data_folder import RECORDS_FOLDER_NAME, find_data_folder
 from app.desk.headless_run import HeadlessRun
-from app.production.parts_book import PartsBook, find_tool_table_kind, read_production
+from app.production.parts_book import PartsBook, find_tool_table_kind, read_production_data
 from app.production.tool_life_watch import ToolLifeWatch
 from core.executor.commands import BlockNextPart, Command
 from core.executor.executor import Executor
-from core.executor.interruption_watch import StoreInterruptedJob
+from core.executor.interruption_watch import StoreFunction
 from core.executor.job import Proof
-from core.executor.recorder import Recorder, list_recorded_signals
+from core.executor.scope_recorder import ScopeRecorder, list_recorded_signals
 from core.executor.snapshot import InterruptedJob, LogEvent, Snapshot
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -48,9 +48,9 @@ class HeadlessToolLife:
         journal: Journal,
         post_command: Callable[[Command], None],
         print_line: Callable[[str], None],
-        tools: OffsetKind = OffsetKind.TOOL,
+        tool_kind: OffsetKind = OffsetKind.TOOL,
     ) -> None:
-        self._book = journal.create_parts_book(tools)
+        self._book = journal.create_parts_book(tool_kind)
         self._watch = ToolLifeWatch(self._book)
         self._post, self._say = post_command, print_line
         self._barred = ""
@@ -62,7 +62,7 @@ class HeadlessToolLife:
     def _read(self, book: PartsBook) -> None:
         if book.store is None:
             raise StoreError(book.lock_reason)
-        book.current = read_production(book.store, "", book.tool_kind, {})
+        book.current_data = read_production_data(book.store, "", book.tool_kind, {})
         book.load_count = 1
 
     def update(self, snapshot: Snapshot, proof: Proof) -> None:
@@ -78,7 +78,7 @@ class HeadlessToolLife:
             self._post(BlockNextPart(wanted))
         self._barred = wanted
 
-    def save(self) -> None:
+    def save_tool_use(self) -> None:
         """Save the tool use counted since the last save."""
         self._watch.save_all()
         self._book.close()
@@ -88,12 +88,12 @@ class HeadlessToolLife:
 def run_headless(
     machine: Machine,
     *,
-    inputs: Mapping[str, bool],
-    real_time: bool,
+    input_states: Mapping[str, bool],
+    is_real_time: bool,
     discard_interrupted: bool = False,
-    log: EventLog,
+    event_log: EventLog,
     print_line: Callable[[str], None],
-    progress: Callable[[float], None],
+    report_progress: Callable[[float], None],
     duration_s: float = RING_DURATION_S,
 ) -> Iterator[HeadlessRun]:
     """Yield a run without a screen on the machine, with these inputs and with automatic button presses.
@@ -104,19 +104,19 @@ def run_headless(
     screen, but a faster run counts nothing. Raises CommandError if the machine does not respond, if inputs
     do not exist or are wired, or if a job was interrupted.
     """
-    paced = _is_real_time(machine, real_time)
+    paced = _is_real_time(machine, is_real_time)
     with (
         _open_journal(
             machine, discard_interrupted=discard_interrupted, real_time=paced, print_line=print_line
         ) as (journal, note),
         _connect(machine, paced) as (clock, connected),
     ):
-        _set_inputs(connected, inputs)
-        recorder = Recorder(
+        _set_inputs(connected, input_states)
+        recorder = ScopeRecorder(
             replace(
                 list_recorded_signals(machine, connected.ports), duration_s=min(duration_s, RING_DURATION_S)
             ),
-            find_data_folder() / RECORDS_FOLDER,
+            find_data_folder() / RECORDS_FOLDER_NAME,
             RUN_RING_NAME,
         )
         if recorder.storage_error:
@@ -124,7 +124,7 @@ def run_headless(
 
         def hear(event: LogEvent) -> None:
             noted = recorder.assign_record_name(event)
-            log.write_event(noted)
+            event_log.write_event(noted)
             if journal is not None:
                 journal.hear(noted)
 
@@ -135,7 +135,7 @@ def run_headless(
         lives = HeadlessToolLife(journal, executor.post, print_line, tools) if journal is not None else None
         recorder.start()
         started = [
-            extra.start_headless(machine, lambda: executor.snapshot, print_line, real_time=paced)
+            extra.start_headless(machine, lambda: executor.snapshot, print_line, is_real_time=paced)
             for extra in extras().values()
         ]
         try:
@@ -143,11 +143,11 @@ def run_headless(
                 _start_function(machine, connected, print_line),
                 lives.update if lives is not None else None,
             )
-            yield HeadlessRun(executor, clock, print_line, progress, palms, see)
+            yield HeadlessRun(executor, clock, print_line, report_progress, palms, see)
         finally:
             executor.shut_down()  # also on Ctrl-C, so that the axes brake immediately
             if lives is not None:
-                lives.save()
+                lives.save_tool_use()
             recorder.close()
             for close in started:
                 if close is not None:
@@ -175,7 +175,7 @@ def _connect(machine: Machine, real_time: bool) -> Iterator[tuple[RealClock | Ma
 @contextmanager
 def _open_journal(
     machine: Machine, *, discard_interrupted: bool, real_time: bool, print_line: Callable[[str], None]
-) -> Iterator[tuple[Journal | None, StoreInterruptedJob]]:
+) -> Iterator[tuple[Journal | None, StoreFunction]]:
     """Yield the journal of the run, or None, and the function that saves the interrupted job.
 
     A simulated machine does not save an interrupted job.

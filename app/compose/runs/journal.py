@@ -25,8 +25,8 @@ from core.executor.snapshot import (
     InterruptedJob,
     LogEvent,
     Snapshot,
-    interrupted_job_from_json,
-    interrupted_job_to_json,
+    convert_interrupted_job_to_json,
+    parse_interrupted_job,
 )
 from core.language.source import ProgramSource
 from core.message import Message
@@ -131,10 +131,10 @@ class Journal(Persistence):
                 store.runs.record_event(row, Path(program).name if row.kind == "part" else "", origin)
         known, left = read_note(self._folder)
         if not known:
-            return interrupted_job_from_json(store.settings.read_setting(INTERRUPTED_JOB_KEY))
+            return parse_interrupted_job(store.settings.read_setting(INTERRUPTED_JOB_KEY))
         self.is_interruption_logged = False
         store.settings.save_setting(
-            INTERRUPTED_JOB_KEY, None if left is None else interrupted_job_to_json(left)
+            INTERRUPTED_JOB_KEY, None if left is None else convert_interrupted_job_to_json(left)
         )
         return left
 
@@ -169,7 +169,7 @@ class Journal(Persistence):
         self._post_noted()
 
     def _post_noted(self) -> None:
-        value = interrupted_job_to_json(self._noted) if self._noted is not None else None
+        value = convert_interrupted_job_to_json(self._noted) if self._noted is not None else None
         self._post(lambda store: store.settings.save_setting(INTERRUPTED_JOB_KEY, value))
 
     def book(self) -> OffsetBook:
@@ -195,13 +195,13 @@ class Journal(Persistence):
         except StoreError:
             return None
 
-    def create_parts_book(self, tools: OffsetKind = OffsetKind.TOOL) -> PartsBook:
+    def create_parts_book(self, tool_kind: OffsetKind = OffsetKind.TOOL) -> PartsBook:
         """Return the measured parts and the tool lives in the store.
 
-        ``tools`` is the tool table of this machine.
+        ``tool_kind`` is the tool table of this machine.
         """
         store = self._store
-        book = PartsBook(store, "" if store else self.trouble, tools)
+        book = PartsBook(store, "" if store else self.trouble, tool_kind)
         self._attach_book(book, store)
         return book
 
@@ -245,7 +245,7 @@ class Journal(Persistence):
             receipt.confirm()
             return
         self._recorder.hear(event, store.cycles)
-        row = EventRow(get_utc_now_text(), event.kind, event.text, event.line, event.record_name)
+        row = EventRow(get_utc_now_text(), event.kind, event.text, event.line_number, event.record_name)
         part_of = Path(self._program).name if event.kind == "part" and self._program else ""
         if receipt is None:
             store.runs.record_event(row, part_of)
@@ -342,14 +342,14 @@ class Journal(Persistence):
             (started, store.offsets.tool_offsets.read_rows_at(started)) if started is not None else ("", {})
         )
 
-    def move_program_data(self, old: str, new: str) -> None:
+    def rename_program(self, old_name: str, new_name: str) -> None:
         """Rename a program with its versions, counts and records.
 
         The method waits until the change is on the disk.
         """
         store = self._store
         if store is not None:
-            store.programs.rename_program(old, new).result()
+            store.programs.rename_program(old_name, new_name).result()
 
     def backup(self, target: Path) -> None:
         """Copy the store to ``target``, even while the store is being written. Raises StoreError."""
@@ -359,7 +359,9 @@ class Journal(Persistence):
     def check_backup(self, source: Path) -> BackupVerdict:
         """Check a backup, compare it with the store, and return the result. Raises StoreError."""
         self.require_store()
-        with closing(store_connection.connect_store(self._folder / STORE_FILE_NAME, read_only=True)) as now:
+        with closing(
+            store_connection.connect_store(self._folder / STORE_FILE_NAME, is_read_only=True)
+        ) as now:
             return check_backup(now, source)
 
     def restore(self, source: Path) -> Path | None:

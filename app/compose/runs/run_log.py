@@ -13,7 +13,7 @@ from typing import NamedTuple, TextIO
 from app.desk.command_errors import CommandError
 from app.desk.data_folder import find_data_folder
 from core.executor.snapshot import LogEvent
-from core.file_replacement import NEW_FILE_MODE
+from core.file_replacement import PRIVATE_FILE_MODE
 from core.message import Message
 
 MAX_FILES = 500  # largest number of run and crash files
@@ -49,14 +49,14 @@ class EventLog:
         path = folder / f"{stamp}-{Path(program).stem}.jsonl"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            path.touch(NEW_FILE_MODE, exist_ok=False)
+            path.touch(PRIVATE_FILE_MODE, exist_ok=False)
             file = path.open("w", encoding="utf-8")
         except OSError as error:
             raise CommandError(
                 Message("{path}: the event log cannot be written: {cause}", path=path, cause=error.strerror),
                 "cannot-write",
             ) from error
-        delete_oldest(folder, path)
+        delete_old_files(folder, path)
         log = cls(path, file)
         try:
             yield log
@@ -65,7 +65,12 @@ class EventLog:
 
     def write_event(self, event: LogEvent) -> None:
         """Write an event as one line of the log."""
-        line = {"t": round(event.time_s, 4), "kind": event.kind, "text": event.text, "line": event.line}
+        line = {
+            "t": round(event.time_s, 4),
+            "kind": event.kind,
+            "text": event.text,
+            "line": event.line_number,
+        }
         if event.record_name:
             line["record"] = event.record_name
         self._kept(lambda: self._file.write(json.dumps(line) + "\n"))
@@ -79,14 +84,14 @@ class EventLog:
             )
 
 
-def delete_oldest(folder: Path, newest: Path) -> None:
+def delete_old_files(folder: Path, newest_path: Path) -> None:
     """Delete the oldest run and crash files beyond ``MAX_FILES``, ``MAX_TOTAL_BYTES`` and ``MAX_AGE_S``.
 
-    The file ``newest`` is being written and is not deleted. Files that cannot be deleted are ignored.
+    The file ``newest_path`` is being written and is not deleted. Files that cannot be deleted are ignored.
     """
     with suppress(OSError):
         kept = [_kept(path) for what in ("*.jsonl", "crash-*.txt") for path in folder.glob(what)]
-        for each in _list_excess([one for one in kept if one.path != newest]):
+        for each in _list_excess([one for one in kept if one.path != newest_path]):
             with suppress(OSError):
                 each.path.unlink()
 

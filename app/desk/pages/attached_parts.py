@@ -41,7 +41,7 @@ class FrameWatcher(Protocol):
         """Update the watcher from the snapshot and the loaded program, once per frame."""
         ...
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return a reminder of what the operator must do soon, or an empty text without a reminder."""
         ...
 

@@ -62,17 +62,17 @@ class CodeHelp:
         self.marked = self.choices.index(self.current_entry) if self.current_entry in self.choices else 0
         self.start_column = 0
 
-    def move_chapters(self, chapters: int) -> None:
+    def move_chapters(self, chapter_count: int) -> None:
         """Move forward by ``chapters`` chapters, or backward if the number is negative."""
         if self._book is not None and self.choices:
-            self._show_chapter(self._book.find_chapter(self.selected_entry) + chapters)
+            self._show_chapter(self._book.find_chapter(self.selected_entry) + chapter_count)
 
-    def mark(self, number: int) -> None:
+    def mark(self, index: int) -> None:
         """Select the choice with this index.
 
         An index outside the list selects the first or the last choice.
         """
-        self.marked = max(0, min(len(self.choices) - 1, number))
+        self.marked = max(0, min(len(self.choices) - 1, index))
 
     @property
     def words(self) -> tuple[tuple[str, str], ...]:

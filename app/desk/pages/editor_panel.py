@@ -33,7 +33,7 @@ class PanelModel:
     def open_file(self, file: Path) -> None:
         """Open the form that makes a program from this file."""
 
-    def poll(self) -> None:
+    def process_results(self) -> None:
         """Process the results of the workers. The editor calls this method once per frame."""
 
     def function_keys(self) -> dict[int, FunctionKey]:

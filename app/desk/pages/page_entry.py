@@ -16,7 +16,7 @@ from app.desk.translation import tr
 from core.executor.snapshot import CYCLE_STATES, MachineState, Snapshot
 from core.ports import UnknownPart
 
-MANUAL_STATES = frozenset({MachineState.JOG, MachineState.HOME})
+MANUAL_STATES = frozenset({MachineState.JOG, MachineState.HOMING})
 AXES_MOVING = "AXES ARE MOVING. WAIT UNTIL THEY STOP BEFORE EDITING"
 SPINDLE_ON = "SPINDLE IS ON. STOP IT (M05 OR R). EDIT WHEN IT IS AT REST"
 SPINDLE_UNKNOWN = "SPINDLE MAY BE TURNING: PRESS E-STOP. DO NOT EDIT NOW"

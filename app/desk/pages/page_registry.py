@@ -36,14 +36,14 @@ class PageRegistry:
         self._attached[type(model)] = model
 
     def attach_lazily(self, model_class: str, make_model: Callable[[], AttachedModel]) -> None:
-        """Register a model that the first ``find`` creates.
+        """Register a model that the first ``find_model`` creates.
 
         ``model_class`` is the class name with its module, for example
         ``app.editor.editor_model.EditorModel``.
         """
         self._made_later[model_class] = make_model
 
-    def find(self, model_class: type[AttachedT]) -> AttachedT | None:
+    def find_model(self, model_class: type[AttachedT]) -> AttachedT | None:
         """Return the model of this class, or None if no such model is attached."""
         make = self._made_later.pop(f"{model_class.__module__}.{model_class.__qualname__}", None)
         if make is not None:
@@ -73,9 +73,9 @@ class PageRegistry:
         """Add a function key to the program list."""
         self._program_keys[name] = key
 
-    def set_notice(self, notice: Callable[[Snapshot], NoticeRow | None]) -> None:
+    def set_notice_finder(self, find_notice: Callable[[Snapshot], NoticeRow | None]) -> None:
         """Set the function that returns a notice between cycles, for example about the next job."""
-        self._notice = notice
+        self._notice = find_notice
 
     def set_recording_opener(self, open_recording: Callable[[str], None]) -> None:
         """Set the function that opens the recording of an alarm by its name."""

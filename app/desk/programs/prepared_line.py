@@ -21,9 +21,9 @@ ProveLine = Callable[[str, Snapshot, ProgressCallback], tuple[Job, ProvedJob]]
 """From a line and the machine as it stands to its job and its proof; called on the worker."""
 
 
-def find_unset_tools(job: Job, proved: ProvedJob) -> tuple[Diagnostic, ...]:
+def find_unset_tools(job: Job, proved_job: ProvedJob) -> tuple[Diagnostic, ...]:
     """Return an error for each tool that the line calls and that does not have a measured offset."""
-    missing = proved.proof.unset(job)
+    missing = proved_job.proof.unset(job)
     text = "Tool {number} has not been set."
     return tuple(
         Diagnostic(
@@ -40,7 +40,7 @@ class PreparedMdiLine:
     Only Cycle Start starts the line. While no line is ready, Cycle Start has no effect.
     """
 
-    prove_function: ProveLine
+    prove_text: ProveLine
     post_command: Callable[[Command], None]
     diagnostics: tuple[Diagnostic, ...] = ()  # Diagnostics of the proof.
     ready_job: Job | None = None  # The job that is proved and prepared.
@@ -56,7 +56,7 @@ class PreparedMdiLine:
         ``on_failed`` is called with an error text if the proof fails unexpectedly.
         """
         self.cancel_line()
-        self.worker.request(partial(self.prove_function, text, snapshot), self._proved, on_failed)
+        self.worker.request_work(partial(self.prove_text, text, snapshot), self._proved, on_failed)
 
     def cancel_line(self) -> None:
         """Cancel the line, so that Cycle Start has no effect."""
@@ -70,7 +70,7 @@ class PreparedMdiLine:
 
     def discard_line(self) -> None:
         """Cancel the proof in progress, and discard the ready line and its diagnostics."""
-        self.worker.cancel()
+        self.worker.cancel_request()
         self.ready_job, self.diagnostics = None, ()
 
     def renew_line_mode(self, snapshot: Snapshot) -> None:
@@ -92,7 +92,7 @@ class PreparedMdiLine:
         started = self.ready_job is not None and begun
         if started:
             self.ready_job, self.diagnostics = None, ()
-        self.worker.poll()
+        self.worker.deliver_results()
         return started
 
     @property

@@ -11,7 +11,7 @@ from app.desk.pages.page_entry import find_program_refusal
 from app.desk.programs.program_folder import ProgramFolders
 from app.desk.programs.program_loading import ProgramLoader
 from app.desk.status import interrupted_notice
-from app.desk.status.prompt_line import ACTIVE_STATES, PromptAnswers
+from app.desk.status.prompt_line import ACTIVE_STATES, PromptLine
 from core.executor.snapshot import Snapshot
 
 LAST_PROGRAM_SETTING = "last_program"  # Setting with the path of the program that was loaded last.
@@ -27,7 +27,7 @@ class ProgramChoice:
     program_folders: ProgramFolders
     program_loader: ProgramLoader
     read_snapshot: Callable[[], Snapshot]
-    prompt_answers: PromptAnswers
+    prompt_answers: PromptLine
     save_path: Callable[[str], None]
 
     def can_choose(self) -> bool:
@@ -47,7 +47,7 @@ class ProgramChoice:
     def load_path(self, path: Path) -> None:
         """Load a program, but ask the operator first if it would replace an interrupted job."""
         found = self.read_snapshot().interrupted
-        self.prompt_answers.withdraw()
+        self.prompt_answers.withdraw_question()
         if found is not None and found.program != path.name:
             self.prompt_answers.ask_question(
                 interrupted_notice.make_replace_question(found, path.name), partial(self._load, path)
@@ -68,5 +68,5 @@ class ProgramChoice:
         elif self.read_snapshot().state in ACTIVE_STATES:
             self.prompt_answers.say("CHANGE BLOCK DELETE ONLY BETWEEN CYCLES")
         else:
-            self.prompt_answers.withdraw()
+            self.prompt_answers.withdraw_question()
             self.program_loader.start_loading(loaded.path, not loaded.block_delete)

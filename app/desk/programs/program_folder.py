@@ -15,11 +15,11 @@ from pathlib import Path
 
 from app.desk.programs.program_loading import LoadedProgram
 from app.desk.translation import tr
-from core.executor.raised_alarm import Attempt
+from core.executor.raised_alarm import CaughtAttempt
 from core.language.source import ProgramSource, SourceError, load_source
 from core.message import Message
 
-MAX_LISTED = 2000  # Maximum number of listed programs in a folder.
+MAX_PROGRAM_COUNT = 2000  # Maximum number of listed programs in a folder.
 PROGRAM_EXTENSIONS = frozenset({"", ".nc", ".txt", ".tap", ".cnc", ".prg", ".h", ".mpf", ".spf"})
 
 
@@ -105,7 +105,7 @@ def _files(folder: Path, taken: AcceptsName) -> Iterator[Path]:
         return
     good = (p for p in paths if taken(p.name) and not p.name.startswith(".") and p.is_file())
     for count, path in enumerate(good):
-        if count >= MAX_LISTED:
+        if count >= MAX_PROGRAM_COUNT:
             return
         yield path
 
@@ -116,9 +116,9 @@ def _files(folder: Path, taken: AcceptsName) -> Iterator[Path]:
 _log = logging.getLogger(__name__)
 CHECK_INTERVAL_S = 2.0  # Seconds between two checks of the file.
 CHECK_TIMEOUT_S = 5.0  # Seconds after which an unfinished check counts as an unreadable file.
-FILE_MISSING = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
-FILE_CHANGED = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
-FILE_UNREADABLE = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
+FILE_MISSING_TEXT = "{name} IS NOT ON THE DISK. CYCLE START RUNS THE LOADED PROGRAM"
+FILE_CHANGED_TEXT = "{name} HAS CHANGED. F2: RELOAD. CYCLE START RUNS THE OLD VERSION"
+FILE_UNREADABLE_TEXT = "CANNOT READ {name}: CHECK FOLDER. CYCLE START RUNS LOADED VERSION"
 _Message = tuple[str, str]  # Message text and file name.
 _NO_DIFFERENCE = ("", "")
 _FileStamp = tuple[int, int]  # Modification time in ns and size in bytes, or an error number and -1.
@@ -155,7 +155,7 @@ class ProgramFileMonitor:
         if loaded.source is None:
             return ""
         if since is not None and self._clock() - since > CHECK_TIMEOUT_S:
-            return tr(Message(FILE_UNREADABLE, name=loaded.name))
+            return tr(Message(FILE_UNREADABLE_TEXT, name=loaded.name))
         source, said = self._found
         return tr(Message(said[0], name=said[1])) if said[0] and source is loaded.source else ""
 
@@ -168,7 +168,7 @@ class ProgramFileMonitor:
         self._closing.set()
         self._wanted.set()
 
-    def check_soon(self) -> None:
+    def request_check(self) -> None:
         """Request an immediate check of the file, because TurnDesk has just written it."""
         self._wanted.set()
 
@@ -192,7 +192,7 @@ class ProgramFileMonitor:
             found = ((_find_difference(file, text), file.name) for file, text in texts.items())
             said = next((each for each in found if each[0]), _NO_DIFFERENCE)
             # The file's time and size may not change, so read the file at every check.
-            unread = said[0] == FILE_UNREADABLE
+            unread = said[0] == FILE_UNREADABLE_TEXT
             self._seen = None if unread else (source, stamps)
             self._found = (source, said)
 
@@ -205,12 +205,12 @@ class ProgramFileMonitor:
 
     def check_safely(self) -> None:
         """Check the file once. If the check raises an exception, the file counts as unreadable."""
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             self.compare_files()
         if trial.error is not None:
             _log.error("the program's file cannot be watched", exc_info=trial.error)
             loaded = self._loaded()
-            self._seen, self._found = None, (loaded.source, (FILE_UNREADABLE, loaded.name))
+            self._seen, self._found = None, (loaded.source, (FILE_UNREADABLE_TEXT, loaded.name))
 
 
 def _stamp(file: Path) -> _FileStamp:
@@ -227,12 +227,16 @@ def _find_difference(file: Path, read: ProgramSource) -> str:
         now = load_source(file)
     except SourceError as error:
         return _describe_read_error(error)
-    return "" if now.text == read.text else FILE_CHANGED
+    return "" if now.text == read.text else FILE_CHANGED_TEXT
 
 
 def _describe_read_error(error: SourceError) -> str:
     """Return the message about a file whose program text cannot be read."""
     cause = error.__cause__
     if not isinstance(cause, OSError):
-        return FILE_CHANGED  # The file could be read, but is not a program.
-    return FILE_MISSING if isinstance(cause, (FileNotFoundError, NotADirectoryError)) else FILE_UNREADABLE
+        return FILE_CHANGED_TEXT  # The file could be read, but is not a program.
+    return (
+        FILE_MISSING_TEXT
+        if isinstance(cause, (FileNotFoundError, NotADirectoryError))
+        else FILE_UNREADABLE_TEXT
+    )

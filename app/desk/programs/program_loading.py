@@ -186,7 +186,7 @@ class ProgramLoader:
 
         If loading fails, its phase is UNREADABLE and its ``error_text`` gives the reason.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         return self._now
 
     def start_loading(self, path: Path, block_delete: bool = False) -> None:
@@ -194,7 +194,7 @@ class ProgramLoader:
         with self.worker.lock:
             self.load_count += 1
             self._now = LoadedProgram(LoadingPhase.READING, path, block_delete)
-            self.worker.request(partial(self._load, path, block_delete), lambda _: None, self._failed)
+            self.worker.request_work(partial(self._load, path, block_delete), lambda _: None, self._failed)
 
     def replace_loaded(self, loaded: LoadedProgram) -> None:
         """Replace the loaded program with the same program that has a new proof or progress."""
@@ -255,7 +255,7 @@ class ProgramLoader:
         self._publish(request, lambda now: replace(now, progress=int(count)))
 
     def _publish(self, request: WorkRequest, change: Callable[[LoadedProgram], LoadedProgram]) -> None:
-        request.publish(lambda: self.replace_loaded(change(self._now)))
+        request.publish_result(lambda: self.replace_loaded(change(self._now)))
 
     def _failed(self, why: str) -> None:
         self._now = replace(self._now, phase=LoadingPhase.UNREADABLE, error_text=why)

@@ -54,10 +54,10 @@ class RunningRenewal:
         now = self.program_loader.loaded
         if now.job is None:
             return False
-        self.worker.cancel()
+        self.worker.cancel_request()
         self._loads, self._next, self._told, self._trouble = self.program_loader.load_count, None, False, ""
         self.program_loader.post_command(ChangeOffsets())
-        self.worker.request(partial(self._renew, now, now.job), self._ready, self._failed)
+        self.worker.request_work(partial(self._renew, now, now.job), self._ready, self._failed)
         return True
 
     def is_in_use(self, snapshot: Snapshot) -> bool:
@@ -81,7 +81,7 @@ class RunningRenewal:
 
         If the program could not be proved again, the executor is informed.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         if self._trouble:
             why, self._trouble = self._trouble, ""
             self.program_loader.post_command(ChangeOffsets(trouble=why))
@@ -106,7 +106,7 @@ class RunningRenewal:
             progress=0,
         )
         if not proved.waits_for_part:
-            request.publish(partial(self._publish, fresh))
+            request.publish_result(partial(self._publish, fresh))
             self._give(job, proved.proof)
         picture = steps.draw_path(job, watch)
         part = steps.prove_part(picture, watch)
@@ -122,7 +122,7 @@ class RunningRenewal:
             phase=find_final_phase(whole),
         )
         if proved.waits_for_part:
-            request.publish(partial(self._publish, fresh))
+            request.publish_result(partial(self._publish, fresh))
             self._give(job, whole)
         return fresh
 
@@ -191,7 +191,8 @@ class ProgramRenewal:
             # The new offsets take effect immediately, also for the tool in use.
             post_command(
                 UseOffsets(
-                    make_tool_offsets(offset_book.tools), make_secondary_offsets(offset_book.secondary)
+                    make_tool_offsets(offset_book.tool_offsets),
+                    make_secondary_offsets(offset_book.secondary_offsets),
                 )
             )
             now = self.program_loader.loaded

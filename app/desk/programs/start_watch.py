@@ -19,7 +19,7 @@ from app.desk.programs.prepared_line import ProveLine
 from app.desk.programs.program_loading import FirstMoveResult, LoadedProgram, ProvedJob
 from app.desk.status.interrupted_notice import can_restart
 from app.desk.translation import tr
-from app.path.path_aspects import DrawnLeg
+from app.path.path_aspects import ApproachLeg
 from core.executor.commands import FIRST_MOVE_CROSSES, TOOL_IN_PART, Clearance, Command, ReplaceClearances
 from core.executor.job import Job, start_program_pass
 from core.executor.snapshot import (
@@ -61,7 +61,7 @@ class FirstMoveQuery(NamedTuple):
     job: Job
     start_kind: StartAction
     axis_positions: tuple[float, ...]
-    begun_count: int
+    begun_cycle_count: int
     active_tool: int
     previous_part: (
         PreviousPart | None
@@ -77,21 +77,23 @@ class FirstMoveQuery(NamedTuple):
             self.job.digest,
             self.start_kind,
             self.axis_positions,
-            self.begun_count,
+            self.begun_cycle_count,
             self.active_tool,
             known,
             self.is_part_unknown,
         )
 
 
-def add_verdict(proved: ProvedJob, result: FirstMoveResult) -> ProvedJob:
+def add_verdict(proved_job: ProvedJob, result: FirstMoveResult) -> ProvedJob:
     """Return the proof of a line or a restart with this verdict added. A rejected first move is an error."""
     found = result.start_clearance
     if not found.code:
-        return replace(proved, first_move_result=result)
+        return replace(proved_job, first_move_result=result)
     error = Diagnostic(1, 0, Severity.ERROR, found.code, found.why, "")
-    proof = replace(proved.proof, errors=(*proved.proof.errors, found.why))
-    return replace(proved, proof=proof, diagnostics=(*proved.diagnostics, error), first_move_result=result)
+    proof = replace(proved_job.proof, errors=(*proved_job.proof.errors, found.why))
+    return replace(
+        proved_job, proof=proof, diagnostics=(*proved_job.diagnostics, error), first_move_result=result
+    )
 
 
 @dataclass(slots=True)
@@ -101,16 +103,16 @@ class FirstMoveChecker:
     _lock: Lock = field(default_factory=Lock)
     _history: tuple[ProgramPicture, PartHistory] | None = None
 
-    def check_first_move(self, query: FirstMoveQuery, progress: ProgressCallback) -> FirstMoveResult:
-        """Return the verdict on this start. Raises AbandonedError if ``progress`` raises it."""
+    def check_first_move(self, query: FirstMoveQuery, report_progress: ProgressCallback) -> FirstMoveResult:
+        """Return the verdict on this start. Raises AbandonedError if ``report_progress`` raises it."""
         with self._lock:
-            return self._judge(query, progress)
+            return self._judge(query, report_progress)
 
     def _judge(self, asked: FirstMoveQuery, watch: ProgressCallback) -> FirstMoveResult:
         from core.proving.start_check import find_first_moves, make_unchecked_move
 
         part, passes = asked.previous_part, _make_pass_finder(asked.job)
-        plain = Clearance(asked.job.digest, asked.axis_positions, asked.begun_count)
+        plain = Clearance(asked.job.digest, asked.axis_positions, asked.begun_cycle_count)
         if part is None or part.picture.part is None:
             move = make_unchecked_move(find_first_moves(passes, asked.axis_positions))
             unknown = asked.is_part_unknown or (part is not None and part.interrupted_job is not None)
@@ -151,7 +153,9 @@ def _make_pass_finder(job: Job) -> Callable[[tuple[float, ...]], Iterable[Block]
     """Return a function that interprets a job from a given axis position, with all inputs off."""
 
     def passes(at: tuple[float, ...]) -> Iterable[Block]:
-        return start_program_pass(job, replace(job.setup, start=at, inputs=lambda _terminal: False)).blocks
+        return start_program_pass(
+            job, replace(job.setup, start=at, inputs=lambda _terminal: False)
+        ).block_iterator
 
     return passes
 
@@ -185,7 +189,7 @@ def _make_verdict(plain: Clearance, found: FirstMove, part: PreviousPart) -> Cle
     why = _words(found, part)
     if found.is_assumed:
         return replace(plain, warned=why)
-    return replace(plain, code=TOOL_IN_PART if found.starts_inside else FIRST_MOVE_CROSSES, why=why)
+    return replace(plain, code=TOOL_IN_PART if found.is_inside_at_start else FIRST_MOVE_CROSSES, why=why)
 
 
 def _not_known() -> str:
@@ -202,7 +206,7 @@ def _words(found: FirstMove, part: PreviousPart) -> str:
     }
     text = (
         tr("{tool} IS INSIDE {what}")
-        if found.starts_inside
+        if found.is_inside_at_start
         else tr("THE FIRST MOVE WOULD TAKE {tool} THROUGH {what}")
     )
     said = tr(
@@ -243,14 +247,14 @@ class FirstMoveWatch:
 
         The screen calls this method once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         self._track_part(snapshot, loaded)
         question = self._question(snapshot, loaded)
         if question is None:
             self._asked = self.first_move_result = None
         elif question.key != self._asked:
             self._asked, self.first_move_result = question.key, None
-            self.worker.request(
+            self.worker.request_work(
                 partial(self._judge.check_first_move, question),
                 self._found,
                 partial(self._handle_failure, question),
@@ -260,7 +264,7 @@ class FirstMoveWatch:
         """End the worker that checks first moves."""
         self.worker.close()
 
-    def make_start_legs(self, snapshot: Snapshot) -> tuple[DrawnLeg, ...]:
+    def make_start_legs(self, snapshot: Snapshot) -> tuple[ApproachLeg, ...]:
         """Return the first move of the next program start for drawing, or () while a cycle runs."""
         return make_drawn_legs(self.first_move_result) if snapshot.state in _REST_STATES else ()
 
@@ -276,23 +280,24 @@ class FirstMoveWatch:
 
     # =
 
-    def wrap_line_proof(self, prove: ProveLine) -> ProveLine:
+    def wrap_line_proof(self, prove_text: ProveLine) -> ProveLine:
         """Return a function that proves an MDI line and also checks its first move."""
 
         def prove_line(text: str, snapshot: Snapshot, watch: ProgressCallback) -> tuple[Job, ProvedJob]:
-            job, proved = prove(text, snapshot, watch)
+            job, proved = prove_text(text, snapshot, watch)
             return job, self.add_first_move_check(job, proved, snapshot, watch)
 
         return prove_line
 
     def add_first_move_check(
-        self, job: Job, proved: ProvedJob, snapshot: Snapshot, progress: ProgressCallback
+        self, job: Job, proved_job: ProvedJob, snapshot: Snapshot, report_progress: ProgressCallback
     ) -> ProvedJob:
         """Return the proof of a line or a restart with the verdict on its first move added."""
-        if proved.proof.errors:
-            return proved
+        if proved_job.proof.errors:
+            return proved_job
         return add_verdict(
-            proved, self._judge.check_first_move(self._of(job, StartAction.MDI_LINE, snapshot), progress)
+            proved_job,
+            self._judge.check_first_move(self._of(job, StartAction.MDI_LINE, snapshot), report_progress),
         )
 
     # --- requests -----------------------------------------------------------------------------------------
@@ -340,17 +345,17 @@ class FirstMoveWatch:
         warned = tr(Message("THE FIRST MOVE COULD NOT BE CHECKED: {why}", why=reason))
         self._found(
             FirstMoveResult(
-                (Clearance(asked.job.digest, asked.axis_positions, asked.begun_count, warned=warned),)
+                (Clearance(asked.job.digest, asked.axis_positions, asked.begun_cycle_count, warned=warned),)
             )
         )
 
 
-def make_drawn_legs(result: FirstMoveResult | None) -> tuple[DrawnLeg, ...]:
+def make_drawn_legs(result: FirstMoveResult | None) -> tuple[ApproachLeg, ...]:
     """Return the first move as drawn legs for the path view, with a label at its end."""
     if result is None:
         return ()
     (zero_x, zero_z), last = result.zero_position, len(result.legs) - 1
     return tuple(
-        DrawnLeg(z - zero_z, x - zero_x, quick, tr("START") if number == last else "")
+        ApproachLeg(z - zero_z, x - zero_x, quick, tr("START") if number == last else "")
         for number, (x, z, quick) in enumerate(result.legs)
     )

@@ -12,7 +12,7 @@ from core.executor.commands import Command
 from core.executor.snapshot import Snapshot
 
 if TYPE_CHECKING:
-    from app.desk.stop_keys.watched_keys import OpenStopChannel
+    from app.desk.stop_keys.key_watcher_client import OpenStopChannel
     from core.records.recordings import ScopeRecordings
 
 
@@ -24,7 +24,8 @@ class DeskControl:
     of a simulated machine. ``recordings`` contains the last minutes of samples, or is None without a
     recorder. ``open_stop_channel`` opens a connection that sends stop keys to the control without the
     screen. ``restart`` replaces a silent control with a new control, or is None if this is not possible.
-    ``identity`` returns the identity of a control process, or an empty text for a control in this process.
+    ``read_identity`` returns the identity of a control process, or an empty text for a control in this
+    process.
     """
 
     post: Callable[[Command], None]
@@ -35,5 +36,5 @@ class DeskControl:
     recordings: ScopeRecordings | None = None
     open_stop_channel: OpenStopChannel = lambda: None
     restart: Callable[[], object] | None = None
-    identity: Callable[[], str] = str
+    read_identity: Callable[[], str] = str
     silence_watch: SilenceWatch = field(default_factory=SilenceWatch)

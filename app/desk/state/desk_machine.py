@@ -24,14 +24,14 @@ class DeskMachine:
     allows_one_hand: bool = False
 
     @property
-    def language(self) -> str:
+    def program_language(self) -> str:
         """Return the program language of the machine, which MDI also uses."""
-        return self.machine.language if self.machine is not None else "omniturn"
+        return self.machine.mdi_language if self.machine is not None else "omniturn"
 
     @property
     def third_axis_name(self) -> str:
         """Return the name of the third axis."""
-        return self.machine.third_axis if self.machine is not None else "C"
+        return self.machine.third_axis_name if self.machine is not None else "C"
 
     @property
     def is_table_rotary(self) -> bool:

@@ -10,7 +10,7 @@ from app.desk.posted_values import PostedValues
 from app.desk.state.desk_control import DeskControl
 from app.desk.station_controls import StationControls, step_feed_override
 from app.desk.status import prompt_line
-from app.desk.status.prompt_line import PromptAnswers
+from app.desk.status.prompt_line import PromptLine
 from core.executor.commands import CycleStart, SetFeedOverride
 
 
@@ -25,7 +25,7 @@ class StationKeys:
 
     desk_control: DeskControl
     station_controls: StationControls
-    prompt_answers: PromptAnswers
+    prompt_answers: PromptLine
     barred: Callable[[], str]
     start_feed_hold: Callable[[int], None]
     is_two_hand: bool
@@ -47,7 +47,7 @@ class StationKeys:
         """Release the E-stop of the simulated station after the operator confirms."""
         if self.desk_control.station_panel is None:
             self.prompt_answers.say(prompt_line.NO_ESTOP_BUTTON)
-        elif not self.station_controls.estop_pressed:
+        elif not self.station_controls.is_estop_pressed:
             self.prompt_answers.say("THE E-STOP IS NOT PRESSED")
         else:
             self.prompt_answers.ask_question(
@@ -59,7 +59,7 @@ class StationKeys:
         if why := self.barred():
             self.prompt_answers.say(why)
         elif not self.is_two_hand:
-            self.prompt_answers.withdraw()
+            self.prompt_answers.withdraw_question()
             self.desk_control.post(CycleStart())
 
     def toggle_spindle_switch(self) -> None:

@@ -16,16 +16,18 @@ class StorageState:
     _recheck_file: Callable[[], None] = lambda: None
     _restoring: bool = False
 
-    def set_store_readers(self, problem: Callable[[], str] = str, waiting: Callable[[], str] = str) -> None:
+    def set_store_readers(
+        self, read_problem: Callable[[], str] = str, read_unsaved: Callable[[], str] = str
+    ) -> None:
         """Set the functions that report the state of a store, for ``read_problem`` and ``read_unsaved``."""
-        self._problem, self._waiting = problem, waiting
+        self._problem, self._waiting = read_problem, read_unsaved
 
-    def set_file_readers(self, difference: Callable[[], str], recheck: Callable[[], None]) -> None:
+    def set_file_readers(self, read_difference: Callable[[], str], recheck_file: Callable[[], None]) -> None:
         """Set the functions of the program file monitor.
 
         ``read_file_difference`` and ``recheck_file`` call these functions.
         """
-        self._difference, self._recheck_file = difference, recheck
+        self._difference, self._recheck_file = read_difference, recheck_file
 
     def read_problem(self) -> str:
         """Return why events, parts and versions are not saved, or an empty text if they are saved."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.desk.late_presses import LatePresses
+from app.desk.late_presses import LatePressFilter
 
 
 @dataclass(slots=True)
@@ -15,7 +15,7 @@ class WindowState:
     ``late_presses`` drops key presses that would start an action after a stall of the screen.
     """
 
-    late_presses: LatePresses
+    late_presses: LatePressFilter
     _starts_here: bool = True
     _keyboard_away: bool = False
     _has_field: Callable[[], bool] = bool
@@ -26,10 +26,13 @@ class WindowState:
     # --- set by the window ---------------------------------------------------------------------------
 
     def connect_window(
-        self, wake: Callable[[], None], is_stop_held: Callable[[], bool], press_age: Callable[[], float]
+        self,
+        wake_window: Callable[[], None],
+        is_stop_held: Callable[[], bool],
+        find_press_age: Callable[[], float],
     ) -> None:
         """Use the functions of this window in place of the functions of an earlier window."""
-        self._wake, self._is_stop_held, self._press_age = wake, is_stop_held, press_age
+        self._wake, self._is_stop_held, self._press_age = wake_window, is_stop_held, find_press_age
 
     def set_page(self, *, can_start: bool, has_field: Callable[[], bool] = bool) -> None:
         """Set the properties of the current page.

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from app.desk.status.formats import format_wall_time
-from core.alarms import CATALOGUE, AlarmCode
+from core.alarms import CATALOG, AlarmCode
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import Alarm, LogEvent
 from core.message import Message
@@ -20,7 +20,7 @@ from core.store.store_rows import EventRow
 MAX_ENTRIES = 500
 LOGGED_KINDS = frozenset({"alarm", "estop", "stop"})  # Kinds of events that the log shows.
 _LOG_TEXT = re.compile(r"(\d{3}) (.*?): (.*)", re.DOTALL)
-_CODES_BY_NUMBER: dict[int, AlarmCode] = {entry.number: code for code, entry in CATALOGUE.items()}
+_CODES_BY_NUMBER: dict[int, AlarmCode] = {entry.number: code for code, entry in CATALOG.items()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,8 @@ class AlarmLog:
     The executor's thread may call ``hear``. Only the screen's thread may call the other methods.
     """
 
-    def __init__(self, clock: Callable[[], str]) -> None:
-        self._clock = clock
+    def __init__(self, format_local_time: Callable[[], str]) -> None:
+        self._clock = format_local_time
         self._heard: deque[LoggedStop] = deque(maxlen=MAX_ENTRIES)
         self._entries: tuple[LoggedStop, ...] = ()
 

@@ -26,12 +26,12 @@ def format_fixed(value: float, decimals: int) -> str:
     return MINUS_SIGN + digits if negative else digits
 
 
-def format_length(mm: float, metric: bool) -> str:
+def format_length(mm: float, is_metric: bool) -> str:
     """Return a length or coordinate in mm as text.
 
-    If ``metric`` is true, the text is in mm with 4 decimals. Otherwise it is in inches with 5 decimals.
+    If ``is_metric`` is true, the text is in mm with 4 decimals. Otherwise it is in inches with 5 decimals.
     """
-    return format_fixed(mm, 4) if metric else format_fixed(mm / MM_PER_INCH, 5)
+    return format_fixed(mm, 4) if is_metric else format_fixed(mm / MM_PER_INCH, 5)
 
 
 def format_angle(degrees: float) -> str:
@@ -44,24 +44,24 @@ def find_rotary_feed_unit(per_rev: bool) -> str:
     return f"°/{'rev' if per_rev else 'min'}"
 
 
-def find_feed_unit(metric: bool, per_rev: bool) -> str:
+def find_feed_unit(is_metric: bool, per_rev: bool) -> str:
     """Return the unit of a linear feed, such as ``mm/rev`` or ``in/min``."""
-    return f"{'mm' if metric else 'in'}/{'rev' if per_rev else 'min'}"
+    return f"{'mm' if is_metric else 'in'}/{'rev' if per_rev else 'min'}"
 
 
-def format_feed(value: float, metric: bool, per_rev: bool) -> str:
+def format_feed(value: float, is_metric: bool, per_rev: bool) -> str:
     """Return a feed as text without its unit. ``value`` is in mm/s, or in mm/rev if ``per_rev``."""
-    if metric:
+    if is_metric:
         return format_fixed(value, 4) if per_rev else format_fixed(value * 60, 1)
     return format_fixed(value / MM_PER_INCH, 5) if per_rev else format_fixed(value * 60 / MM_PER_INCH, 2)
 
 
-def format_surface_speed(mm_s: float, metric: bool) -> str:
+def format_surface_speed(mm_s: float, is_metric: bool) -> str:
     """Return a surface speed in mm/s as text without a sign.
 
-    If ``metric`` is true, the text is in m/min. Otherwise it is in ft/min.
+    If ``is_metric`` is true, the text is in m/min. Otherwise it is in ft/min.
     """
-    return format_fixed(abs(mm_s) * 60 / (1000.0 if metric else MM_PER_FOOT), 0)
+    return format_fixed(abs(mm_s) * 60 / (1000.0 if is_metric else MM_PER_FOOT), 0)
 
 
 def rpm(value: float) -> str:
@@ -95,22 +95,26 @@ def format_file_size(size_bytes: int) -> str:
     return Message("{size} GB", size=f"{size_bytes / 1000000000.0:.1f}")
 
 
-def format_wall_time(utc_time: str, today: str = "%H:%M") -> str:
+def format_wall_time(utc_time: str, today_format: str = "%H:%M") -> str:
     """Return a UTC time of the store as local time, with the date unless it is today.
 
-    ``today`` is the format for times of today. An invalid time is returned unchanged.
+    ``today_format`` is the format for times of today. An invalid time is returned unchanged.
     """
     try:
         then = datetime.fromisoformat(utc_time).astimezone()
     except ValueError:
         return utc_time
     same = datetime.now().astimezone().date() == then.date()
-    return then.strftime(today if same else "%Y-%m-%d %H:%M")
+    return then.strftime(today_format if same else "%Y-%m-%d %H:%M")
 
 
-def format_local_time(utc_time: str, *, seconds: bool = True) -> str:
+def format_local_time(utc_time: str, *, with_seconds: bool = True) -> str:
     """Return a UTC time of the store (ISO 8601) as local date and time.
 
     The text contains seconds if ``seconds`` is true.
     """
-    return datetime.fromisoformat(utc_time).astimezone().strftime(f"%Y-%m-%d %H:%M{':%S' if seconds else ''}")
+    return (
+        datetime.fromisoformat(utc_time)
+        .astimezone()
+        .strftime(f"%Y-%m-%d %H:%M{':%S' if with_seconds else ''}")
+    )

@@ -57,18 +57,18 @@ def make_interrupted_notice(
     return NoticeRow(words, _describe_positions(found, snapshot, units) + _describe_uncertainty(found))
 
 
-def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start: str) -> str:
+def make_interrupted_prompt(snapshot: Snapshot, loaded: LoadedProgram, start_instruction: str) -> str:
     """Return the prompt for an interrupted job on the Automatic page.
 
-    The prompt is empty if the loaded program was not interrupted. ``start`` is the instruction that says
-    how to start a cycle.
+    The prompt is empty if the loaded program was not interrupted. ``start_instruction`` is the instruction
+    that says how to start a cycle.
     """
     line = snapshot.interrupted_line
     if not line or snapshot.state is not MachineState.IDLE or snapshot.starts is not StartAction.PROGRAM:
         return ""
     if snapshot.confirmed:
         words = tr("STARTS AT LINE 1 ({text}) FROM CURRENT T{tool} POSITION. {start}. ESC: CANCEL")
-        return tr(Message(words, text=_first(loaded), tool=snapshot.modal.tool, start=start))
+        return tr(Message(words, text=_first(loaded), tool=snapshot.modal.tool, start=start_instruction))
     if not can_restart(loaded):
         return tr(Message("STOPPED IN LINE {line}. JOG THE TOOL CLEAR. Y: START OVER", line=line))
     words = tr("STOPPED IN LINE {line}. F6: RETRACT AND RESUME. Y: START OVER")

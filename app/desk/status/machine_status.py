@@ -24,7 +24,7 @@ from app.desk.status.readouts import (
     make_spindle_readout,
 )
 from app.desk.translation import tr
-from core.alarms import CATALOGUE, Reaction
+from core.alarms import CATALOG, Reaction
 from core.executor.snapshot import Alarm, MachineState, Snapshot
 from core.interpreter.shared.modal_state import ModalState
 from core.message import Message, join_messages
@@ -103,13 +103,13 @@ STATE_TONES = {
     MachineState.DISABLED: Tone.OFF,
     MachineState.IDLE: Tone.READY,
     MachineState.RUN: Tone.RUN,
-    MachineState.HOLDING: Tone.PAUSE,
+    MachineState.STOPPING: Tone.PAUSE,
     MachineState.HOLD: Tone.PAUSE,
-    MachineState.BLOCK_END: Tone.PAUSE,
+    MachineState.SINGLE_BLOCK_STOP: Tone.PAUSE,
     MachineState.PROGRAM_STOP: Tone.PAUSE,
     MachineState.WAIT: Tone.WAIT,
     MachineState.JOG: Tone.RUN,
-    MachineState.HOME: Tone.RUN,
+    MachineState.HOMING: Tone.RUN,
     MachineState.FAULT: Tone.ALARM,
 }
 
@@ -126,7 +126,7 @@ class MachineStatus:
     secondary_text: str
     feed: FeedReadout
     spindle: SpindleReadout
-    modes: tuple[Lamp, ...]
+    mode_lamps: tuple[Lamp, ...]
     lamps: tuple[Lamp, ...]
     cycle_time: str
     last_cycle_time: str
@@ -160,15 +160,16 @@ def make_status(
     readout: ReadoutKind,
     has_c_axis: bool,
     units: DisplayUnits = DisplayUnits.PROGRAM,
-    language: str = "omniturn",
+    program_language: str = "omniturn",
     third_axis: str = "C",
     is_table_rotary: bool = True,
 ) -> MachineStatus:
     """Return the texts and values of a snapshot for the operator.
 
-    ``has_c_axis`` is True if the machine has a C axis. ``language`` is the machine's program language.
-    ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table of a mill turns,
-    and not only the head. All values are in one unit, which depends on ``units`` and the snapshot.
+    ``has_c_axis`` is True if the machine has a C axis. ``program_language`` is the machine's program
+    language. ``third_axis`` is the name of the C axis. ``is_table_rotary`` is True if a rotary table of a
+    mill turns, and not only the head. All values are in one unit, which depends on ``units`` and the
+    snapshot.
     """
     modal = snapshot.modal
     metric = units.metric(modal.metric)
@@ -182,8 +183,8 @@ def make_status(
         tool_text=_find_tool_text(modal),
         secondary_text="" if "Y" in snapshot.axes else _find_secondary_offset(modal),
         feed=make_feed_readout(snapshot, metric),
-        spindle=make_spindle_readout(snapshot, metric, language),
-        modes=make_mode_lamps(snapshot),
+        spindle=make_spindle_readout(snapshot, metric, program_language),
+        mode_lamps=make_mode_lamps(snapshot),
         lamps=make_lamps(snapshot, is_table_rotary=is_table_rotary),
         cycle_time=formats.format_duration(snapshot.cycle_elapsed),
         last_cycle_time=formats.format_duration(snapshot.last_cycle)
@@ -202,7 +203,7 @@ def make_status(
 def find_unrequested_stop(snapshot: Snapshot) -> Alarm | None:
     """Return the cause of an E-stop, or of a feed hold that the operator did not request, or None."""
     stop = snapshot.stop
-    if stop is None or (stop.code != "estop" and CATALOGUE[stop.code].reaction is not Reaction.HOLD):
+    if stop is None or (stop.code != "estop" and CATALOG[stop.code].reaction is not Reaction.HOLD):
         return None
     return stop
 

@@ -23,11 +23,11 @@ class ModalRow:
     value: str
 
 
-def make_modal_rows(modal_state: Checkpoint, language: str = "omniturn") -> tuple[ModalRow, ...]:
+def make_modal_rows(modal_state: Checkpoint, program_language: str = "omniturn") -> tuple[ModalRow, ...]:
     """Return the rows for the machine's program language, always in the same order."""
     modal = modal_state.modal
-    if language != "omniturn":
-        return _make_rows(modal_state, language)
+    if program_language != "omniturn":
+        return _make_rows(modal_state, program_language)
     return (
         *_geometry(modal),
         *_feeds(modal_state),

@@ -15,7 +15,7 @@ from app.desk.programs.program_loading import LoadedProgram, LoadingPhase
 from app.desk.status import interrupted_notice
 from app.desk.status.machine_status import MachineStatus
 from app.desk.translation import mark_untranslated, tr
-from core.alarms import CATALOGUE, AlarmCode
+from core.alarms import CATALOG, AlarmCode
 from core.executor.job import WARNING_PREFIX
 from core.executor.snapshot import Alarm, LogEvent, MachineState, Snapshot
 from core.language.diagnostics import Severity
@@ -24,13 +24,13 @@ from core.tool_edges import format_edge_name
 
 # Stops with a message of the program.
 PROGRAM_STOP_CODES: frozenset[AlarmCode] = frozenset({"program-stop", "optional-stop"})
-FILE_NOT_FOUND = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
-ASK_FILE = "FILE TO BE PROCESSED"
-CHOOSE_FILE = "TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE"
+FILE_NOT_FOUND_TEXT = "FILE NOT FOUND, PRESS ANY KEY TO CONTINUE"
+FILE_QUESTION = "FILE TO BE PROCESSED"
+CHOOSE_FILE_TEXT = "TYPE A NAME OR SELECT A PROGRAM   ENTER: LOAD   ESC: CLOSE"
 NO_NAME_TYPED = "TO EDIT, FIRST TYPE A NAME OR SELECT ONE WITH THE ARROWS"
 ONE_PALM_PRESSED = "ONLY ONE PALM BUTTON PRESSED: PRESS BOTH WITHIN 0.5 S"
 ONE_HAND_HINT = "PRESS BOTH PALM BUTTONS WITHIN 0.5 S. ONE-HAND MODE: F10, 7"
-STOP_HELD = "RELEASE THE STOP KEY FIRST"
+RELEASE_STOP_KEY = "RELEASE THE STOP KEY FIRST"
 RELEASE_BOTH_PALMS = "RELEASE BOTH PALM BUTTONS, THEN PRESS BOTH WITHIN 0.5 S"
 CONTROL_SILENT = "CONTROL NOT RESPONDING. PRESS E-STOP. SCREEN IS NOT LIVE"
 RESTART_CONTROL = "CONTROL NOT RESPONDING. PRESS E-STOP, THEN R TO RESTART IT"
@@ -44,35 +44,40 @@ NO_ESTOP_BUTTON = "PRESS E-STOP ON THE MACHINE. THIS KEY ONLY STARTED FEED HOLD"
 HOLD_HINT = "FEED HOLD: PAUSE, H OR ESC   E-STOP: SCROLL LOCK (STOP)"
 STOP_KEYS_INACTIVE = "STOP KEYS DO NOT WORK. TAP THIS WINDOW OR USE THE BUTTONS"
 MOVING_STATES = frozenset(
-    {MachineState.RUN, MachineState.HOLDING, MachineState.WAIT, MachineState.JOG, MachineState.HOME}
+    {MachineState.RUN, MachineState.STOPPING, MachineState.WAIT, MachineState.JOG, MachineState.HOMING}
 )
-INTERRUPTED_STATES = frozenset({MachineState.HOLD, MachineState.BLOCK_END, MachineState.PROGRAM_STOP})
+INTERRUPTED_STATES = frozenset({MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.PROGRAM_STOP})
 ACTIVE_STATES = MOVING_STATES | INTERRUPTED_STATES
 
 
 def make_prompt(
-    snapshot: Snapshot, loaded: LoadedProgram, start: str, release: str, *, is_field_open: bool = False
+    snapshot: Snapshot,
+    loaded: LoadedProgram,
+    start_instruction: str,
+    release_instruction: str,
+    *,
+    is_field_open: bool = False,
 ) -> str:
     """Return the prompt for the current state.
 
     ``start`` and ``release`` are the instructions for starting a cycle and for releasing the E-stop.
     ``is_field_open`` is True if letters are text input.
     """
-    go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start)
+    go_on = Message("TO CONTINUE: {start}. R: CANCEL THE PROGRAM", start=start_instruction)
     standing = {
-        MachineState.ESTOP: _estop(release),
+        MachineState.ESTOP: _estop(release_instruction),
         MachineState.DISABLED: "DRIVES ARE OFF: PRESS D FOR DRIVES ON",
-        MachineState.FAULT: make_alarm_prompt(snapshot, release, is_field_open=is_field_open),
+        MachineState.FAULT: make_alarm_prompt(snapshot, release_instruction, is_field_open=is_field_open),
         MachineState.RUN: HOLD_HINT,
         MachineState.JOG: HOLD_HINT,
         MachineState.WAIT: HOLD_HINT,
-        MachineState.HOLDING: "STOPPING",
+        MachineState.STOPPING: "STOPPING",
         MachineState.HOLD: go_on,
-        MachineState.BLOCK_END: go_on,
+        MachineState.SINGLE_BLOCK_STOP: go_on,
         MachineState.PROGRAM_STOP: go_on,
-        MachineState.HOME: "HOMING THE AXES",
+        MachineState.HOMING: "HOMING THE AXES",
     }
-    return standing.get(snapshot.state) or _idle(snapshot, loaded, start)
+    return standing.get(snapshot.state) or _idle(snapshot, loaded, start_instruction)
 
 
 def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tuple[str, ...]:
@@ -83,7 +88,7 @@ def find_announcements(snapshot: Snapshot, *, can_start_here: bool = True) -> tu
     return tuple(text for text in snapshot.announced if can_start_here or not text.startswith(WARNING_PREFIX))
 
 
-def make_alarm_prompt(snapshot: Snapshot, release: str, *, is_field_open: bool = False) -> str:
+def make_alarm_prompt(snapshot: Snapshot, release_instruction: str, *, is_field_open: bool = False) -> str:
     """Return the prompt for an alarm or an E-stop, which replaces a page's prompt.
 
     The prompt is empty if there is neither an alarm nor an E-stop.
@@ -99,7 +104,7 @@ def make_alarm_prompt(snapshot: Snapshot, release: str, *, is_field_open: bool =
         return Message(
             "WHAT TO DO: {remedy}  ·  R: ACKNOWLEDGE   F7: ALARM LIST", remedy=snapshot.alarms[0].remedy
         )
-    return _estop(release) if snapshot.state is MachineState.ESTOP else ""
+    return _estop(release_instruction) if snapshot.state is MachineState.ESTOP else ""
 
 
 def _estop(release: str) -> str:
@@ -134,7 +139,7 @@ def describe_cause(alarm: Alarm) -> str:
 
 def translate_cause(alarm: Alarm) -> str:
     """Return the translated cause of an alarm. A program's own message at M00 or M01 is not translated."""
-    of_program = alarm.code in PROGRAM_STOP_CODES and alarm.cause not in CATALOGUE[alarm.code].causes
+    of_program = alarm.code in PROGRAM_STOP_CODES and alarm.cause not in CATALOG[alarm.code].causes
     return mark_untranslated(alarm.cause) if of_program else tr(alarm.cause)
 
 
@@ -249,19 +254,19 @@ MESSAGE_TIME_S = 4.0  # Seconds for which a message remains without a key press.
 
 
 @dataclass(slots=True)
-class PromptAnswers:
+class PromptLine:
     """The message and the question on the prompt line.
 
     A message remains for ``MESSAGE_TIME_S`` seconds or until the next key. A change of the machine's state
     does not remove a message. A question is valid in the machine state in which it was asked. Y executes
     the action. N and Esc only remove the question. An action that loses data has its own key, which is
-    different from the key that caused the question. ``clock`` returns monotonic time in seconds.
+    different from the key that caused the question. ``read_time_s`` returns monotonic time in seconds.
     """
 
     read_snapshot: Callable[[], Snapshot]
     # Returns why events, parts and versions are not being saved; empty if they are.
     read_storage_problem: Callable[[], str]
-    clock: Callable[[], float]
+    read_time_s: Callable[[], float]
     message: str = ""
     question: str = ""
     on_confirmed: Callable[[], None] | None = None  # Action of the answer yes.
@@ -297,22 +302,27 @@ class PromptAnswers:
             self.is_lasting
             and self.message
             and not is_lasting
-            and self.clock() - self._said_at < MESSAGE_TIME_S
+            and self.read_time_s() - self._said_at < MESSAGE_TIME_S
         ):
             return
         self.message, self.is_success, self.is_lasting, self._said_at = (
             text,
             is_success,
             is_lasting,
-            self.clock(),
+            self.read_time_s(),
         )
 
     def ask_question(self, question: str, on_confirmed: Callable[[], None], key: str = YES_KEY) -> None:
         """Ask a question. Repeating the open question does not count as a reply."""
         if self.on_confirmed is not None and self.question == question:
             return
-        self.withdraw()
-        self.question, self.on_confirmed, self.key, self._since = question, on_confirmed, key, self.clock()
+        self.withdraw_question()
+        self.question, self.on_confirmed, self.key, self._since = (
+            question,
+            on_confirmed,
+            key,
+            self.read_time_s(),
+        )
         self._in = self.read_snapshot().state
 
     def was_read(self, time_s: float) -> bool:
@@ -322,17 +332,17 @@ class PromptAnswers:
         """
         return self.on_confirmed is not None and time_s - self._since >= READING_TIME_S
 
-    def confirm(self, time_s: float) -> None:
+    def confirm_question(self, time_s: float) -> None:
         """Remove the question, and execute its action if the question was shown long enough.
 
         ``time_s`` is the time of the key press.
         """
         asked, read = self.on_confirmed, self.was_read(time_s)
-        self.withdraw()
+        self.withdraw_question()
         if asked is not None and read:
             asked()
 
-    def withdraw(self) -> None:
+    def withdraw_question(self) -> None:
         """Remove the question, and also remove the message unless it is lasting."""
         self.question, self.on_confirmed = "", None
         if not self.is_lasting:
@@ -345,7 +355,7 @@ class PromptAnswers:
 
     def remove_expired(self, snapshot: Snapshot) -> None:
         """Remove a message whose time has ended, and remove a question if the machine's state has changed."""
-        if self.message and self.clock() - self._said_at >= MESSAGE_TIME_S:
+        if self.message and self.read_time_s() - self._said_at >= MESSAGE_TIME_S:
             self.message, self.is_lasting = "", False
         if self.on_confirmed is not None and snapshot.state is not self._in:
             self.question, self.on_confirmed = "", None

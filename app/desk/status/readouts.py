@@ -141,7 +141,7 @@ def find_plane_position(snapshot: Snapshot, swivel: PlanePosition) -> tuple[floa
     """Return the tip's position in the working plane in mm, and the angles of the rotary axes in degrees."""
     zero = swivel.system.kinematics.zero_angles
     return (
-        *swivel.system.transform.to_frame_point(_slides(snapshot.actual)),
+        *swivel.system.transform.convert_to_frame_point(_slides(snapshot.actual)),
         *_find_shown_position(snapshot, swivel, zero),
     )
 
@@ -157,7 +157,9 @@ def find_remaining_distance(snapshot: Snapshot, swivel: PlanePosition) -> tuple[
     Values are in mm and degrees.
     """
     end = snapshot.block_end if snapshot.block else snapshot.actual
-    here, there = (swivel.system.transform.to_frame_point(_slides(at)) for at in (snapshot.actual, end))
+    here, there = (
+        swivel.system.transform.convert_to_frame_point(_slides(at)) for at in (snapshot.actual, end)
+    )
     slides = (goal - at for goal, at in zip(there, here, strict=True))
     return (
         *slides,
@@ -274,7 +276,7 @@ def _wrap_angles(at: tuple[float, ...], snapshot: Snapshot) -> tuple[float, ...]
 
 
 def make_position_readout(
-    snapshot: Snapshot, readout: ReadoutKind, has_c_axis: bool, metric: bool, third_axis: str = "C"
+    snapshot: Snapshot, readout: ReadoutKind, has_c_axis: bool, is_metric: bool, third_axis: str = "C"
 ) -> PositionReadout:
     """Return two values for every axis.
 
@@ -285,7 +287,7 @@ def make_position_readout(
     """
     diameter = snapshot.shows_diameter
     second_kind = ReadoutKind.POSITION if readout is ReadoutKind.TO_GO else ReadoutKind.TO_GO
-    large, small = (_figures(snapshot, r, metric, diameter) for r in (readout, second_kind))
+    large, small = (_figures(snapshot, r, is_metric, diameter) for r in (readout, second_kind))
     mark = "" if snapshot.axes != LATHE_AXES else "Ø" if diameter else "R"
     known = UnknownPart.AXES not in snapshot.unknown
     names = (*snapshot.axes[:2], third_axis) if snapshot.axes == LATHE_AXES else snapshot.axes
@@ -296,7 +298,7 @@ def make_position_readout(
     return PositionReadout(
         main_kind=readout,
         second_kind=second_kind,
-        unit=_find_unit(metric, snapshot.modal.metric),
+        unit=_find_unit(is_metric, snapshot.modal.metric),
         x_label=_find_x_label(snapshot, readout),
         axes=tuple(rows if has_c_axis or snapshot.axes != LATHE_AXES else rows[:2]),
     )
@@ -353,7 +355,7 @@ class FeedReadout:
     measured_value: str
     measured_unit: str
     override: float
-    prefix: str = ""  # MM before a metric feed, as the original control shows it.
+    value_prefix: str = ""  # MM before a metric feed, as the original control shows it.
 
 
 @dataclass(frozen=True, slots=True)
@@ -374,7 +376,7 @@ class SpindleReadout:
     load: str = ""  # In percent, if the machine measures it.
 
 
-def make_feed_readout(snapshot: Snapshot, metric: bool) -> FeedReadout:
+def make_feed_readout(snapshot: Snapshot, is_metric: bool) -> FeedReadout:
     """Return the programmed and the measured feed. ``metric`` selects mm instead of inches."""
     modal = snapshot.modal
     per_rev = modal.per_rev and not snapshot.rapid
@@ -388,19 +390,19 @@ def make_feed_readout(snapshot: Snapshot, metric: bool) -> FeedReadout:
         speed = snapshot.velocity / turns if turns > TURNING_RPM / 60 else math.nan
     else:
         speed = snapshot.velocity
-    unit = formats.find_feed_unit(metric, per_rev)
+    unit = formats.find_feed_unit(is_metric, per_rev)
     known = snapshot.rapid or snapshot.feed > 0
-    measured = formats.format_feed(speed, metric, per_rev) if math.isfinite(speed) else formats.NO_VALUE
+    measured = formats.format_feed(speed, is_metric, per_rev) if math.isfinite(speed) else formats.NO_VALUE
     if UnknownPart.AXES in snapshot.unknown or (per_rev and UnknownPart.SPINDLE in snapshot.unknown):
         measured = UNKNOWN_VALUE
-    value = "RAPID" if snapshot.rapid else formats.format_feed(snapshot.feed, metric, modal.per_rev)
+    value = "RAPID" if snapshot.rapid else formats.format_feed(snapshot.feed, is_metric, modal.per_rev)
     return FeedReadout(
         programmed_value=value if known else formats.NO_VALUE,
         programmed_unit="" if snapshot.rapid else unit,
         measured_value=measured,
         measured_unit=unit,
         override=snapshot.feed_override,
-        prefix="MM" if metric else "",
+        value_prefix="MM" if is_metric else "",
     )
 
 
@@ -410,7 +412,7 @@ def _directions(language: str) -> tuple[str, str, str]:
     return tr("M3 FWD"), tr("M4 REV"), tr("M5 OFF")
 
 
-def make_spindle_readout(snapshot: Snapshot, metric: bool, language: str) -> SpindleReadout:
+def make_spindle_readout(snapshot: Snapshot, is_metric: bool, program_language: str) -> SpindleReadout:
     """Return the commanded and measured speed, and the surface speed in m/min or ft/min.
 
     ``language`` is the machine's program language, because OmniTurn writes M05 and other languages write
@@ -423,7 +425,7 @@ def make_spindle_readout(snapshot: Snapshot, metric: bool, language: str) -> Spi
             commanded_rpm=UNKNOWN_VALUE,
             measured_rpm=UNKNOWN_VALUE,
             surface_speed=UNKNOWN_VALUE,
-            surface_label="M/MIN" if metric else "SFM",
+            surface_label="M/MIN" if is_metric else "SFM",
             override=snapshot.spindle_override,
             is_auto=snapshot.spindle_auto,
             is_known=False,
@@ -433,7 +435,7 @@ def make_spindle_readout(snapshot: Snapshot, metric: bool, language: str) -> Spi
     lathe = snapshot.axes == LATHE_AXES
     surface = 2 * math.pi * radius * snapshot.rpm_actual / 60 if lathe else math.nan
     command = snapshot.rpm_command
-    forward, reverse, off = _directions(language)
+    forward, reverse, off = _directions(program_language)
     direction = forward if command > 0 else reverse if command < 0 else off
     if snapshot.oriented is not None:
         direction = tr(Message("ORIENTED {angle}", angle=formats.format_angle(snapshot.oriented)))
@@ -441,8 +443,8 @@ def make_spindle_readout(snapshot: Snapshot, metric: bool, language: str) -> Spi
         direction=f"{direction} · G96" if modal.css else direction,
         commanded_rpm=formats.rpm(command),
         measured_rpm=formats.rpm(snapshot.rpm_actual),
-        surface_speed=formats.format_surface_speed(surface, metric),
-        surface_label="M/MIN" if metric else "SFM",
+        surface_speed=formats.format_surface_speed(surface, is_metric),
+        surface_label="M/MIN" if is_metric else "SFM",
         override=snapshot.spindle_override,
         is_auto=snapshot.spindle_auto,
         load=f"{snapshot.spindle_load:.0f} %" if snapshot.spindle_load is not None else "",

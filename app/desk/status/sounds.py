@@ -49,7 +49,7 @@ def make_tone_wav(frequencies_hz: Sequence[int], volume: int) -> bytes:
     return made.getvalue()
 
 
-def play_wav(sound: bytes) -> None:
+def play_wav(wav_bytes: bytes) -> None:
     """Play a WAV file on the computer's loudspeaker.
 
     Raises OSError or ValueError with the reason if no player works.
@@ -57,14 +57,14 @@ def play_wav(sound: bytes) -> None:
     if sys.platform == "win32":
         import winsound  # noqa: PLC0415 - other systems have none
 
-        winsound.PlaySound(sound, winsound.SND_MEMORY)
+        winsound.PlaySound(wav_bytes, winsound.SND_MEMORY)
         return
     players = [each for each in AUDIO_PLAYERS if shutil.which(each[0])]
     if not players:
         raise ValueError("this computer has none of pw-play, paplay and aplay (Debian: alsa-utils)")
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "sound.wav"
-        path.write_bytes(sound)
+        path.write_bytes(wav_bytes)
         player_errors = [_run_player([*player, str(path)]) for player in players[:1]]
         for player in players[1:]:
             if player_errors[-1]:

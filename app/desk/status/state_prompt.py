@@ -66,7 +66,7 @@ def _find_due_prompt(desk: Desk, snapshot: Snapshot, prompt: str) -> str:
     if waits or prompt.startswith(prompt_line.WILL_NOT_START):
         return ""
     return join_messages(
-        " · ", filter(None, (watcher.due_reminder() for watcher in desk.page_registry.run_watchers))
+        " · ", filter(None, (watcher.find_reminder() for watcher in desk.page_registry.run_watchers))
     )
 
 

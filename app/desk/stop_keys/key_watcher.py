@@ -36,7 +36,7 @@ class KeyWatcher:
         self._keys, self._line, self._screen = raw_keys, stop_channel, screen_channel
         self._focus = NO_FOCUS
 
-    def run(self) -> None:
+    def watch_keys(self) -> None:
         """Watch the keys until the screen process ends."""
         poll = select.poll()
         for each in (self._keys, self._screen):
@@ -88,7 +88,7 @@ def main(arguments: list[str]) -> int:
         keys = RawKeyReader()
     except OSError:
         return 1
-    KeyWatcher(keys, line, screen).run()
+    KeyWatcher(keys, line, screen).watch_keys()
     return 0
 
 

@@ -111,10 +111,11 @@ def run(args: argparse.Namespace) -> int:
 def _table(*, json_wanted: bool) -> str:
     if json_wanted:
         rules = {
-            act.value: {"level": rule.level.name, "what": rule.what} for act, rule in ACCESS_RULES.items()
+            act.value: {"level": rule.level.name, "what": rule.description}
+            for act, rule in ACCESS_RULES.items()
         }
         return json.dumps(rules) + "\n"
-    return "".join(f"{rule.level.name:<9} {rule.what}\n" for rule in ACCESS_RULES.values())
+    return "".join(f"{rule.level.name:<9} {rule.description}\n" for rule in ACCESS_RULES.values())
 
 
 def _list(store: Store, args: argparse.Namespace) -> str:
@@ -209,7 +210,7 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
 
     Raises CommandError for a wrong PIN. Wrong PINs are logged.
     """
-    from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_outdated, matches_hash
+    from core.extras.access.pins import PinHash, calculate_delay, hash_pin, is_hash_outdated, matches_hash
 
     if not row.has_pin:
         raise CommandError(
@@ -225,7 +226,7 @@ def require_pin(store: Store, row: UserRow, remedy: str) -> None:
     store.settings.save_setting(_WRONG, wrong + 1).result()
     stored = PinHash(row.salt, row.hash)
     if matches_hash(pin, stored):
-        if is_outdated(stored):
+        if is_hash_outdated(stored):
             renewed = row._replace(**hash_pin(pin)._asdict())
             store.people.save_user(renewed).result()
         store.settings.save_setting(_WRONG, None).result()

@@ -125,7 +125,7 @@ class AccessLevelsFunction(SpecialFunction):
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys, most of which are available only while access levels are on."""
         keys = {
             "F3": FunctionKey("NEW", self.add_user),
@@ -268,7 +268,7 @@ class AccessLevelsFunction(SpecialFunction):
             self.access.reload()
             self.desk.show_success(said)
 
-        self.session.worker.enqueue(work, done, self.desk.show_refusal)
+        self.session.worker.enqueue_work(work, done, self.desk.show_refusal)
 
     # --- users ---------------------------------------------------------------------------------------
 
@@ -351,4 +351,4 @@ class AccessLevelsFunction(SpecialFunction):
             self.access.remove_levels()
             self.desk.show_success(tr("ALL PINS REMOVED. ACCESS LEVELS OFF: ALL FUNCTIONS UNLOCKED"))
 
-        self.session.worker.enqueue(remove, done, self.desk.show_refusal)
+        self.session.worker.enqueue_work(remove, done, self.desk.show_refusal)

@@ -44,14 +44,14 @@ class AccessExtra(OptionalFeature):
 
         return ((AccessLevelsFunction(desk, persistence, get_sign_in(desk.user_access)), "LAMPS AND SOUND"),)
 
-    def require_pin(self, store: Store, row: UserRow, remedy: str) -> bool:
+    def require_pin(self, store: Store, user_row: UserRow, remedy: str) -> bool:
         """Ask for the user's PIN on the command line, and return True because this feature supports PINs.
 
         ``remedy`` is the instruction for a user without a PIN. Raises CommandError if the PIN is wrong.
         """
         from app.extras.access.access_command import require_pin
 
-        require_pin(store, row, remedy)
+        require_pin(store, user_row, remedy)
         return True
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:

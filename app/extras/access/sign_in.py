@@ -12,7 +12,7 @@ from app.desk.background_work import LatestRequestWorker
 from app.desk.translation import mark_untranslated, tr
 from core.access.access_table import AccessLevel
 from core.executor.snapshot import MachineState, Snapshot
-from core.extras.access.pins import PinHash, WrongPinCounter, hash_pin, is_outdated, matches_hash
+from core.extras.access.pins import PinHash, WrongPinCounter, hash_pin, is_hash_outdated, matches_hash
 from core.message import Message
 from core.store.store_errors import StoreError
 from core.store.user_records import UserRow
@@ -77,7 +77,7 @@ class PinSignIn:
             )
         elif not self.worker.is_busy:
             self.access.say(tr(Message("CHECKING THE PIN OF {name}", name=mark_untranslated(row.name))))
-            self.worker.enqueue(
+            self.worker.enqueue_work(
                 partial(self._check_pin, row, pin), partial(self._tried, row), self.access.say
             )
 
@@ -88,7 +88,7 @@ class PinSignIn:
         """
         kept = PinHash(row.salt, row.hash)
         right = matches_hash(pin, kept)
-        if right and is_outdated(kept):
+        if right and is_hash_outdated(kept):
             with suppress(StoreError):  # retried at the next sign-in
                 renewed = UserRow(row.name, row.level, *hash_pin(pin))
                 self.access.persistence.require_store().people.save_user(renewed).result()
@@ -97,7 +97,7 @@ class PinSignIn:
     def _tried(self, row: UserRow, right: bool) -> None:
         if right:
             self.access.reload()  # the hash may be new
-            self.wrong_pins.reset()
+            self.wrong_pins.reset_count()
             self.access.user_name, self.access.access_level = row.name, AccessLevel(row.level)
             self.note_activity()
             self.access.log_access(
@@ -137,7 +137,7 @@ class PinSignIn:
 
         This method is called once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         self.update_reset(snapshot)
         if not self.access.user_name:
             return

@@ -34,7 +34,7 @@ from app.extras.analyses.spindle_response import draw_spindle_response, find_las
 from app.scope.scope_model import ScopeModel
 from core.extras.analyses.path_error import (
     analyze_ball_bar,
-    calculate_from_samples,
+    calculate_path_error_from_samples,
     find_arcs,
     find_worst_deviations,
 )
@@ -76,7 +76,7 @@ class AnalysesModel:
 
     # --- what is asked -------------------------------------------------------------------------------
 
-    def opened(self) -> None:
+    def restart_analysis(self) -> None:
         """Discard the result and analyze the present data when the page opens."""
         self._of = None
         self.result = None
@@ -88,7 +88,7 @@ class AnalysesModel:
         """
         self.desk.clear_prompt_line()
         self.kind, self.arc_index, self.selected_row = kind, 0, 0
-        self.opened()
+        self.restart_analysis()
 
     def select_next_arc(self) -> None:
         """Select the next arc of the record.
@@ -100,14 +100,14 @@ class AnalysesModel:
             self.choose_analysis(AnalysisKind.BALL_BAR)
             return
         self.arc_index += 1
-        self.opened()
+        self.restart_analysis()
 
     def change_magnification(self, steps: int) -> None:
         """Change the magnification of the errors by a number of steps."""
         at = min(range(len(MAGNIFICATIONS)), key=lambda i: abs(MAGNIFICATIONS[i] - self.magnification))
         self.magnification = MAGNIFICATIONS[max(0, min(len(MAGNIFICATIONS) - 1, at + steps))]
 
-    def typed(self, key: str) -> bool:
+    def handle_key(self, key: str) -> bool:
         """Move the selection with an arrow key and return whether the key was used."""
         count = len(self.make_table().rows)
         if key not in ROW_STEPS or not count:
@@ -124,7 +124,7 @@ class AnalysesModel:
 
         This method is called once per frame. Each analysis is requested only once.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         if self._of is None and not self.worker.is_busy:
             kind, arc, drives, spindle = self.kind, self.arc_index, self.linear_axes, self.spindle
             self._of = (kind, arc)
@@ -148,7 +148,7 @@ class AnalysesModel:
                 )
                 return analyze(kind, cut, arc, drives, spindle)
 
-            self.worker.request(work, self._take, self.desk.say)
+            self.worker.request_work(work, self._take, self.desk.say)
 
     def _take(self, found: Found) -> None:
         if found.kind is self.kind:
@@ -222,7 +222,7 @@ def find_last_run(record: ScopeRecord) -> ScopeRecord:
 def analyze(
     kind: AnalysisKind,
     record: ScopeRecord,
-    arc: int,
+    arc_number: int,
     linear_axes: Mapping[str, Axis],
     spindle: SpindleModel | None = None,
 ) -> Found:
@@ -233,7 +233,7 @@ def analyze(
     try:
         if kind is AnalysisKind.SPINDLE_RESPONSE:
             return Found(kind, spindle_response=find_last_run_up(record, spindle))
-        return _analysed(kind, record, arc, linear_axes)
+        return _analysed(kind, record, arc_number, linear_axes)
     except AnalysisError as error:
         return Found(kind, str(error))
 
@@ -256,7 +256,7 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
     lines = columns.get("line", np.zeros(len(record.times_s)))
     axes = _select_drawn_axes(slides, demand)
     if kind is AnalysisKind.PATH:
-        path = calculate_from_samples(demand, actual, lines, record.sampling_rate_hz)
+        path = calculate_path_error_from_samples(demand, actual, lines, record.sampling_rate_hz)
         return Found(
             kind,
             path_error=path,
@@ -267,7 +267,7 @@ def _analysed(kind: AnalysisKind, record: ScopeRecord, arc: int, drives: Mapping
     if kind is AnalysisKind.THREAD:
         speed = columns.get("spindle speed", np.full(len(lines), np.nan))
         turns = columns.get("spindle turns", np.full(len(lines), np.nan))
-        vmax = drives[axes[0]].vmax if axes[0] in drives else 0.0
+        vmax = drives[axes[0]].max_speed if axes[0] in drives else 0.0
         thread = analyze_thread(turns, actual[:, 0], actual[:, 1], speed)
         speeds = tuple(speed[each.first_sample : each.last_sample + 1] for each in thread.passes)
         return Found(kind, thread=thread, pass_speeds_rpm=speeds, max_speed_mm_s=vmax, axis_names=axes)
@@ -302,7 +302,7 @@ def _analyze_ball_bar(
     ball = analyze_ball_bar(part[moved], actual[cut][:, pair][moved])
     axes = slides[pair[0]], slides[pair[1]]
     return Found(
-        AnalysisKind.BALL_BAR, ball_bar=ball, arc_selection=(number, len(arcs), line), axis_names=axes
+        AnalysisKind.BALL_BAR, ball_bar=ball, selected_arc=(number, len(arcs), line), axis_names=axes
     )
 
 

@@ -43,13 +43,13 @@ class AnalysisChart(Chart):
         self._fill(upper, drawing.command_points, drawing.curves)
         if drawing.lower_curves:
             self._fill(self.add_plot(), np.empty((0, 2)), drawing.lower_curves)
-        self.set_left_width(_LEFT)
+        self.set_left_axis_width(_LEFT)
         self._fit()
         return True
 
     def _fill(self, plot: ChartPlot, soft: FloatArray, curves: tuple[FloatArray, ...]) -> None:
         if len(soft):
-            line = plot.add_curve(make_line_pen(self.theme.color("todo")))
+            line = plot.add_curve(make_line_pen(self.theme.get_color("todo")))
             set_curve_points(line, soft[:, 0], soft[:, 1])
         for number, points in enumerate(curves):
             line = plot.add_curve(make_line_pen(find_curve_color(self.theme, number)))
@@ -79,7 +79,7 @@ class AnalysisChart(Chart):
         super().drawForeground(painter, rect)
         if not self.plots:
             return
-        u, plot, names = self.theme.u, self.plots[0], self.drawing.axis_labels
+        u, plot, names = self.theme.unit_px, self.plots[0], self.drawing.axis_labels
         for shown, text in zip(self.plots, names, strict=False):
             self.name(painter, text, shown.find_curve_area())
         last = self.plots[-1].find_curve_area()

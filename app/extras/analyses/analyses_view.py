@@ -62,7 +62,7 @@ class DrawingArea(QWidget):
         self._look = theme
         self.chart: AnalysisChart | None = None  # None until it is loaded
         self._shown: object = None
-        worker.enqueue(_chart_class, self._chart_there, show_message)
+        worker.enqueue_work(_chart_class, self._chart_there, show_message)
 
     def _chart_there(self, chart: type[AnalysisChart]) -> None:
         self.chart = chart(self._look, self)
@@ -74,7 +74,7 @@ class DrawingArea(QWidget):
         return self.chart is not None and self.chart.prepare_plots(_PLOTS)
 
     def show_drawing(
-        self, drawing_id: object, drawing: Callable[[], AnalysisDrawing], *, metric: bool
+        self, drawing_id: object, make_drawing: Callable[[], AnalysisDrawing], *, metric: bool
     ) -> None:
         """Show a drawing in mm or inches, unless ``drawing_id`` identifies the drawing that is shown.
 
@@ -82,7 +82,7 @@ class DrawingArea(QWidget):
         """
         if self.chart is None or drawing_id == self._shown:
             return
-        if self.chart.show_drawing(scale_drawing(drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
+        if self.chart.show_drawing(scale_drawing(make_drawing(), 1.0 if metric else 1.0 / MM_PER_INCH)):
             self._shown = drawing_id
 
     def apply_theme(self) -> None:
@@ -105,14 +105,14 @@ _TABLE, _HEAD = 50.0, 3.4  # units
 class DescriptionLine(Panel):
     """Line with the description of the analysis, or with the reason why there is no result."""
 
-    ground_color = "panel"
-    words = RedrawingAttribute("")
+    background_color = "panel"
+    description_text = RedrawingAttribute("")
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the description of the analysis, or the reason why it has no result."""
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.find_full_area().adjusted(0.8 * u, 0, -0.8 * u, 0)
-        painter.draw_text_line(QRectF(room), self.words, 1.8, "text")
+        painter.draw_text_line(QRectF(room), self.description_text, 1.8, "text")
 
 
 class AnalysesPage(ListPage):
@@ -130,12 +130,12 @@ class AnalysesPage(ListPage):
 
     def prepare_slice(self) -> bool:
         """Create a part of the chart before the page is first shown, and return whether steps remain."""
-        self.analyses.worker.poll()
+        self.analyses.worker.deliver_results()
         return not self.drawing.is_ready()
 
     def _keys(self) -> Mapping[str, FunctionKey]:
         choose = self.analyses.choose_analysis
-        mill = self.desk.machine.language == "klartext"  # no axis of a mill follows the spindle
+        mill = self.desk.machine.program_language == "klartext"  # no axis of a mill follows the spindle
         thread = {} if mill else {"F3": FunctionKey("THREAD", partial(choose, AnalysisKind.THREAD))}
         return {
             "F2": FunctionKey("PATH", partial(choose, AnalysisKind.PATH)),
@@ -154,11 +154,11 @@ class AnalysesPage(ListPage):
     def _back(self) -> None:
         self.host.open_page(page_table.SCOPE)
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of the keys that select an analysis and of the key that returns to the scope."""
-        return self.make_labels({}, self._keys())
+        return self.make_function_key_labels({}, self._keys())
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the function keys and of the magnification keys."""
         magnify = self.analyses.change_magnification
         return {
@@ -186,7 +186,7 @@ class AnalysesPage(ListPage):
         """Update the model and show the present result."""
         analyses = self.analyses
         analyses.update()
-        self.description.words = analyses.description
+        self.description.description_text = analyses.description
         self.table.show_table(analyses.make_table())
         metric = analyses.scope.metric
         shown = (analyses.result, analyses.magnification, analyses.selected_row, metric)
@@ -198,7 +198,7 @@ class AnalysesPage(ListPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the drawing and the table."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left = self.width() - side - gap
         self.description.setGeometry(0, 0, left, high)
@@ -214,7 +214,7 @@ class _Keys:
 
     def handle_key(self, key: str) -> bool:
         """Select a row with the arrow keys, and return whether the key was used."""
-        return self._analyses.typed(key)
+        return self._analyses.handle_key(key)
 
     def accepts_key(self, _key: str) -> bool:
         """Return False because this page has no entry."""
@@ -222,7 +222,7 @@ class _Keys:
 
     def on_open(self) -> None:
         """Analyze the present data."""
-        self._analyses.opened()
+        self._analyses.restart_analysis()
 
     def handle_escape(self) -> bool:
         """Return False because there is nothing to close."""

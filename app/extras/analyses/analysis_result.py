@@ -45,7 +45,7 @@ class Found:
     axis_response: AxisResponse | None = None
     spindle_response: SpindleResponse | None = None
     drive_test: DriveTestResults | None = None  # the record is one of a drive test
-    arc_selection: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
+    selected_arc: tuple[int, int, int] = (0, 0, 0)  # its number, of how many, its line
     max_speed_mm_s: float = 0.0  # of the slide along a thread, mm/s
     axis_names: tuple[str, str] = ("Z", "X")  # that are drawn
     linear_axes: tuple[str, ...] = ("Z", "X")  # of a path: all that it goes in

@@ -132,7 +132,7 @@ def make_ball_bar_table(title: str, ball: BallBarResult, found: Found, metric: b
         ),
         TableRow((tr("RADIUS ERROR"), told(ball.size_error_mm))),
     )
-    number, count, line = found.arc_selection
+    number, count, line = found.selected_arc
     notes = (
         tr(
             Message(

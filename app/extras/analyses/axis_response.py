@@ -34,11 +34,11 @@ FloatArray = npt.NDArray[np.float64]
 _BEFORE, _BEHIND = 0.2, 1.0  # seconds of rest before and after a move
 _REST = 0.15  # seconds without a new setpoint that end a move
 _STILL = 1e-7  # mm: smaller differences of setpoints are ignored
-SPEED_RATIOS = (1.5, 2.0)  # ratios to the speed
-LIMIT_RATIOS = (0.5, 0.25)  # ratios to the following-error limit
+SPEED_FACTORS = (1.5, 2.0)  # ratios to the speed
+LIMIT_FACTORS = (0.5, 0.25)  # ratios to the following-error limit
 
 
-COLUMN_SHARES = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
+COLUMN_WIDTH_RATIOS = (0.5, 0.2, 0.3)  # ratios of the columns: name, verdict, value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,13 +77,13 @@ class AxisResponse(AxisMotion):
 
 
 def make_motion(
-    letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time: float
+    letter: str, axis: Axis, record: ScopeRecord, sample_range: slice, start_time_s: float
 ) -> AxisMotion:
     """Return the motion of an axis in a part of a record.
 
-    The times of the motion are relative to ``start_time``, which is on the clock of the record in seconds.
+    The times of the motion are relative to ``start_time_s``, which is on the clock of the record in seconds.
     """
-    times = record.times_s[sample_range] - start_time
+    times = record.times_s[sample_range] - start_time_s
     demand, actual = (
         record.values_by_channel[Message("{item} demand", item=letter)][sample_range],
         record.values_by_channel[Message("{item} actual", item=letter)][sample_range],
@@ -101,7 +101,7 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
     found: tuple[int, int, str] | None = None
     for letter in linear_axes:
         demand = record.values_by_channel.get(Message("{item} demand", item=letter))
-        if linear_axes[letter].rotary or demand is None or not np.isfinite(demand).all():
+        if linear_axes[letter].is_rotary or demand is None or not np.isfinite(demand).all():
             continue
         spans = find_moves(record.times_s, demand)
         if spans and (found is None or spans[-1][1] > found[1]):
@@ -121,22 +121,22 @@ def find_last_move(record: ScopeRecord, linear_axes: Mapping[str, Axis]) -> Axis
     return _response(letter, linear_axes[letter], record, slice(begin, end), float(times[first]))
 
 
-def find_moves(times: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
+def find_moves(times_s: FloatArray, setpoints: FloatArray) -> list[tuple[int, int]]:
     """Return the first and the last sample of every completed move, oldest move first."""
     moving = np.flatnonzero(np.abs(np.diff(setpoints)) > _STILL)
     if not len(moving):
         return []
-    breaks = np.flatnonzero(np.diff(times[moving]) > _REST)
+    breaks = np.flatnonzero(np.diff(times_s[moving]) > _REST)
     starts = np.concatenate([[0], breaks + 1])
     ends = np.concatenate([breaks, [len(moving) - 1]])
-    if times[-1] - times[moving[-1]] < _REST:
+    if times_s[-1] - times_s[moving[-1]] < _REST:
         starts, ends = starts[:-1], ends[:-1]  # the last move has not ended
     return [(int(moving[a]), int(moving[b]) + 1) for a, b in zip(starts, ends, strict=True)]
 
 
 def _response(letter: str, axis: Axis, record: ScopeRecord, cut: slice, zero: float) -> AxisResponse:
     found = make_motion(letter, axis, record, cut, zero)
-    step = analyze_step(found.times_s, found.setpoints, found.positions, axis.in_position)
+    step = analyze_step(found.times_s, found.setpoints, found.positions, axis.in_position_tolerance)
     return AxisResponse(
         letter,
         found.times_s,
@@ -174,19 +174,17 @@ class UnitFormat:
         """Return the unit of a length, mm or in."""
         return "mm" if self.metric else "in"
 
-    def way(self, mm: float) -> str:
+    def format_length(self, mm: float) -> str:
         """Return a length in mm as text in the selected unit."""
         return f"{formats.format_length(mm, self.metric)} {self.length_unit}"
 
-    def format_speed(self, mm: float) -> str:
+    def format_speed(self, speed_mm_s: float) -> str:
         """Return a speed in mm/s as text in the selected unit per second."""
-        return (
-            f"{formats.format_fixed(mm if self.metric else mm / formats.MM_PER_INCH, 3)} {self.length_unit}/s"
-        )
+        return f"{formats.format_fixed(speed_mm_s if self.metric else speed_mm_s / formats.MM_PER_INCH, 3)} {self.length_unit}/s"
 
-    def format_percentage(self, part: float) -> str:
+    def format_percentage(self, ratio: float) -> str:
         """Return a ratio as text in percent."""
-        return f"{formats.format_fixed(100.0 * part, 2)} %"
+        return f"{formats.format_fixed(100.0 * ratio, 2)} %"
 
     def format_milliseconds(self, seconds: float) -> str:
         """Return a time in seconds as text in milliseconds, or a dash if it is not finite."""
@@ -201,7 +199,7 @@ def make_step_rows(steps: Sequence[StepResponse], units: UnitFormat) -> list[tup
     """Return table rows with one row per value and one cell per step."""
     return [
         (tr("RISE, 10 TO 90 %"), *(units.format_milliseconds(each.rise_time_s) for each in steps)),
-        (tr("OVERSHOOT"), *(units.format_percentage(each.overshoot) for each in steps)),
+        (tr("OVERSHOOT"), *(units.format_percentage(each.overshoot_fraction) for each in steps)),
         (tr("TIME UNTIL IN POSITION"), *(units.format_milliseconds(each.settling_time_s) for each in steps)),
     ]
 
@@ -214,30 +212,32 @@ def make_limit_rows(response: AxisMotion, units: UnitFormat) -> list[tuple[str, 
     axis, times, error = response.axis, response.times_s, response.following_error
 
     def trips(error: FloatArray, window: float) -> str:
-        at = find_trip_time(times, error, window, axis.following_time)
+        at = find_trip_time(times, error, window, axis.following_time_s)
         return (
             tr("no trip")
             if at is None
             else tr(Message("trips at {position}", position=units.format_milliseconds(at)))
         )
 
-    limit, greatest = axis.max_following_error(response.max_speed_mm_s), float(np.abs(error).max())
-    least = find_narrowest_limit(times, error, axis.following_time)
-    reached = find_speed_at_limit(abs(response.lag_s), axis.still_window, axis.following_window, axis.vmax)
+    limit, greatest = axis.compute_max_following_error(response.max_speed_mm_s), float(np.abs(error).max())
+    least = find_narrowest_limit(times, error, axis.following_time_s)
+    reached = find_speed_at_limit(
+        abs(response.lag_s), axis.standstill_tolerance, axis.following_window, axis.max_speed
+    )
     rows = [
         (tr("FOLLOWING LAG"), "", units.format_milliseconds(response.lag_s)),
-        (tr("LARGEST ERROR"), "", units.way(greatest)),
-        (tr("ERROR LIMIT AT THIS SPEED"), trips(error, limit), units.way(limit)),
-        (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.way(least)),
+        (tr("LARGEST ERROR"), "", units.format_length(greatest)),
+        (tr("ERROR LIMIT AT THIS SPEED"), trips(error, limit), units.format_length(limit)),
+        (tr("SMALLEST LIMIT WITHOUT A TRIP"), "", units.format_length(least)),
     ]
-    for share in LIMIT_RATIOS:
+    for share in LIMIT_FACTORS:
         name = tr(Message("LIMIT REDUCED TO {share}", share=formats.format_percent(share)))
-        rows.append((name, trips(error, share * limit), units.way(share * limit)))
-    for factor in SPEED_RATIOS:
+        rows.append((name, trips(error, share * limit), units.format_length(share * limit)))
+    for factor in SPEED_FACTORS:
         faster = response.predict_error(factor)
         name = tr(Message("AT {share} SPEED", share=formats.format_percent(factor)))
-        verdict = trips(faster, axis.max_following_error(factor * response.max_speed_mm_s))
-        rows.append((name, verdict, units.way(float(np.abs(faster).max()))))
+        verdict = trips(faster, axis.compute_max_following_error(factor * response.max_speed_mm_s))
+        rows.append((name, verdict, units.format_length(float(np.abs(faster).max()))))
     at = (
         units.format_speed(reached)
         if reached is not None
@@ -251,7 +251,7 @@ def make_response_table(title: str, response: AxisResponse, metric: bool) -> Tab
     """Return the table of the response, including the effect of other limits and speeds."""
     units = UnitFormat(metric)
     rows = [
-        TableRow((tr("TRAVEL"), "", units.way(response.step_response.step_size))),
+        TableRow((tr("TRAVEL"), "", units.format_length(response.step_response.step_size_mm))),
         TableRow((tr("MAXIMUM SPEED"), "", units.format_speed(response.max_speed_mm_s))),
         *(TableRow((name, "", figure)) for name, figure in make_step_rows([response.step_response], units)),
         *map(TableRow, make_limit_rows(response, units)),
@@ -269,5 +269,5 @@ def make_response_table(title: str, response: AxisResponse, metric: bool) -> Tab
         ),
     )
     return TableContent(
-        title, ("", "", ""), COLUMN_SHARES, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+        title, ("", "", ""), COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
     )

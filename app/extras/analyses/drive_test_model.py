@@ -16,7 +16,7 @@ from app.desk.late_presses import StartingAction
 from app.desk.pages.table_content import TableContent, TableRow, following
 from app.desk.status import formats
 from app.desk.status.formats import MM_PER_INCH
-from app.desk.status.prompt_line import STOP_HELD
+from app.desk.status.prompt_line import RELEASE_STOP_KEY
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import UnitFormat, draw_response
 from app.extras.analyses.drawing import AnalysisDrawing
@@ -32,12 +32,12 @@ from app.extras.analyses.drive_test_results import (
 )
 from app.jog.held_jog import ActiveJog, HeldJog, JogDirection, JogSpeeds, make_jog_directions
 from app.jog.jog_model import MAX_LEASE_S, find_jog_refusal
-from app.scope.recording_store import INSTANT_KEY
+from app.scope.recording_store import ZERO_INSTANT_KEY
 from app.scope.scope_model import ScopeModel
 from core.executor.commands import Command, RenewDriveTest, RunDriveTest, StopJog
 from core.executor.hand_motion import drive_test
-from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
-from core.executor.hand_motion.jog_line import distance_to_limit
+from core.executor.hand_motion.drive_test import AxisTestLimits, DriveTestMotion, Shape
+from core.executor.hand_motion.jog_line import get_distance_to_limit
 from core.executor.snapshot import MANUAL_STATES, MachineState, Snapshot
 from core.machine.machine_model import Axis, Machine
 from core.message import Message
@@ -61,7 +61,7 @@ class HeldTestKey(HeldJog):
     """
 
     starting_action: ClassVar[StartingAction] = StartingAction.DRIVE_TEST
-    make_path: Callable[[str, int], DriveTestPath] = field(kw_only=True)
+    make_path: Callable[[str, int], DriveTestMotion] = field(kw_only=True)
     requested_direction: TestDirection | None = None
 
     def _start_jog(self, source: str, axis: str, sign: int, rapid: bool) -> None:
@@ -94,21 +94,21 @@ class DriveTestModel:
     machine: Machine
     shape: Shape = Shape.STEP
     size_index: int = 2
-    way: int = 1
+    ramp_index: int = 1
     speed_index: int = 1
     frequency_index: int = 0  # 0 for the series, otherwise the number of a single sine
     displayed_part: ResultsPart | None = None
     results: DriveTestResults | None = None
-    saved_record: str = ""  # file of the last test
+    saved_record_text: str = ""  # file of the last test
     held_jog: HeldTestKey = field(init=False)
     directions: tuple[JogDirection, ...] = ()
     linear_axes: Mapping[str, Axis] = field(default_factory=dict)
-    _begun: tuple[DriveTestPath, int] | None = None  # active test and its number
+    _begun: tuple[DriveTestMotion, int] | None = None  # active test and its number
     _whole: int = -1  # number of completed tests at the start
 
     def __post_init__(self) -> None:
         desk, machine = self.desk, self.machine
-        self.linear_axes = {axis.name: axis for axis in machine.axes if not axis.rotary}
+        self.linear_axes = {axis.name: axis for axis in machine.axes if not axis.is_rotary}
         self.directions = tuple(
             each for each in make_jog_directions(machine) if each.axis in self.linear_axes
         )
@@ -141,11 +141,11 @@ class DriveTestModel:
         """
         return mm[at] if self.is_metric else inches[at] * MM_PER_INCH
 
-    def make_test_path(self, axis: str, sign: int) -> DriveTestPath:
+    def make_test_path(self, axis: str, sign: int) -> DriveTestMotion:
         """Return the test path of the present selection for a direction."""
         if self.shape is Shape.RAMP:
-            size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.way)
-            return DriveTestPath(
+            size = self._get_series_length(INCH_RAMPS, MM_RAMPS, self.ramp_index)
+            return DriveTestMotion(
                 axis,
                 self.shape,
                 sign * size,
@@ -153,16 +153,16 @@ class DriveTestModel:
             )
         size = sign * self._get_series_length(INCH_SIZES, MM_SIZES, self.size_index)
         if self.shape is Shape.STEP:
-            return DriveTestPath(axis, self.shape, size)
+            return DriveTestMotion(axis, self.shape, size)
         fastest = self._limits(axis).max_sine_frequency_hz
         series = tuple(each for each in SINE_FREQUENCIES_HZ if each <= fastest)
         one = (SINE_FREQUENCIES_HZ[self.frequency_index - 1],)
-        return DriveTestPath(axis, self.shape, size, frequencies=one if self.frequency_index else series)
+        return DriveTestMotion(axis, self.shape, size, frequencies_hz=one if self.frequency_index else series)
 
-    def _limits(self, axis: str) -> Limits:
+    def _limits(self, axis: str) -> AxisTestLimits:
         machine, model = self.machine, self.machine.find_axis(axis)
         rate = self.desk.read_snapshot().drive_test.sample_rate_hz
-        return Limits(min(model.vmax, machine.limits.manual_rapid), model.amax, rate)
+        return AxisTestLimits(min(model.max_speed, machine.limits.manual_rapid), model.max_acceleration, rate)
 
     def select_next_shape(self) -> None:
         """Select the next shape: step, ramp or sine (F2)."""
@@ -173,7 +173,7 @@ class DriveTestModel:
         """Select the next larger size, or the smallest size after the largest (F3)."""
         self._choose()
         if self.shape is Shape.RAMP:
-            self.way = (self.way + 1) % len(INCH_RAMPS)
+            self.ramp_index = (self.ramp_index + 1) % len(INCH_RAMPS)
         else:
             self.size_index = (self.size_index + 1) % len(INCH_SIZES)
 
@@ -213,7 +213,7 @@ class DriveTestModel:
         """Return the reason why no test can start now, or an empty string."""
         snapshot = self.desk.read_snapshot()
         if self.desk.window_state.is_stop_held():
-            return tr(STOP_HELD)
+            return tr(RELEASE_STOP_KEY)
         if snapshot.drive_test.barred:
             return tr(Message("DRIVE TEST NOT POSSIBLE: {why}", why=snapshot.drive_test.barred))
         if abs(snapshot.rpm_actual) >= 1.0 or snapshot.requested_rpm:
@@ -233,11 +233,11 @@ class DriveTestModel:
         path, limits = self.make_test_path(axis, sign), self._limits(axis)
         if why := path.find_refusal(limits):
             return why
-        low, high = drive_test.travel_range(path.make_ramps(limits))
+        low, high = drive_test.compute_position_range(path.make_ramps(limits))
         here = snapshot.demand[index]
-        if max(high, 1e-9) > distance_to_limit(model, here, 1.0) or max(-low, 1e-9) > distance_to_limit(
-            model, here, -1.0
-        ):
+        if max(high, 1e-9) > get_distance_to_limit(model, here, 1.0) or max(
+            -low, 1e-9
+        ) > get_distance_to_limit(model, here, -1.0):
             return tr(Message("NOT ENOUGH TRAVEL IN {axis}. JOG AWAY FROM THE END OF TRAVEL", axis=axis))
         return ""
 
@@ -250,14 +250,14 @@ class DriveTestModel:
         units, snapshot = UnitFormat(self.is_metric), self.desk.read_snapshot()
         path, limits = self.make_test_path(axis, sign), self._limits(axis)
         ramps, here = path.make_ramps(limits), snapshot.demand[snapshot.axes.index(axis)]
-        low, high = drive_test.travel_range(ramps)
+        low, high = drive_test.compute_position_range(ramps)
         return tr(
             Message(
                 "{axis} FROM {position} TO {present} AND BACK IN {seconds} S",
                 axis=axis,
-                position=units.way(here),
-                present=units.way(here + (high if sign > 0 else low)),
-                seconds=formats.format_fixed(drive_test.total_duration_s(ramps), 1),
+                position=units.format_length(here),
+                present=units.format_length(here + (high if sign > 0 else low)),
+                seconds=formats.format_fixed(drive_test.compute_duration_s(ramps), 1),
             )
         )
 
@@ -287,9 +287,9 @@ class DriveTestModel:
         self.held_jog.update(snapshot)
         if snapshot.state not in MANUAL_STATES:
             self.held_jog.requested_direction = None  # The prompt line belongs to an alarm or the E-stop.
-        self.scope.file_worker.poll()
+        self.scope.file_worker.deliver_results()
         test_status = snapshot.drive_test
-        if self.held_jog.active_jog is not None and (self._begun is None or test_status.axis == ""):
+        if self.held_jog.active_jog is not None and (self._begun is None or test_status.tested_axis == ""):
             held = self.held_jog.active_jog
             self._begun = self.make_test_path(held.axis, 1 if held.velocity > 0.0 else -1), test_status.number
             self._whole = test_status.completed_test_count
@@ -311,40 +311,44 @@ class DriveTestModel:
             self._begun = None
             return
         path, began = self._begun[0], test_status.start_time_s
-        ends = began + drive_test.total_duration_s(path.make_ramps(self._limits(path.axis)))
+        ends = began + drive_test.compute_duration_s(path.make_ramps(self._limits(path.axis)))
         if snapshot.t < ends + _SETTLED or live.newest_time_s < ends - _SETTLED:
             return
         self._begun = None
         self._work_out(path, began)
 
-    def _work_out(self, path: DriveTestPath, began: float) -> None:
+    def _work_out(self, path: DriveTestMotion, began: float) -> None:
         live, shelf, drives = self.scope.live_samples, self.scope.recording_store, self.linear_axes
         assert live is not None
 
         def work() -> tuple[DriveTestResults | str, str]:
             record = live.read_between(began - 2.0 * REST_BEFORE_TEST_S, live.newest_time_s)
             instant = began - float(record.times_s[0]) if len(record.times_s) else 0.0
-            metadata = {**record.about, TEST_PATH_KEY: encode_test_path(path), INSTANT_KEY: f"{instant:.6f}"}
+            metadata = {
+                **record.about,
+                TEST_PATH_KEY: encode_test_path(path),
+                ZERO_INSTANT_KEY: f"{instant:.6f}",
+            }
             return _figures(replace(record, about=metadata), path, drives), shelf.save_named(
                 replace(record, about=metadata),
                 Message("drive test {axis} {shape}", axis=path.axis, shape=path.shape.value),
             ).name
 
-        self.scope.file_worker.enqueue(work, self._take, self.desk.show_refusal)
+        self.scope.file_worker.enqueue_work(work, self._take, self.desk.show_refusal)
 
     def _take(self, answer: tuple[DriveTestResults | str, str]) -> None:
-        found, self.saved_record = answer
+        found, self.saved_record_text = answer
         if isinstance(found, str):
             self.desk.say(found)
             return
         self.results, self.displayed_part = found, ResultsPart.RESPONSE
-        self.desk.say(tr(Message("SAVED: {path}", path=self.saved_record)))
+        self.desk.say(tr(Message("SAVED: {path}", path=self.saved_record_text)))
 
     # --- keys ----------------------------------------------------------------------------------------
 
-    def press_direction(self, source: str, axis: str, sign: int) -> None:
+    def press_direction(self, key_source: str, axis: str, direction_sign: int) -> None:
         """Handle a touch or mouse press on a direction arrow."""
-        self.held_jog.press_direction(source, axis, sign, is_rapid=False)
+        self.held_jog.press_direction(key_source, axis, direction_sign, is_rapid=False)
 
     def handle_key(self, _key: str) -> bool:
         """Return False because this page has no entry."""
@@ -376,7 +380,7 @@ class DriveTestModel:
         self.held_jog.release_all(tr("TEST STOPPED: THIS PAGE NO LONGER HAS KEYBOARD FOCUS"))
         self.held_jog.requested_direction = None
 
-    def leave(self) -> None:
+    def stop_test(self) -> None:
         """Stop all motion and clear the question when the page closes."""
         self.held_jog.release_all()
         if self.desk.read_snapshot().state is MachineState.JOG:
@@ -389,7 +393,7 @@ class DriveTestModel:
 
     # --- display -------------------------------------------------------------------------------------
 
-    def prompt(self) -> str:
+    def prompt_text(self) -> str:
         """Return the prompt that applies in the present state."""
         why = self.find_test_refusal()
         if why:
@@ -408,7 +412,7 @@ class DriveTestModel:
         """Return the description of the drawing."""
         if self.results is None:
             return tr("no test has been run yet")
-        return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record
+        return describe_test_path(self.results.test_path, self.is_metric) + "  ·  " + self.saved_record_text
 
     def make_table(self) -> TableContent:
         """Return the table of the selection or of the results of the last test."""
@@ -420,10 +424,10 @@ class DriveTestModel:
         if self.shape is Shape.RAMP:
             speed = units.format_speed(path.speed)
         elif self.shape is Shape.SINE:
-            speed = Message("{item} Hz", item=", ".join(f"{each:g}" for each in path.frequencies))
+            speed = Message("{item} Hz", item=", ".join(f"{each:g}" for each in path.frequencies_hz))
         rows = [
             TableRow((tr("SHAPE"), "F2", tr(SHAPE_NAMES[self.shape]))),
-            TableRow((tr("SIZE"), "F3", units.way(abs(path.travel_mm)))),
+            TableRow((tr("SIZE"), "F3", units.format_length(abs(path.travel_mm)))),
             TableRow(
                 (
                     tr("FREQUENCY") if self.shape is Shape.SINE else tr("SPEED"),
@@ -455,7 +459,8 @@ class DriveTestModel:
                 (
                     tr(Message("FOLLOWING ERROR LIMIT {axis}", axis=name)),
                     "",
-                    f"{units.way(axis.still_window)} … {units.way(axis.following_window)}",
+                    f"{units.format_length(axis.standstill_tolerance)} … "
+                    f"{units.format_length(axis.following_window)}",
                 )
             )
             for name, axis in self.linear_axes.items()
@@ -463,7 +468,9 @@ class DriveTestModel:
         ]
 
 
-def _figures(record: ScopeRecord, path: DriveTestPath, drives: Mapping[str, Axis]) -> DriveTestResults | str:
+def _figures(
+    record: ScopeRecord, path: DriveTestMotion, drives: Mapping[str, Axis]
+) -> DriveTestResults | str:
     try:
         return calculate_results(record, path, drives)
     except AnalysisError as error:

@@ -18,7 +18,7 @@ from app.desk.pages.table_content import TableContent, TableRow
 from app.desk.status import formats
 from app.desk.translation import tr
 from app.extras.analyses.axis_response import (
-    COLUMN_SHARES,
+    COLUMN_WIDTH_RATIOS,
     AxisMotion,
     UnitFormat,
     find_moves,
@@ -26,7 +26,7 @@ from app.extras.analyses.axis_response import (
     make_motion,
     make_step_rows,
 )
-from core.executor.hand_motion.drive_test import PAUSE_S, DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import PAUSE_BETWEEN_MOVES_S, DriveTestMotion, Shape
 from core.extras.analyses.step_response import (
     RampResponse,
     SineResponse,
@@ -43,21 +43,21 @@ from core.records.record import AnalysisError, ScopeRecord
 FloatArray = npt.NDArray[np.float64]
 TEST_PATH_KEY = "drive test"  # key of the test path in a record
 REST_BEFORE_TEST_S = 0.1  # seconds of rest before a test that are included
-_REST_AFTER_MOVE_S = 0.9 * PAUSE_S  # seconds of rest after a move that are included
+_REST_AFTER_MOVE_S = 0.9 * PAUSE_BETWEEN_MOVES_S  # seconds of rest after a move that are included
 _SHAPE_NAMES = {Shape.STEP: "STEP", Shape.RAMP: "RAMP", Shape.SINE: "SINE"}
 
 
-def encode_test_path(path: DriveTestPath) -> str:
+def encode_test_path(path: DriveTestMotion) -> str:
     """Return the test path as a JSON text for the record."""
-    path_fields = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies)
+    path_fields = (path.axis, path.shape.value, path.travel_mm, path.speed, path.frequencies_hz)
     return json.dumps(path_fields)
 
 
-def find_test_path(record: ScopeRecord) -> DriveTestPath | None:
+def find_test_path(record: ScopeRecord) -> DriveTestMotion | None:
     """Return the test path of a record, or None if the record is not from a drive test."""
     try:
         axis, shape, size, speed, frequencies = json.loads(record.about.get(TEST_PATH_KEY, ""))
-        return DriveTestPath(
+        return DriveTestMotion(
             str(axis), Shape(shape), float(size), float(speed), tuple(float(each) for each in frequencies)
         )
     except (ValueError, TypeError):
@@ -72,7 +72,7 @@ class DriveTestResults:
     frequency.
     """
 
-    test_path: DriveTestPath
+    test_path: DriveTestMotion
     motion: AxisMotion
     step_responses: tuple[StepResponse, ...] = ()
     ramp_responses: tuple[RampResponse, ...] = ()
@@ -80,7 +80,7 @@ class DriveTestResults:
 
 
 def calculate_results(
-    record: ScopeRecord, path: DriveTestPath, linear_axes: Mapping[str, Axis]
+    record: ScopeRecord, path: DriveTestMotion, linear_axes: Mapping[str, Axis]
 ) -> DriveTestResults:
     """Calculate the results from the record of a complete test.
 
@@ -90,7 +90,7 @@ def calculate_results(
     if axis is None or name not in record.values_by_channel:
         raise AnalysisError(tr(Message("this machine has no {axis} axis", axis=path.axis)), "no-axis")
     found = find_moves(record.times_s, record.values_by_channel[name])
-    ways = len(path.frequencies) if path.shape is Shape.SINE else 2
+    ways = len(path.frequencies_hz) if path.shape is Shape.SINE else 2
     if len(found) < ways:
         raise AnalysisError(
             tr("the key was released before the test ended; hold the key until the axis has returned"),
@@ -103,7 +103,7 @@ def calculate_results(
     if path.shape is Shape.SINE:
         sines = tuple(
             _sine(record, path, first, last, frequency)
-            for (first, last), frequency in zip(found, path.frequencies, strict=True)
+            for (first, last), frequency in zip(found, path.frequencies_hz, strict=True)
         )
         return DriveTestResults(path, move, sine_responses=sines)
     parts = [
@@ -117,7 +117,8 @@ def calculate_results(
         for first, last in found
     ]
     steps = tuple(
-        analyze_step(each.times_s, each.setpoints, each.positions, axis.in_position) for each in parts
+        analyze_step(each.times_s, each.setpoints, each.positions, axis.in_position_tolerance)
+        for each in parts
     )
     if path.shape is Shape.STEP:
         return DriveTestResults(path, move, steps)
@@ -130,7 +131,9 @@ def _about(times: FloatArray, begin: float, end: float) -> slice:
     return slice(int(first), int(last))
 
 
-def _sine(record: ScopeRecord, path: DriveTestPath, first: int, last: int, frequency: float) -> SineResponse:
+def _sine(
+    record: ScopeRecord, path: DriveTestMotion, first: int, last: int, frequency: float
+) -> SineResponse:
     """Return the sine response without the first period, in which the axis settles."""
     times = record.times_s
     cut = _about(times, float(times[first]) + 1.0 / frequency, float(times[last]))
@@ -141,18 +144,18 @@ def _sine(record: ScopeRecord, path: DriveTestPath, first: int, last: int, frequ
 # --- display --------------------------------------------------------------------------------------------
 
 
-def describe_test_path(path: DriveTestPath, metric: bool) -> str:
+def describe_test_path(path: DriveTestMotion, metric: bool) -> str:
     """Return the test path as display text."""
     units = UnitFormat(metric)
     words = (
         f"{path.axis}{'+' if path.travel_mm > 0.0 else '−'}  {tr(_SHAPE_NAMES[path.shape])}  "
-        f"{units.way(abs(path.travel_mm))}"
+        f"{units.format_length(abs(path.travel_mm))}"
     )
     if path.shape is Shape.RAMP:
         return f"{words}, {units.format_speed(path.speed)}"
     if path.shape is Shape.SINE:
         return Message(
-            "{words}, {item} Hz", words=words, item=", ".join(f"{each:g}" for each in path.frequencies)
+            "{words}, {item} Hz", words=words, item=", ".join(f"{each:g}" for each in path.frequencies_hz)
         )
     return words
 
@@ -166,20 +169,28 @@ class ResultsPart(Enum):
 
 
 def make_results_table(
-    title: str, results: DriveTestResults, metric: bool, part: ResultsPart = ResultsPart.ALL
+    title: str, results: DriveTestResults, metric: bool, displayed_part: ResultsPart = ResultsPart.ALL
 ) -> TableContent:
     """Return the table of the responses, followed by the effect of other limits."""
     units = UnitFormat(metric)
-    rows = [TableRow(cells) for cells in _responses(results, units)] if part is not ResultsPart.LIMITS else []
-    rows += map(TableRow, make_limit_rows(results.motion, units)) if part is not ResultsPart.RESPONSE else ()
+    rows = (
+        [TableRow(cells) for cells in _responses(results, units)]
+        if displayed_part is not ResultsPart.LIMITS
+        else []
+    )
+    rows += (
+        map(TableRow, make_limit_rows(results.motion, units))
+        if displayed_part is not ResultsPart.RESPONSE
+        else ()
+    )
     heads = (
         ("", tr("GAIN"), tr("PHASE LAG")) if results.sine_responses else ("", tr("OUTBOUND"), tr("RETURN"))
     )
-    if part is ResultsPart.LIMITS:
+    if displayed_part is ResultsPart.LIMITS:
         heads = ("", "", "")
     notes = (describe_test_path(results.test_path, metric), tr("Nothing was written to the drive."))
     return TableContent(
-        title, heads, COLUMN_SHARES, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
+        title, heads, COLUMN_WIDTH_RATIOS, tuple(rows), notes=notes, number_columns=frozenset({1, 2})
     )
 
 
@@ -189,7 +200,10 @@ def _responses(found: DriveTestResults, units: UnitFormat) -> list[tuple[str, ..
     rows: list[tuple[str, ...]] = [*make_step_rows(found.step_responses, units)]
     if found.ramp_responses:
         rows += [
-            (tr("LAG AT CONSTANT SPEED"), *(units.way(abs(each.lag_mm)) for each in found.ramp_responses)),
+            (
+                tr("LAG AT CONSTANT SPEED"),
+                *(units.format_length(abs(each.lag_mm)) for each in found.ramp_responses),
+            ),
             (tr("SPEED / LAG (GAIN)"), *(_gain(each) for each in found.ramp_responses)),
         ]
     return rows

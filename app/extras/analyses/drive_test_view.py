@@ -69,10 +69,10 @@ class DriveTestPage(HeldKeysPage):
 
     def prepare_slice(self) -> bool:
         """Create a part of the chart before the page is first shown, and return whether steps remain."""
-        self.model.scope.file_worker.poll()
+        self.model.scope.file_worker.deliver_results()
         return not self.drawing.is_ready()
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the keys for the selection, the results and related pages."""
         model = self.model
         return {
@@ -84,17 +84,17 @@ class DriveTestPage(HeldKeysPage):
             "F9": partial(self.host.open_page, page_table.JOG),
         }
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the results key (F5) as disabled until a test has run."""
         return frozenset() if self.model.results is not None else frozenset({"F5"})
 
-    def pending_question(self) -> str:
+    def find_pending_question(self) -> str:
         """Return the question about the travel that the next press would start."""
         return self.model.make_travel_question()
 
     def prompt_text(self) -> str:
         """Return the prompt for the present state."""
-        return self.model.prompt()
+        return self.model.prompt_text()
 
     def is_animating(self) -> bool:
         """Return whether the page shows live measurements, because a test key is held down."""
@@ -103,7 +103,7 @@ class DriveTestPage(HeldKeysPage):
     def try_leave(self) -> bool:
         """Stop all motion and return True."""
         self.jog_cross.release_all()
-        self.model.leave()
+        self.model.stop_test()
         return True
 
     def refresh(self, snapshot: Snapshot, _view: MachineStatus, _loaded: LoadedProgram) -> None:
@@ -112,7 +112,7 @@ class DriveTestPage(HeldKeysPage):
             self.release_if_active()
         model = self.model
         model.update(snapshot)
-        self.description.words = model.describe_drawing()
+        self.description.description_text = model.describe_drawing()
         self.table.show_table(model.make_table())
         self.jog_cross.displayed_state = (
             model.held_jog.requested_direction,
@@ -129,7 +129,7 @@ class DriveTestPage(HeldKeysPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the drawing and the arrow pad on the left, and the table on the right."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, side, high = max(4, round(0.7 * u)), round(_TABLE * u), round(_HEAD * u)
         left, pad = self.width() - side - gap, round(_PAD * self.height())
         self.description.setGeometry(0, 0, left, high)

@@ -27,7 +27,7 @@ class AnalysesExtra(OptionalFeature):
     """Optional feature with the ANALYSES page, which the scope opens, and the DRIVE TEST page."""
 
     @property
-    def pages(self) -> Sequence[PageDescription]:
+    def page_descriptions(self) -> Sequence[PageDescription]:
         """Return the descriptions of the pages ANALYSES and DRIVE TEST."""
         from app.desk.page_description import PageDescription
 
@@ -59,7 +59,7 @@ class AnalysesExtra(OptionalFeature):
 def _scope_of(desk: Desk) -> ScopeModel:
     from app.scope.scope_model import ScopeModel
 
-    scope = desk.page_registry.find(ScopeModel)
+    scope = desk.page_registry.find_model(ScopeModel)
     assert scope is not None
     return scope
 

@@ -44,7 +44,7 @@ class SpindleResponse:
     step_responses: tuple[StepResponse, ...]
     variation_rpm: float
     mean_error_rpm: float
-    model: SpindleModel
+    spindle_model: SpindleModel
 
     @property
     def acceleration_rpm_s(self) -> float:
@@ -53,7 +53,7 @@ class SpindleResponse:
         The result is inf if both levels are reached within one sample.
         """
         step = self.step_responses[0]
-        return 0.8 * abs(step.step_size) / step.rise_time_s if step.rise_time_s > 0.0 else np.inf
+        return 0.8 * abs(step.step_size_mm) / step.rise_time_s if step.rise_time_s > 0.0 else np.inf
 
 
 def find_last_run_up(record: ScopeRecord, model: SpindleModel | None) -> SpindleResponse:
@@ -133,14 +133,14 @@ def draw_spindle_response(response: SpindleResponse) -> AnalysisDrawing:
 
 def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
     """Return the table of the response and of the settling times for narrower tolerances."""
-    step, model = response.step_responses[0], response.model
+    step, model = response.step_responses[0], response.spindle_model
     target = float(response.commanded_rpm[-1])
     rows = (
         (
             tr("SPEED"),
             Message(
                 "{target} → {target2} rpm",
-                target=formats.format_fixed(target - step.step_size, 0),
+                target=formats.format_fixed(target - step.step_size_mm, 0),
                 target2=formats.format_fixed(target, 0),
             ),
         ),
@@ -151,7 +151,7 @@ def make_spindle_table(title: str, response: SpindleResponse) -> TableContent:
                 "{acceleration} rpm/s", acceleration=formats.format_fixed(response.acceleration_rpm_s, 0)
             ),
         ),
-        (tr("OVERSHOOT"), f"{formats.format_fixed(100.0 * step.overshoot, 2)} %"),
+        (tr("OVERSHOOT"), f"{formats.format_fixed(100.0 * step.overshoot_fraction, 2)} %"),
         *(
             (
                 tr(Message("TIME TO SETTLE WITHIN {share}", share=formats.format_percent(share))),

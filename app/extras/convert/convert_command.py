@@ -16,7 +16,7 @@ from app.cli.program_options import parse_output_path
 from app.cli.store_command import open_store
 from app.desk.command_errors import EXIT_ERRORS, EXIT_OK, CommandError, convert_to_command_error
 from core.access.access_table import ProtectedChange
-from core.extras.convert.source_options import Control, Options
+from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.json_keys import JsonOutput, declare_keys
 from core.language.source import SourceError, load_source
 from core.message import Message
@@ -36,7 +36,7 @@ def add_parser(subparsers: SubParsers) -> None:
     parser.add_argument(
         "--from",
         dest="control",
-        choices=[str(each) for each in Control],
+        choices=[str(each) for each in SourceControl],
         help="control of the program; fanuc-a and fanuc-b are G-code systems A and B (default: recognized)",
     )
     parser.add_argument("--to", choices=("omniturn",), default="omniturn", help="language of the result")
@@ -88,38 +88,38 @@ def run(args: argparse.Namespace) -> int:
     Returns exit status 1 if there are errors.
     """
     from app.compose.machine.machine_setup import get_control_limits, read_machine
-    from core.extras.convert.conversion import convert
-    from core.extras.convert.recognition import recognized
+    from core.extras.convert.conversion import convert_program
+    from core.extras.convert.recognition import recognize_control
 
     machine = read_machine(args.machine)
     who = _may_write(args)
     with convert_to_command_error(SourceError):
         source = load_source(Path(args.file))
-    control = Control(args.control) if args.control else recognized(source.lines)
+    control = SourceControl(args.control) if args.control else recognize_control(source.lines)
     if control is None:
         raise CommandError(
             Message("{file} is not recognized; name its control with --from", file=args.file),
             "control-unknown",
         )
-    done = convert(source.lines, _options(args, control, machine), get_control_limits(machine))
+    done = convert_program(source.lines, _options(args, control, machine), get_control_limits(machine))
     if args.out is not None and not done.errors:
         _write(args, done.text, who)
     _print(args, control, done)
     return EXIT_ERRORS if done.errors else EXIT_OK
 
 
-def _options(args: argparse.Namespace, control: Control, machine: Machine) -> Options:
-    return Options(
+def _options(args: argparse.Namespace, control: SourceControl, machine: Machine) -> ConversionOptions:
+    return ConversionOptions(
         control,
         no_point=float(args.no_point or 0),
         metric=None if args.unit is None else args.unit == "mm",
         diameter=None if args.x is None else args.x == "diameter",
         front=args.tool_post == "front",
-        skipped_m=args.skip_m,
-        comments=not args.no_comments,
+        skipped_m_codes=args.skip_m,
+        has_comments=not args.no_comments,
         rapid=machine.limits.max_feed * 60,
-        most_rpm=machine.spindle.max_rpm,
-        most_feed=machine.limits.max_feed * 60,
+        max_rpm=machine.spindle.max_rpm,
+        max_feed_mm_min=machine.limits.max_feed * 60,
         m_codes=frozenset(machine.m_codes),
     )
 
@@ -155,7 +155,7 @@ def _write(args: argparse.Namespace, text: str, who: str) -> None:
     )
 
 
-def _print(args: argparse.Namespace, control: Control, done: Conversion) -> None:
+def _print(args: argparse.Namespace, control: SourceControl, done: Conversion) -> None:
     if args.json:
         sys.stdout.write(json.dumps(_in_json(args, control, done)) + "\n")
         return
@@ -166,7 +166,7 @@ def _print(args: argparse.Namespace, control: Control, done: Conversion) -> None
     sys.stderr.write(f"{_summary(args, control, done)}\n")
 
 
-def _summary(args: argparse.Namespace, control: Control, done: Conversion) -> str:
+def _summary(args: argparse.Namespace, control: SourceControl, done: Conversion) -> str:
     if done.errors:
         return Message("{file}: not converted from {control}", file=args.file, control=control)
     proof = done.proof
@@ -176,23 +176,23 @@ def _summary(args: argparse.Namespace, control: Control, done: Conversion) -> st
         file=args.file,
         control=control,
         lines=len(done.lines),
-        compared=proof.compared,
-        rounded=proof.rounded,
-        most=f"{proof.most / _MM_PER_INCH:.6f}",
+        compared=proof.compared_step_count,
+        rounded=proof.rounded_move_count,
+        most=f"{proof.max_rounding_mm / _MM_PER_INCH:.6f}",
     )
 
 
-def _in_json(args: argparse.Namespace, control: Control, done: Conversion) -> dict[str, object]:
+def _in_json(args: argparse.Namespace, control: SourceControl, done: Conversion) -> dict[str, object]:
     return {
         "file": args.file,
         "from": str(control),
         "to": args.to,
         "out": args.out if not done.errors else None,
         "program": done.text,
-        "source_lines": [each.line for each in done.lines],
-        "steps_compared": done.proof.compared,
-        "values_rounded": done.proof.rounded,
-        "largest_rounding_mm": done.proof.most,
+        "source_lines": [each.source_line_number for each in done.lines],
+        "steps_compared": done.proof.compared_step_count,
+        "values_rounded": done.proof.rounded_move_count,
+        "largest_rounding_mm": done.proof.max_rounding_mm,
         "findings": [
             {
                 "line": each.line,
@@ -207,7 +207,7 @@ def _in_json(args: argparse.Namespace, control: Control, done: Conversion) -> di
     }
 
 
-CONVERT = JsonOutput(
+CONVERT_OUTPUT = JsonOutput(
     "convert FILE --json",
     "One object. If a finding is an error, the exit status is 1, and the program must not be used.",
     declare_keys(
@@ -231,4 +231,4 @@ findings[].hint | string | | What to do.
 """
     ),
 )
-OUTPUTS = (CONVERT,)
+OUTPUTS = (CONVERT_OUTPUT,)

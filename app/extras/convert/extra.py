@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from core.json_keys import JsonOutput
 
 
-class Convert(OptionalFeature):
+class ConvertExtra(OptionalFeature):
     """Optional feature with the command ``turndesk convert``."""
 
     subcommands = {
@@ -25,4 +25,4 @@ class Convert(OptionalFeature):
         return {"access table --json": OUTPUTS}
 
 
-EXTRA = Convert()
+EXTRA = ConvertExtra()

@@ -16,7 +16,7 @@ from app.desk.pages.table_content import FunctionKey
 from app.desk.translation import tr
 from app.extras.drawings.drawing_plan import (
     ALL_LAYERS,
-    OWN_AXIS,
+    AXIS_AS_DRAWN,
     DrawingPlan,
     DrawingPlanner,
     PlanRequest,
@@ -27,7 +27,7 @@ from core.extras.drawings.drawing_file import has_drawing_suffix
 from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
 from core.extras.drawings.drawing_process import read_in_process
 from core.extras.drawings.part_comparison import DrawingComparison
-from core.extras.drawings.profile_job import describe_program
+from core.extras.drawings.profile_description import describe_program
 from core.extras.drawings.unit_check import UNIT_SIZES_MM
 from core.extras.shapes.cutting_data import CUTTING_DATA
 from core.extras.shapes.editor_shape import FilledShape, Shape
@@ -45,7 +45,10 @@ from core.sketch import Dimension, Sketch, make_cut_outline, make_part_outline, 
 
 NO_DRAWINGS_MESSAGE = "No drawings in the program folder: copy a DXF or SVG file into it with F6, then F8."
 CANCELED_MESSAGE = "Reading was canceled. Press F6 to read the drawing again."
-_WORDS = {"DUNIT": (*UNIT_SIZES_MM, OWN_AXIS), "LAYER": (ALL_LAYERS,)}  # translatable choices of a drawing
+_WORDS = {
+    "DUNIT": (*UNIT_SIZES_MM, AXIS_AS_DRAWN),
+    "LAYER": (ALL_LAYERS,),
+}  # translatable choices of a drawing
 
 
 def _inside(values: FieldValues) -> bool:
@@ -79,7 +82,7 @@ def _picture(_filled: FilledShape) -> Sketch:
 
 def _written(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
     assert isinstance(filled, FilledDrawing)
-    code.write(*filled.program_lines)
+    code.append_lines(*filled.program_lines)
 
 
 DRAWING_SHAPE = Shape(
@@ -129,7 +132,7 @@ class FilledDrawing(FilledShape):
     def make_lines(self, settings: ProgramSettings) -> list[str]:
         """Return the program lines that the shapes have written."""
         code = CodeWriter(settings)
-        self.shape.cut(self, settings, code)
+        self.shape.write_lines(self, settings, code)
         return code.lines
 
 
@@ -173,7 +176,7 @@ class DrawingForm(ShapeForm):
             self._ask(asked)
         self._show()
 
-    def use_settings(self, settings: ProgramSettings) -> None:
+    def apply_settings(self, settings: ProgramSettings) -> None:
         """Calculate again with other tool data, unless reading was canceled.
 
         After a cancellation, F6 starts reading the drawing again.
@@ -181,7 +184,7 @@ class DrawingForm(ShapeForm):
         if self.is_canceled:
             self.settings = settings
         else:
-            ShapeForm.use_settings(self, settings)  # super() fails in a dataclass with slots
+            ShapeForm.apply_settings(self, settings)  # super() fails in a dataclass with slots
 
     def _ask(self, asked: PlanRequest) -> None:
         if self.plan is None or self.plan.request != asked:
@@ -238,7 +241,7 @@ class DrawingForm(ShapeForm):
         self.calculation_count += 1
         self.comparison = comparison
         metric = self.settings.metric
-        self.remarks = (*errors, *describe_program(plan.program, comparison, plan.profile, metric=metric))
+        self.remarks = (*errors, *describe_program(plan.program, comparison, plan.profile, is_metric=metric))
         self.plan = replace(plan, sketch=draw_plan(plan, self._chosen_number, comparison))
 
     @property
@@ -252,7 +255,7 @@ class DrawingForm(ShapeForm):
         return (
             self.plan.sketch
             if self.plan is not None and self.plan.elements
-            else DRAWING_SHAPE.sketch(self.filled_shape)
+            else DRAWING_SHAPE.make_sketch(self.filled_shape)
         )
 
     @property
@@ -346,8 +349,10 @@ class AddedDrawingForm(AddedForm):
 
     key, shape = "X", DRAWING_SHAPE
 
-    def __init__(self, files: Callable[[], Mapping[str, Path]], attempt: TrialFunction = skip_trial) -> None:
-        self.find_drawing_files, self.run_trial = files, attempt
+    def __init__(
+        self, find_drawing_files: Callable[[], Mapping[str, Path]], run_trial: TrialFunction = skip_trial
+    ) -> None:
+        self.find_drawing_files, self.run_trial = find_drawing_files, run_trial
         self.planner = DrawingPlanner(read_in_process)
         self.plan_worker, self.trial_worker = (
             LatestRequestWorker("planning-drawing"),
@@ -370,7 +375,7 @@ class AddedDrawingForm(AddedForm):
         """Return whether the file is a drawing."""
         return has_drawing_suffix(name)
 
-    def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
+    def calculate(self, form: ShapeForm, show_form: ShowForm, show_message: Callable[[str], None]) -> None:
         """Plan the program for the entries on a worker, and then try the program."""
         if not isinstance(form, DrawingForm) or form.pending_request is None:
             return
@@ -379,13 +384,13 @@ class AddedDrawingForm(AddedForm):
         def planned(plan: DrawingPlan) -> None:
             if form.pending_request == asked:
                 form.show_plan(plan)
-                self._try(form, plan, show(form), failed)
+                self._try(form, plan, show_form(form), failed)
 
         def failed(why: str) -> None:
             show_message(tr(Message("THE DRAWING CANNOT BE PROCESSED: {why}", why=why)))
 
-        self.trial_worker.cancel()
-        self.plan_worker.request(lambda watch: self.planner.make_plan(asked, watch), planned, failed)
+        self.trial_worker.cancel_request()
+        self.plan_worker.request_work(lambda watch: self.planner.make_plan(asked, watch), planned, failed)
 
     def _try(
         self, form: DrawingForm, plan: DrawingPlan, text: str | None, failed: Callable[[str], None]
@@ -401,20 +406,20 @@ class AddedDrawingForm(AddedForm):
             if form.plan is plan:
                 form.show_trial(*found)
 
-        self.trial_worker.request(lambda watch: self.run_trial(text, plan, watch), tried, failed)
+        self.trial_worker.request_work(lambda watch: self.run_trial(text, plan, watch), tried, failed)
 
     def cancel(self, form: ShapeForm) -> None:
         """Cancel reading a drawing (F6 or Esc) and end the process that reads it."""
         if isinstance(form, DrawingForm):
-            self.plan_worker.cancel()
+            self.plan_worker.cancel_request()
             form.cancel()
 
-    def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
+    def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
         """Return F6, which cancels reading the drawing or starts it again."""
 
         def read_again() -> None:
             form.calculate()
-            show(form)
+            show_form(form)
 
         if form.is_calculating:
             return {6: FunctionKey("CANCEL", lambda: self.cancel(form))}
@@ -434,8 +439,8 @@ class AddedDrawingForm(AddedForm):
 
     def poll(self) -> None:
         """Process the results of planning and of trials."""
-        self.plan_worker.poll()
-        self.trial_worker.poll()
+        self.plan_worker.deliver_results()
+        self.trial_worker.deliver_results()
 
     def close(self) -> None:
         """Stop both workers."""

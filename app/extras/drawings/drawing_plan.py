@@ -27,7 +27,7 @@ from core.extras.drawings.drawing_placement import (
     place_elements,
     select_axis,
 )
-from core.extras.drawings.profile_job import propose_fields
+from core.extras.drawings.profile_description import propose_fields
 from core.extras.drawings.profile_program import ProfileProgram, make_profile_program
 from core.extras.drawings.unit_check import UNIT_SIZES_MM, detect_wrong_unit
 from core.extras.shapes.shape_fields import FieldValue, FieldValues, ProgramSettings
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from core.extras.drawings.part_comparison import DrawingComparison
 
 ALL_LAYERS = "ALL"
-OWN_AXIS = "AS DRAWN"
+AXIS_AS_DRAWN = "AS DRAWN"
 _MOST_DRAWN = 3000  # maximum number of elements in a picture
 _CHORD = 0.15  # rad of an arc per chord of the picture
 _NUMBERS = ("FROM", "STOCK", "HOLE", "ROUGH", "T", "BLADE", "COMP")
@@ -93,21 +93,21 @@ class DrawingPlanner:
     ``is_reading`` is True while a file is being read.
     """
 
-    def __init__(self, read: Callable[[Path, ProgressCallback], Drawing]) -> None:
-        self._read = read
+    def __init__(self, read_drawing: Callable[[Path, ProgressCallback], Drawing]) -> None:
+        self._read = read_drawing
         self._known: tuple[Path, float, Drawing] | None = None
         self.is_reading = False
 
-    def make_plan(self, request: PlanRequest, watch: ProgressCallback) -> DrawingPlan:
+    def make_plan(self, request: PlanRequest, report_progress: ProgressCallback) -> DrawingPlan:
         """Return the plan with its errors by field.
 
         ``watch`` can raise an exception to cancel the work.
         """
         try:
-            drawing = self._drawing(request.drawing_path, watch)
+            drawing = self._drawing(request.drawing_path, report_progress)
         except DrawingError as error:
             return DrawingPlan(request, errors={"FILE": str(error)})
-        with limit_work(watch):
+        with limit_work(report_progress):
             return _PlanBuilder(drawing, request).plan()
 
     def _drawing(self, path: Path, watch: ProgressCallback) -> Drawing:
@@ -166,7 +166,7 @@ class _PlanBuilder:
         except DrawingError as error:
             return self._plan({word: str(error)})
         for one, _ in made.shapes:
-            if one.shape.contour:
+            if one.shape.has_point_table:
                 fields["ROUGH"] = one.get_number("ROUGH")
         self.proposals |= {name: fields[name] for name in _NUMBERS if name in fields}
         troubles = {_find_form_field(each.field_word): each.text for each in reversed(made.errors)}
@@ -207,8 +207,8 @@ class _PlanBuilder:
         self.choices["DUNIT"] = tuple(UNIT_SIZES_MM)
         own = next((name for name, mm in UNIT_SIZES_MM.items() if abs(mm - self.drawing.unit_mm) < 1e-9), "")
         if self.drawing.unit_mm and not own:
-            self.choices["DUNIT"] = (*UNIT_SIZES_MM, OWN_AXIS)
-            own = OWN_AXIS
+            self.choices["DUNIT"] = (*UNIT_SIZES_MM, AXIS_AS_DRAWN)
+            own = AXIS_AS_DRAWN
         said = self.word("DUNIT", own)
         if not said:
             raise DrawingError(
@@ -255,7 +255,9 @@ class _PlanBuilder:
         assert self.view is not None
         if "DUNIT" in self.request.entered_values:
             return
-        if (wrong := detect_wrong_unit(net, self.view.unit, self.request.settings.shop.travel)) is not None:
+        if (
+            wrong := detect_wrong_unit(net, self.view.unit, self.request.settings.shop.travel_mm)
+        ) is not None:
             words = Message(
                 "{drawing} is {wrong}, which is too large for this machine. The drawing fits if its "
                 "unit is {wrong2}: choose {wrong3}.",
@@ -281,7 +283,7 @@ class _PlanBuilder:
         if "FROM" in given:
             given["BAR"] = given["FROM"]
         now = asked.settings
-        fields = propose_fields(chosen, given, now.shop.tools, metric=now.metric, dialect=now.dialect)
+        fields = propose_fields(chosen, given, now.shop.tools, is_metric=now.metric, dialect=now.dialect)
         if chosen.side is ContourSide.INSIDE and not given.get("HOLE"):
             raise DrawingError("Boring needs a predrilled hole: enter its diameter.", "no-hole")
         return make_profile_program(chosen, fields, asked.preceding_lines, asked.settings), fields
@@ -320,9 +322,13 @@ def _polyline(element: Element) -> tuple[tuple[float, float], ...]:
     if isinstance(element, Line):
         return _turned([element.start, element.end])
     assert isinstance(element, Arc)
-    count = max(2, math.ceil(abs(element.sweep) / _CHORD))
+    count = max(2, math.ceil(abs(element.sweep_rad) / _CHORD))
     return _turned(
-        [element.start, *(element.point_at(element.length * k / count) for k in range(1, count)), element.end]
+        [
+            element.start,
+            *(element.get_point(element.length * k / count) for k in range(1, count)),
+            element.end,
+        ]
     )
 
 
@@ -330,7 +336,7 @@ def _turned(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float],
     return tuple((z, r) for r, z in points)
 
 
-def draw_plan(plan: DrawingPlan, number: int, comparison: DrawingComparison | None = None) -> Sketch:
+def draw_plan(plan: DrawingPlan, contour_number: int, comparison: DrawingComparison | None = None) -> Sketch:
     """Return the sketch of the drawing with its axis and the selected contour.
 
     Sections that are uncut or cut incorrectly are red.
@@ -338,9 +344,13 @@ def draw_plan(plan: DrawingPlan, number: int, comparison: DrawingComparison | No
     drawn = [Outline(each.points, "part") for each in plan.elements if each.line_number]
     outlines = [
         *drawn,
-        *(Outline(p.points, "far") for p in plan.elements if p.contour_number and p.contour_number != number),
+        *(
+            Outline(p.points, "far")
+            for p in plan.elements
+            if p.contour_number and p.contour_number != contour_number
+        ),
     ]
-    here = [Outline(each.points, "cut") for each in plan.elements if each.contour_number == number]
+    here = [Outline(each.points, "cut") for each in plan.elements if each.contour_number == contour_number]
     ends = [z for each in (*outlines, *here) for z, _ in each.points] or [0.0, 1.0]
     room = 0.05 * (max(ends) - min(ends) or 1.0)
     axis = Outline(((min(ends) - room, 0.0), (max(ends) + room, 0.0)), "axis")
@@ -352,7 +362,7 @@ def draw_plan(plan: DrawingPlan, number: int, comparison: DrawingComparison | No
         for each in range(1, len(plan.choices.get("CONTOUR", ())) + 1)
         if any(o.contour_number == each for o in plan.elements)
     ]
-    left = list(_find_deviating_sections(plan, number, comparison))
+    left = list(_find_deviating_sections(plan, contour_number, comparison))
     return Sketch((axis, *outlines, *here, *left), tuple(tops[:9]))
 
 

@@ -33,10 +33,10 @@ def add_drawing_form(shapes: ShapesModel, desk: Desk, machine: Machine) -> None:
 
 def run_trial(
     machine: Machine,
-    shapes: Callable[[], Mapping[int, ToolShape]],
-    text: str,
+    read_tool_shapes: Callable[[], Mapping[int, ToolShape]],
+    program_text: str,
     plan: DrawingPlan,
-    watch: ProgressCallback,
+    report_progress: ProgressCallback,
 ) -> tuple[DrawingComparison | None, tuple[str, ...]]:
     """Prove the program with the stock of the form and the present tools, and compare the part."""
     made, chosen, mm = plan.program, plan.profile, plan.request.settings.mm
@@ -50,6 +50,13 @@ def run_trial(
     bar = length("FROM") or 1.5 * find_max_diameter(chosen)
     stock = TrialStock(bar, length("STOCK"), length("HOLE"))
     trial = run_profile_trial(
-        text, chosen, stock, made.nose_offset, machine, shapes(), watch, plan.request.settings.dialect
+        program_text,
+        chosen,
+        stock,
+        made.nose_offset,
+        machine,
+        read_tool_shapes(),
+        report_progress,
+        plan.request.settings.dialect,
     )
     return trial.comparison, trial.errors

@@ -202,7 +202,7 @@ def _check_unit(drawing: Drawing, view: DrawingPlacement, net: ElementGroup, mac
     from app.extras.shapes.shapes_setup import make_shop_data
     from core.extras.drawings.unit_check import detect_wrong_unit
 
-    if (wrong := detect_wrong_unit(net, view.unit, make_shop_data(machine, {}).travel)) is not None:
+    if (wrong := detect_wrong_unit(net, view.unit, make_shop_data(machine, {}).travel_mm)) is not None:
         size, name = wrong[0], wrong[1].lower()
         words = Message(
             "{drawing} is {size}, which is too large for this machine; with {name} as the "
@@ -221,7 +221,7 @@ def _language(args: argparse.Namespace, machine: Machine) -> Dialect:
     Raises CommandError for Klartext.
     """
     if args.out is None:
-        return Dialect.SINUMERIK if machine.language == Dialect.SINUMERIK else Dialect.OMNITURN
+        return Dialect.SINUMERIK if machine.mdi_language == Dialect.SINUMERIK else Dialect.OMNITURN
     said = guess_dialect(Path(args.out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
@@ -367,7 +367,7 @@ def _typed(
     chosen: ContourProfile, args: argparse.Namespace, shapes: Mapping[int, ToolShape]
 ) -> dict[str, FieldValue]:
     """Return the field values of the shapes, with lengths in the unit of the program."""
-    from core.extras.drawings.profile_job import propose_fields
+    from core.extras.drawings.profile_description import propose_fields
 
     said: dict[str, FieldValue | None] = {
         "BAR": args.bar,
@@ -380,7 +380,7 @@ def _typed(
         "MATERIAL": args.material,
     }
     given = {word: value for word, value in said.items() if value is not None}
-    return propose_fields(chosen, given, shapes, metric=args.metric, dialect=args.dialect)
+    return propose_fields(chosen, given, shapes, is_metric=args.metric, dialect=args.dialect)
 
 
 def _program(
@@ -401,7 +401,7 @@ def _program(
 def _tell(
     made: ProfileProgram, trial: TrialResult, chosen: ContourProfile, text: str, args: argparse.Namespace
 ) -> None:
-    from core.extras.drawings.profile_job import convert_to_json, describe_program
+    from core.extras.drawings.profile_description import convert_to_json, describe_program
 
     if args.json:
         result = {
@@ -412,7 +412,7 @@ def _tell(
         }
         sys.stdout.write(json.dumps({**result, "errors": list(trial.errors)}) + "\n")
         return
-    for line in (*describe_program(made, trial.comparison, chosen, metric=args.metric), *trial.errors):
+    for line in (*describe_program(made, trial.comparison, chosen, is_metric=args.metric), *trial.errors):
         sys.stderr.write(f"turndesk: {line}\n")
 
 

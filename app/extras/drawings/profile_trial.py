@@ -18,7 +18,7 @@ from core.message import Message
 from core.part.stock_spec import StockSpec
 from core.part.tool_shape import ToolShape
 from core.proving.part_proof import prove_with_part
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 
 _SPARE = 10.0  # mm of stock beyond the part
 _HOME = ToolOffset(12.7, -76.2)
@@ -28,9 +28,9 @@ _HOME = ToolOffset(12.7, -76.2)
 class TrialStock:
     """Stock of a trial in mm: bar diameter, material in front of the face, and predrilled hole diameter."""
 
-    diameter: float
+    bar_diameter_mm: float
     face_stock_mm: float = 0.0
-    hole_diameter: float = 0.0
+    hole_diameter_mm: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,33 +45,41 @@ class TrialResult:
 
 
 def run_profile_trial(
-    text: str,
+    program_text: str,
     profile: ContourProfile,
     stock: TrialStock,
-    nose: NoseOffset | None,
+    nose_offset: NoseOffset | None,
     machine: Machine,
-    shapes: Mapping[int, ToolShape],
-    watch: Callable[[float], None] | None = None,
+    tool_shapes: Mapping[int, ToolShape],
+    report_progress: Callable[[float], None] | None = None,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> TrialResult:
     """Prove the program and compare the part with the profile.
 
-    All tools are at the same position and have the required nose offset ``nose``.
+    All tools are at the same position and have the required nose offset ``nose_offset``.
     """
-    of_edge = nose is not None and nose.quadrant
-    secondary = {nose.number: SecondaryOffset(nose.x, nose.z, nose.r)} if nose and not of_edge else {}
+    of_edge = nose_offset is not None and nose_offset.quadrant
+    secondary = (
+        {nose_offset.number: SecondaryOffset(nose_offset.x, nose_offset.z, nose_offset.nose_radius)}
+        if nose_offset and not of_edge
+        else {}
+    )
     tools = dict.fromkeys(range(1, 33), _HOME)
-    if nose is not None and of_edge:
-        edge = replace(_HOME, nose_radius=nose.r, quadrant=nose.quadrant)
-        tools |= {make_edge_key(n, nose.number): edge for n in tools}
+    if nose_offset is not None and of_edge:
+        edge = replace(_HOME, nose_radius=nose_offset.nose_radius, quadrant=nose_offset.quadrant)
+        tools |= {make_row_number(n, nose_offset.number): edge for n in tools}
     setup = create_setup(machine, tool_offsets=tools, secondary_offsets=secondary)
-    setting = read_known_part(machine, {}, shapes)
+    setting = read_known_part(machine, {}, tool_shapes)
     front = profile.front_z_mm + stock.face_stock_mm
     length = front - profile.back_z_mm + _SPARE
-    bar = StockSpec("bar", stock.diameter, stock.hole_diameter, length, front)
+    bar = StockSpec("bar", stock.bar_diameter_mm, stock.hole_diameter_mm, length, front)
     setting = replace(setting, stock=bar, clamping=None, gang={}, travel=None)
     report, part = prove_with_part(
-        ProgramSource("drawing", text, dialect), setup, machine, setting, check_canceled=watch
+        ProgramSource("drawing", program_text, dialect),
+        setup,
+        machine,
+        setting,
+        check_canceled=report_progress,
     )
     errors = tuple(_said(each) for each in report.diagnostics if each.severity is Severity.ERROR)
     made = None if part is None or part.last_piece is None else part.last_piece

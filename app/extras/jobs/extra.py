@@ -27,7 +27,7 @@ class JobsExtra(OptionalFeature):
     }
 
     @property
-    def pages(self) -> Sequence[PageDescription]:
+    def page_descriptions(self) -> Sequence[PageDescription]:
         """Return the description of the JOBS page."""
         from app.desk.page_description import PageDescription
 

@@ -86,7 +86,7 @@ def _told(place: int, row: JobRow) -> dict[str, object]:
         "program": row.program,
         "parts": row.parts_to_make,
         "made": row.parts_made,
-        "left": row.parts_left,
+        "left": row.remaining_part_count,
         "state": _state(row),
         "note": row.note,
         "added": row.added_at,

@@ -70,7 +70,7 @@ class JobsModel:
         return self.jobs[self.selected_row] if self.selected_row < len(self.jobs) else None
 
     @property
-    def lock_reason(self) -> str:
+    def storage_refusal(self) -> str:
         """Return the reason why jobs cannot be stored, or an empty string."""
         book = self.job_watch.parts_watch.parts_book
         return (
@@ -113,7 +113,7 @@ class JobsModel:
             self.selected_row if rows else -1,
             question=question,
             text=self.entry.text,
-            notes=(self.lock_reason,) if self.lock_reason else () if rows else (NO_JOBS_MESSAGE,),
+            notes=(self.storage_refusal,) if self.storage_refusal else () if rows else (NO_JOBS_MESSAGE,),
             raw_columns=frozenset({0, 1, 2, 3}),
             number_columns=frozenset({2, 3}),
             has_tall_rows=True,
@@ -124,13 +124,18 @@ class JobsModel:
         if job.is_done:
             tone = Tone.RUN
         elif isinstance(made, str) or (
-            isinstance(made, ProvedJob) and count_open_items(made, self.job_watch.tool_lives, job.parts_left)
+            isinstance(made, ProvedJob)
+            and count_open_items(made, self.job_watch.tool_lives, job.remaining_part_count)
         ):
             tone = Tone.PAUSE
         cycle = made.setup_sheet.cycle_time_s if isinstance(made, ProvedJob) else 0.0
-        if job.is_active and self.desk.program_runs.part_counter.program == job.program:
+        if job.is_active and self.desk.program_runs.part_counter.program_name == job.program:
             cycle = snapshot.last_cycle or cycle
-        left = format_duration(job.parts_left * cycle) if cycle and job.parts_left else NO_VALUE
+        left = (
+            format_duration(job.remaining_part_count * cycle)
+            if cycle and job.remaining_part_count
+            else NO_VALUE
+        )
         cells = (
             str(number),
             f"{job.program}\n{job.note}",
@@ -192,7 +197,7 @@ class JobsModel:
 
     def _proved_rows(self, job: JobRow, made: ProvedJob) -> Iterator[TableRow]:
         sheet = made.setup_sheet
-        for station in list_job_tools(made, self.job_watch.tool_lives, job.parts_left):
+        for station in list_job_tools(made, self.job_watch.tool_lives, job.remaining_part_count):
             yield self._station(station, made)
         for each in select_findings(sheet):
             name = tr(Message("LINE {line}", line=each.line)) if each.line else tr("PROOF")
@@ -229,7 +234,7 @@ class JobsModel:
             return "TYPE THE ENTRY   ENTER: ACCEPT   ESC: CANCEL"
         if self.selected_job is None:
             return NO_JOBS_MESSAGE if self.desk.program_loader.loaded.name else NO_PROGRAM_MESSAGE
-        if self.load_obstacle:
+        if self.load_refusal:
             return "CANNOT LOAD: MACHINE MOVING OR PROGRAM RUNNING. ESC: BACK"
         return "F2: LOAD JOB ONLY   CYCLE START: RUN   ESC: AUTOMATIC"
 
@@ -255,7 +260,7 @@ class JobsModel:
         }
 
     @property
-    def load_obstacle(self) -> str:
+    def load_refusal(self) -> str:
         """Return the reason why the selected job cannot be loaded, or an empty string."""
         return (
             NO_JOBS_MESSAGE if self.selected_job is None else find_program_refusal(self.desk.read_snapshot())
@@ -263,7 +268,7 @@ class JobsModel:
 
     def check_loadable(self) -> bool:
         """Return whether the selected job can be loaded, and show the reason if it cannot."""
-        if why := self.load_obstacle:
+        if why := self.load_refusal:
             self.desk.say(why)
         return not why
 

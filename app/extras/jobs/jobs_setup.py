@@ -26,22 +26,22 @@ LastStartReader = Callable[[str], tuple[str, dict[int, ToolRow]]]
 """When a program was started last, and its tools as they were then; on the worker."""
 
 
-def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, work: LoadingSteps) -> None:
+def attach_jobs(desk: Desk, machine: Machine, journal: Journal | None, loading_steps: LoadingSteps) -> None:
     """Attach the job queue to TurnDesk, with its page and its key in the program list."""
-    parts = desk.page_registry.find(PartsWatch)
+    parts = desk.page_registry.find_model(PartsWatch)
     if parts is None:
         return
     kept = partial(load_stored_part, (journal or Persistence()).read_setting)
-    of_part = PartProver(machine, try_read_shapes, kept, work.read_source)
+    of_part = PartProver(machine, try_read_shapes, kept, loading_steps.read_source)
     before = journal.read_last_run_tools if journal is not None else _never
-    parts.parts_book.readers[BOOK_KEY] = lambda store, _program: store.jobs.read_jobs()
-    watch = JobWatch(desk, parts, JobProofs(partial(_proved, desk, machine, work, of_part, before)))
+    parts.parts_book.feature_readers[BOOK_KEY] = lambda store, _program: store.jobs.read_jobs()
+    watch = JobWatch(desk, parts, JobProofs(partial(_proved, desk, machine, loading_steps, of_part, before)))
     desk.page_registry.attach_model(watch)
     desk.page_registry.add_run_watcher(watch)
     model = JobsModel(desk, watch)
     desk.page_registry.attach_model(model)
     desk.page_registry.add_program_key("F10", ProgramKey("JOB", "JOBS", model.add_program))
-    desk.page_registry.set_notice(watch.make_notice)
+    desk.page_registry.set_notice_finder(watch.make_notice)
 
 
 def _proved(
@@ -66,7 +66,7 @@ def _proved(
             tr(Message("{name} IS NOT IN THE PROGRAM LIST. F1, THEN F6: CHECK LIST", name=program))
         )
     job = steps.make_job(steps.read_source(path), False)
-    setting = of_part.read_setting(job, watch)[0] if machine.kind == "lathe" else PartSettings()
+    setting = of_part.read_settings(job, watch)[0] if machine.kind == "lathe" else PartSettings()
     return ProvedJob(
         make_setup_sheet(job.shared_program, job.setup, machine, setting, watch), *before(program)
     )

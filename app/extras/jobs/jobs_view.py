@@ -35,25 +35,25 @@ class JobsPage(ListPage):
         self.letter_pad = LetterPad(self.theme, self.handle_touched_key, self)
         self._asked = ""
 
-    def disabled_keys(self) -> frozenset[str]:
+    def find_disabled_keys(self) -> frozenset[str]:
         """Return the disabled keys of the model, and F2 if no job can be loaded."""
-        return super().disabled_keys() | ({"F2"} if self.model.load_obstacle else set())
+        return super().find_disabled_keys() | ({"F2"} if self.model.load_refusal else set())
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
         return self.model.function_keys()
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of F2 and of the function keys of the model."""
-        return self.make_labels({"F2": "LOAD"}, self.function_keys())
+        return self.make_function_key_labels({"F2": "LOAD"}, self.make_function_keys())
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the function keys."""
-        keys = self.function_keys()
+        keys = self.make_function_keys()
         return {"F2": self._load, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.function_keys()[name].action()
+        self.make_function_keys()[name].action()
 
     def _load(self) -> None:
         """Open the Automatic page and load the job.
@@ -86,7 +86,7 @@ class JobsPage(ListPage):
         self._lay_out()
 
     def _lay_out(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         gap = max(4, round(0.7 * u))
         self.number_pad.setVisible(self._asked == "count")
         self.letter_pad.setVisible(self._asked == "note")

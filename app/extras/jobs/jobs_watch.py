@@ -63,24 +63,26 @@ class JobTool:
     required_actions: tuple[str, ...] = ()
 
 
-def list_job_tools(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> tuple[JobTool, ...]:
+def list_job_tools(
+    job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int
+) -> tuple[JobTool, ...]:
     """Return the tools of a job in the order of the gang plate.
 
     ``parts_to_make`` is the number of parts that the tool life must cover.
     """
     return tuple(
-        JobTool(tool, tuple(_lacks(tool, job, lives.get(tool.tool_number), parts_to_make)))
+        JobTool(tool, tuple(_lacks(tool, job, tool_lives.get(tool.tool_number), parts_to_make)))
         for tool in job.setup_sheet.setup_tools
     )
 
 
-def count_open_items(job: ProvedJob, lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
+def count_open_items(job: ProvedJob, tool_lives: Mapping[int, ToolLife], parts_to_make: int) -> int:
     """Return the number of open items that must be solved before the job can start.
 
     Open items are required tool actions and errors of the proof.
     """
     return (
-        sum(len(each.required_actions) for each in list_job_tools(job, lives, parts_to_make))
+        sum(len(each.required_actions) for each in list_job_tools(job, tool_lives, parts_to_make))
         + job.setup_sheet.error_count
     )
 
@@ -137,7 +139,7 @@ def _list_tip_actions(tool: SetupTool, job: ProvedJob) -> Iterator[str]:
             words,
             radius=length(now.nose_radius),
             tip=_tip(now.quadrant),
-            when=format_local_time(job.last_start_utc, seconds=False),
+            when=format_local_time(job.last_start_utc, with_seconds=False),
             was=length(then.nose_radius),
             was_tip=_tip(then.quadrant),
         )
@@ -169,12 +171,12 @@ class JobsFunction(PageFunction):
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows for the active job, the next job and the number of waiting jobs."""
-        watch = self.desk.page_registry.find(JobWatch)
+        watch = self.desk.page_registry.find_model(JobWatch)
         if watch is None:
             return ()
         job, coming = watch.active_job, watch.next_job
         made = f"{job.program}  {job.parts_made}/{job.parts_to_make}" if job is not None else NO_VALUE
-        then = f"{coming.program}  {coming.parts_left}" if coming is not None else NO_VALUE
+        then = f"{coming.program}  {coming.remaining_part_count}" if coming is not None else NO_VALUE
         waiting = sum(not each.is_done and not each.is_active for each in watch.jobs)
         return (
             TableRow((tr("IN PROGRESS"), made)),
@@ -204,23 +206,23 @@ class JobProofs:
     _made: dict[tuple[str, int], ProvedJob | str] = field(default_factory=dict)
     _asked: tuple[str, int] | None = None
 
-    def request_proofs(self, programs: Sequence[str], offsets: int) -> None:
+    def request_proofs(self, program_names: Sequence[str], offset_revision: int) -> None:
         """Request proofs in the order of ``programs`` and cancel an obsolete proof.
 
-        ``offsets`` identifies the state of the offset tables. This method is called once per frame.
+        ``offset_revision`` identifies the state of the offset tables. This method is called once per frame.
         """
-        self.worker.poll()
-        keys = [(program, offsets) for program in programs[:MAX_PROOFS]]
+        self.worker.deliver_results()
+        keys = [(program, offset_revision) for program in program_names[:MAX_PROOFS]]
         wanted = next((key for key in keys if key not in self._made), None)
         if wanted is None or wanted == self._asked:
             return
         self._asked = wanted
         done = partial(self._keep, wanted)
-        self.worker.request(partial(self.prove_program, wanted[0]), done, done)
+        self.worker.request_work(partial(self.prove_program, wanted[0]), done, done)
 
-    def find_proof(self, program: str, offsets: int) -> ProvedJob | str | None:
+    def find_proof(self, program: str, offset_revision: int) -> ProvedJob | str | None:
         """Return the proof of a program, the reason why proving failed, or None while proving is pending."""
-        return self._made.get((program, offsets))
+        return self._made.get((program, offset_revision))
 
     def clear_proofs(self) -> None:
         """Discard all proofs because files and shapes can have changed."""
@@ -261,7 +263,7 @@ class JobWatch:
     @property
     def jobs(self) -> tuple[JobRow, ...]:
         """Return the stored jobs of the queue."""
-        jobs: tuple[JobRow, ...] = self.parts_watch.parts_book.current.feature_data.get(BOOK_KEY, ())
+        jobs: tuple[JobRow, ...] = self.parts_watch.parts_book.current_data.feature_data.get(BOOK_KEY, ())
         return jobs
 
     @property
@@ -292,13 +294,13 @@ class JobWatch:
         This method is called once per frame.
         """
         counter = self.desk.program_runs.part_counter
-        if (counter.program, counter.count) != self._counted:
-            self._counted = counter.program, counter.count
+        if (counter.program_name, counter.count) != self._counted:
+            self._counted = counter.program_name, counter.count
             self.parts_watch.parts_book.request_reload()
         self._begin(loaded)
         job = self.active_job
-        counter.job_target = (
-            job.target_part_count if job is not None and job.program == counter.program else 0
+        counter.job_target_count = (
+            job.target_part_count if job is not None and job.program == counter.program_name else 0
         )
         self._report_finished(job)
         self._prove(snapshot)
@@ -385,7 +387,9 @@ class JobWatch:
         job = self.next_job
         if job is None:
             return tr("NO MORE JOBS WAITING.")
-        words = tr(Message("NEXT: {program}, {left} PARTS", program=job.program, left=job.parts_left))
+        words = tr(
+            Message("NEXT: {program}, {left} PARTS", program=job.program, left=job.remaining_part_count)
+        )
         return Message("{words}, {job}", words=words, job=self.describe_state(job))
 
     def describe_state(self, job: JobRow) -> str:
@@ -400,7 +404,7 @@ class JobWatch:
             return made
         if made.setup_sheet.error_count:
             return tr("THE PROGRAM HAS ERRORS")
-        lacking = count_open_items(made, self.tool_lives, job.parts_left)
+        lacking = count_open_items(made, self.tool_lives, job.remaining_part_count)
         return (
             tr(Message("{count} SETUP ITEMS NOT READY", count=lacking)) if lacking else tr("ALL TOOLS READY")
         )
@@ -417,7 +421,7 @@ class JobWatch:
             return None
         return NoticeRow(self._done_words(job), self._next_words(), ((JOBS_KEY, "SHIFT+F6"),), "run")
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return an empty string because the notice replaces the text on the prompt line."""
         return ""
 

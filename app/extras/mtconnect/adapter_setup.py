@@ -24,7 +24,7 @@ from drivers.wakeups import RealClock
 
 
 def start_adapter(
-    machine: Machine, snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
+    machine: Machine, read_snapshot: Callable[[], Snapshot], report_error: Callable[[str], None]
 ) -> Callable[[], None] | None:
     """Start to report the state of the machine to agents, and return a function that stops reporting.
 
@@ -34,7 +34,7 @@ def start_adapter(
     model = machine.hardware.find_driver_table(MtconnectTable)
     if model is None or not model.enabled:
         return None
-    thread = AdapterThread(make_adapter(machine, model, snapshot))
+    thread = AdapterThread(make_adapter(machine, model, read_snapshot))
     try:
         thread.start()
     except DriverError as error:
@@ -45,7 +45,7 @@ def start_adapter(
 
 def start_headless_adapter(
     machine: Machine,
-    snapshot: Callable[[], Snapshot],
+    read_snapshot: Callable[[], Snapshot],
     report_error: Callable[[str], None],
     *,
     is_real_time: bool,
@@ -62,7 +62,7 @@ def start_headless_adapter(
     if is_adapter_enabled(machine) and not is_real_time:
         tell("this run is faster than real time; use --realtime")
         return None
-    return start_adapter(machine, snapshot, tell)
+    return start_adapter(machine, read_snapshot, tell)
 
 
 def is_adapter_enabled(machine: Machine) -> bool:
@@ -71,30 +71,33 @@ def is_adapter_enabled(machine: Machine) -> bool:
     return model is not None and model.enabled
 
 
-def check_adapter(machine: Machine, model: MtconnectTable) -> None:
+def check_adapter(machine: Machine, table: MtconnectTable) -> None:
     """Check that the port can be opened and that the device model is valid.
 
     Raises DriverError.
     """
-    open_listening_socket(model.bind, model.port).close()
+    open_listening_socket(table.bind, table.port).close()
     make_device_model(machine, get_utc_now())
 
 
 def make_adapter(
-    machine: Machine, model: MtconnectTable, snapshot: Callable[[], Snapshot]
+    machine: Machine, table: MtconnectTable, read_snapshot: Callable[[], Snapshot]
 ) -> MtconnectAdapter:
     """Return the adapter, which uses the real-time clock.
 
     All data of the adapter are from snapshots.
     """
-    device = make_device(machine, model.device)
+    device = make_device(machine, table.device)
     reader = MachineReader(machine, time.monotonic)
     return MtconnectAdapter(
-        model, tuple(device.all_items()), lambda: _report(reader.read_snapshot(snapshot())), RealClock()
+        table,
+        tuple(device.iterate_items()),
+        lambda: _report(reader.read_snapshot(read_snapshot())),
+        RealClock(),
     )
 
 
-def make_device_model(machine: Machine, time: datetime) -> str:
+def make_device_model(machine: Machine, creation_time: datetime) -> str:
     """Return the document ``Devices.xml`` for the agent.
 
     Raises DriverError if the [mtconnect] table is missing or the device name is invalid.
@@ -109,7 +112,7 @@ def make_device_model(machine: Machine, time: datetime) -> str:
     return make_devices_xml(
         make_device(machine, model.device),
         Message("{machine}, {kind}", machine=machine.name, kind=machine.kind),
-        time,
+        creation_time,
     )
 
 
@@ -119,9 +122,9 @@ def make_device(machine: Machine, name: str) -> Component:
     On a lathe, the spindle is also the C axis unless C has a separate drive.
     """
     lathe = machine.kind == "lathe"
-    one = lathe and machine.spindle_is_c
-    linear = tuple(axis.name for axis in machine.axes if not axis.rotary)
-    rotary = tuple(axis.name for axis in machine.axes if axis.rotary and not (one and axis.name == "C"))
+    one = lathe and machine.is_spindle_c_axis
+    linear = tuple(axis.name for axis in machine.axes if not axis.is_rotary)
+    rotary = tuple(axis.name for axis in machine.axes if axis.is_rotary and not (one and axis.name == "C"))
     layout = MachineLayout(linear, rotary, "C" if one else "S", one, lathe)
     return make_machine_items(layout, name)
 

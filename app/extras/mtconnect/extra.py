@@ -22,34 +22,41 @@ class MtconnectExtra(OptionalFeature):
 
     machine_actions = ("mtconnect",)
     supervised_threads = {"mtconnect": "MTCONNECT"}
-    list_machine_tables = {"app.extras.mtconnect.driver.mtconnect_table": ("mtconnect",)}
+    machine_tables = {"app.extras.mtconnect.driver.mtconnect_table": ("mtconnect",)}
     preceding_table = "setter"
 
-    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+    def start_services(
+        self, desk: Desk, journal: Journal, report_reason: ReportFunction
+    ) -> CloseFunction | None:
         """Start the MTConnect adapter, and return the function that stops it.
 
         The result is None if the machine file has no [mtconnect] table or the adapter cannot run.
-        ``report`` shows the reason if the adapter cannot run.
+        ``report_reason`` shows the reason if the adapter cannot run.
         """
         if desk.machine.machine is None or _TABLE not in desk.machine.machine.hardware.tables:
             return None
         from app.extras.mtconnect.adapter_setup import start_adapter
 
-        return start_adapter(desk.machine.machine, desk.read_snapshot, report)
+        return start_adapter(desk.machine.machine, desk.read_snapshot, report_reason)
 
     def start_headless(
-        self, machine: Machine, snapshot: Callable[[], Snapshot], report: ReportFunction, *, real_time: bool
+        self,
+        machine: Machine,
+        read_snapshot: Callable[[], Snapshot],
+        report_reason: ReportFunction,
+        *,
+        is_real_time: bool,
     ) -> CloseFunction | None:
         """Start the MTConnect adapter for a run without a screen, and return the function that stops it.
 
         The result is None if the machine file has no [mtconnect] table or the adapter cannot run. A run
-        that is faster than real time is not reported, and ``report`` shows the reason.
+        that is faster than real time is not reported, and ``report_reason`` shows the reason.
         """
         if _TABLE not in machine.hardware.tables:
             return None
         from app.extras.mtconnect.adapter_setup import start_headless_adapter
 
-        return start_headless_adapter(machine, snapshot, report, is_real_time=real_time)
+        return start_headless_adapter(machine, read_snapshot, report_reason, is_real_time=is_real_time)
 
     def add_check_rows(self, machine: Machine, results: CheckResults) -> None:
         """Add a row that shows whether MTConnect agents can connect and the device model is valid.

@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     return EXIT_OK
 
 
-def check_mtconnect(machine: Machine, report: CheckResults) -> None:
+def check_mtconnect(machine: Machine, results: CheckResults) -> None:
     """Add a row that shows whether agents can connect and whether the device model is valid."""
     from app.compose.backends.backend_entry import CheckRow
     from app.extras.mtconnect.adapter_setup import check_adapter
@@ -59,7 +59,7 @@ def check_mtconnect(machine: Machine, report: CheckResults) -> None:
     try:
         check_adapter(machine, model)
     except DriverError as error:
-        report.rows.append(CheckRow("mtconnect", at, "fault", str(error)))
-        report.faults.append(str(error))
+        results.rows.append(CheckRow("mtconnect", at, "fault", str(error)))
+        results.faults.append(str(error))
     else:
-        report.rows.append(CheckRow("mtconnect", at, "ok", Message("device {device}", device=model.device)))
+        results.rows.append(CheckRow("mtconnect", at, "ok", Message("device {device}", device=model.device)))

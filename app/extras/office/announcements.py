@@ -96,8 +96,10 @@ class AnnouncementReceiver(Protocol):
 class Announcer:
     """Announcer that polls the status twice per second in its own thread."""
 
-    def __init__(self, look: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]) -> None:
-        self._look, self._told = look, receivers
+    def __init__(
+        self, read_status: Callable[[], StatusDocument], receivers: Sequence[AnnouncementReceiver]
+    ) -> None:
+        self._look, self._told = read_status, receivers
         self._before: StatusDocument = {}
         self._thread = RepeatingThread("announcer", self.poll, POLL_INTERVAL_S)
 

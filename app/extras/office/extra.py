@@ -29,20 +29,22 @@ class OfficeExtra(OptionalFeature):
         "paho-mqtt-client-": "MQTT BROKER CONNECTION",  # thread name used by paho
         "web-hook": "WEBHOOK",
     }
-    list_machine_tables = {"core.extras.office.shop_network_tables": ("status_page", "announce")}
+    machine_tables = {"core.extras.office.shop_network_tables": ("status_page", "announce")}
     preceding_table = "setter"
 
-    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+    def start_services(
+        self, desk: Desk, journal: Journal, report_reason: ReportFunction
+    ) -> CloseFunction | None:
         """Start the status page and the announcements, and return the function that stops them.
 
         The result is None if the machine file has neither a [status_page] table nor an [announce] table.
-        ``report`` shows an error if one of the services fails.
+        ``report_reason`` shows an error if one of the services fails.
         """
         if desk.machine.machine is None or _TABLES.isdisjoint(desk.machine.machine.hardware.tables):
             return None
         from app.extras.office.office_setup import start_office
 
-        return start_office(desk, desk.machine.machine, journal, report)
+        return start_office(desk, desk.machine.machine, journal, report_reason)
 
     def list_shop_outputs(self) -> Sequence[JsonOutput]:
         """Return declarations of the data on the office status page and in announcements."""

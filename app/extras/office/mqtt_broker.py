@@ -144,7 +144,7 @@ class MqttReceiver:
             self._refused = True
             self._trouble.log_cause(_REFUSALS.get(reason.getName(), str(reason)))
             return
-        self._trouble.reset()
+        self._trouble.clear_causes()
         client.publish(f"{self._topic}/available", ONLINE, _SURE, retain=True)
         if self._state:
             client.publish(f"{self._topic}/state", self._state, _SURE, retain=True)

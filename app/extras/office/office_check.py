@@ -14,7 +14,7 @@ from core.ports import DriverError
 _BROKER_PATIENCE = 2.0  # seconds
 
 
-def check_office(machine: Machine, report: CheckResults) -> None:
+def check_office(machine: Machine, results: CheckResults) -> None:
     """Add rows that show whether the status page can be opened and whether the MQTT broker responds."""
     page, announce_table = (
         machine.hardware.find_driver_table(StatusPageTable),
@@ -24,15 +24,15 @@ def check_office(machine: Machine, report: CheckResults) -> None:
         try:
             open_listening_socket(page.bind, page.port).close()
         except DriverError as error:
-            report.rows.append(CheckRow("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
-            report.faults.append(str(error))
+            results.rows.append(CheckRow("status_page", f"{page.bind}:{page.port}", "fault", str(error)))
+            results.faults.append(str(error))
         else:
             who = (
                 "the status page can be opened only with its token"
                 if page.token
                 else ("the status page can be opened only from this computer")
             )
-            report.rows.append(CheckRow("status_page", f"{page.bind}:{page.port}", "ok", who))
+            results.rows.append(CheckRow("status_page", f"{page.bind}:{page.port}", "ok", who))
     if announce_table is not None and announce_table.mqtt:
         try:
             socket.create_connection(parse_broker_address(announce_table.mqtt), _BROKER_PATIENCE).close()
@@ -42,7 +42,7 @@ def check_office(machine: Machine, report: CheckResults) -> None:
                 mqtt=announce_table.mqtt,
                 cause=error.strerror or error,
             )
-            report.rows.append(CheckRow("announce", announce_table.mqtt, "no answer", why))
-            report.faults.append(why)
+            results.rows.append(CheckRow("announce", announce_table.mqtt, "no answer", why))
+            results.faults.append(why)
         else:
-            report.rows.append(CheckRow("announce", announce_table.mqtt, "ok", announce_table.topic))
+            results.rows.append(CheckRow("announce", announce_table.mqtt, "ok", announce_table.topic))

@@ -47,7 +47,7 @@ class StatusSource:
     ``calculate_time_left`` returns seconds, or inf while the machine is stopped.
     """
 
-    machine: str
+    machine_name: str
     floor_reader: MachineReader
     read_snapshot: Callable[[], Snapshot]
     calculate_time_left: Callable[[Snapshot], float]
@@ -63,7 +63,7 @@ class StatusSource:
         reading = self.floor_reader.read_snapshot(snapshot)
         status = {
             "updated": self.get_current_utc().isoformat(timespec="seconds"),
-            **make_status(self.machine, reading),
+            **make_status(self.machine_name, reading),
         }
         if not reading.is_available:
             return {**status, **_NOTHING_KNOWN}
@@ -146,8 +146,8 @@ def _look(desk: Desk, machine: Machine) -> StatusSource:
         return find_time_left(snapshot, desk.program_loader.loaded)
 
     def stops() -> Sequence[StopRow]:
-        watch = desk.page_registry.find(PartsWatch)
-        return watch.parts_book.current.stops if watch is not None else ()
+        watch = desk.page_registry.find_model(PartsWatch)
+        return watch.parts_book.current_data.stops if watch is not None else ()
 
     return StatusSource(machine.name, reader, desk.read_snapshot, left, stops, partial(datetime.now, UTC))
 
@@ -202,7 +202,7 @@ def _page(
 
     others = OtherMachines((*table.other_page_addresses, *table.agent_addresses), ask)
     kept = partial(load_stored_part, journal.read_setting)
-    pictures = create_thumbnail_drawer(machine, try_read_shapes, kept, size=PICTURE_SIZE)
+    pictures = create_thumbnail_drawer(machine, try_read_shapes, kept, size_px=PICTURE_SIZE)
     part = PartPicture(lambda: desk.program_loader.loaded.job, still, pictures)
     recordings = desk.desk_control.recordings
     alarm = AlarmPicture(recordings.folder if recordings is not None else None, still)

@@ -66,18 +66,18 @@ def _desk_answer(data: bytes) -> MachineResponse:
 
 
 def read_status(
-    address: str, request: str, max_bytes: int, convert: Callable[[bytes], MachineResponse]
+    address: str, request_address: str, max_bytes: int, convert_response: Callable[[bytes], MachineResponse]
 ) -> OtherMachine:
     """Send a request to another machine and return its status.
 
-    ``request`` is the requested address, and ``address`` names the machine. ``convert`` converts the
-    response and raises ValueError for invalid data. ``max_bytes`` limits the number of bytes that are read.
-    An error is returned as ``error_text`` of the result.
+    ``request_address`` is the requested address, and ``address`` names the machine. ``convert_response``
+    converts the response and raises ValueError for invalid data. ``max_bytes`` limits the number of bytes
+    that are read. An error is returned as ``error_text`` of the result.
     """
     name = _name(address)
     try:
-        with _ASK.open(request, timeout=_PATIENCE) as answer:
-            status, error_text = convert(answer.read(max_bytes))
+        with _ASK.open(request_address, timeout=_PATIENCE) as answer:
+            status, error_text = convert_response(answer.read(max_bytes))
     except HTTPError as error:
         return OtherMachine(name, error_text=_refused(error))
     except (URLError, HTTPException, OSError) as error:
@@ -119,10 +119,10 @@ class OtherMachines:
     def __init__(
         self,
         addresses: Sequence[str],
-        ask: Callable[[str], OtherMachine] = read_turndesk_status,
+        read_status: Callable[[str], OtherMachine] = read_turndesk_status,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._ask, self._clock = ask, clock
+        self._ask, self._clock = read_status, clock
         # including the name of the machine, once it is known
         self._names = {each: _name(each) for each in addresses}
         self._heard = {each: self._not_yet(each, clock()) for each in addresses}

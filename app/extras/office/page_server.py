@@ -31,14 +31,14 @@ class StatusPageServer:
 
     def __init__(
         self,
-        page: WSGIApplication,
-        listening: socket.socket,
-        between: Callable[[], None],
+        application: WSGIApplication,
+        listening_socket: socket.socket,
+        perform_idle_work: Callable[[], None],
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         """Create the server.
 
-        The thread of the server calls ``between`` twice per second.
+        The thread of the server calls ``perform_idle_work`` twice per second.
         """
         from waitress import wasyncore
         from waitress.server import create_server
@@ -47,17 +47,17 @@ class StatusPageServer:
         from app.extras.office.page_connections import MAX_CONNECTIONS, BrowserConnection
 
         self._loop, self._close_all = wasyncore.loop, wasyncore.close_all
-        self._between, self._clock = between, clock
+        self._between, self._clock = perform_idle_work, clock
         self._channels: dict[int, Any] = {}
         self._workers = ThreadedTaskDispatcher()
         # a browser that waits for another one is not worth a warning
         self._workers.queue_logger.setLevel(logging.ERROR)
         self._workers.set_thread_count(_THREADS)
         server: Any = create_server(
-            page,
+            application,
             self._channels,
             _dispatcher=self._workers,
-            sockets=[listening],
+            sockets=[listening_socket],
             ident="",
             connection_limit=2 * MAX_CONNECTIONS,  # never reached, because Connection has lower limits
             max_request_body_size=1,

@@ -61,7 +61,7 @@ class StatusPage:
     Both return empty bytes if there is no picture.
     """
 
-    machine: str
+    machine_name: str
     token: str
     read_status: Callable[[], StatusDocument]
     read_other_machines: Callable[[], Sequence[OtherMachine]]
@@ -97,7 +97,7 @@ class StatusPage:
         """Return the content type and the content of the whole page."""
         frame = Template((_FILES / "page.html").read_text("utf-8"))
         page = frame.substitute(
-            title=escape(self.machine),
+            title=escape(self.machine_name),
             language=get_language(),
             lost=escape(tr("NO RESPONSE: the values below are out of date")),
             now=self._now(),
@@ -113,7 +113,7 @@ class StatusPage:
         )
         return "text/html; charset=utf-8", page.encode()
 
-    def make_changing_part(self) -> tuple[str, bytes]:
+    def make_changing_content(self) -> tuple[str, bytes]:
         """Return the content type and the content of the part of the page that changes."""
         return "text/html; charset=utf-8", self._now().encode()
 
@@ -155,7 +155,7 @@ class StatusPage:
 
 _PAGES: dict[str, Callable[[StatusPage], tuple[str, bytes]]] = {
     "/": StatusPage.make_page,
-    "/now": StatusPage.make_changing_part,
+    "/now": StatusPage.make_changing_content,
     "/page.css": StatusPage.get_style_sheet,
     "/page.js": StatusPage.get_script,
     "/status.json": StatusPage.make_status_json,

@@ -136,9 +136,9 @@ def extract_host(address: str) -> str:
     return f"{parts.scheme}://{parts.netloc.rpartition('@')[2]}"
 
 
-def make_one_line(words: str) -> str:
+def make_one_line(text: str) -> str:
     """Return a received text as one line without control characters and with a limited length."""
-    return "".join(sign for sign in words if sign.isprintable())[:MAX_CAUSE_LENGTH]
+    return "".join(sign for sign in text if sign.isprintable())[:MAX_CAUSE_LENGTH]
 
 
 class DeliveryErrorLog:
@@ -147,19 +147,19 @@ class DeliveryErrorLog:
     Each cause is logged only once until a delivery succeeds.
     """
 
-    def __init__(self, log: logging.Logger, who: str) -> None:
-        self._log, self._who = log, who
+    def __init__(self, logger: logging.Logger, receiver_name: str) -> None:
+        self._log, self._who = logger, receiver_name
         self._said = set[str]()
 
-    def log_cause(self, why: str) -> None:
+    def log_cause(self, cause: str) -> None:
         """Log the cause of a failed delivery.
 
         This method can be called from any thread.
         """
-        if why not in self._said and len(self._said) < _CAUSES:
-            self._said.add(why)
-            self._log.warning("%s cannot be told: %s", self._who, why)
+        if cause not in self._said and len(self._said) < _CAUSES:
+            self._said.add(cause)
+            self._log.warning("%s cannot be told: %s", self._who, cause)
 
-    def reset(self) -> None:
+    def clear_causes(self) -> None:
         """Clear the logged causes after a successful delivery."""
         self._said.clear()

@@ -33,12 +33,14 @@ class WebhookReceiver:
     """Webhook that posts each announcement as JSON.
 
     Announcements are posted in order by a separate thread. After a failed connection or a server error, the
-    post is repeated after the retry time ``again`` in seconds. An announcement that is rejected (4xx) or
-    redirected (3xx) is discarded.
+    post is repeated after the retry time ``retry_time_s`` in seconds. An announcement that is rejected (4xx)
+    or redirected (3xx) is discarded.
     """
 
-    def __init__(self, address: str, again: float, post: Callable[[str, bytes], None] | None = None) -> None:
-        self._address, self._again, self._post = address, again, post or post_json
+    def __init__(
+        self, address: str, retry_time_s: float, post_data: Callable[[str, bytes], None] | None = None
+    ) -> None:
+        self._address, self._again, self._post = address, retry_time_s, post_data or post_json
         self._waiting: deque[Announcement] = deque(maxlen=MAX_QUEUED)
         self._there, self._closing = threading.Event(), threading.Event()
         self._trouble = DeliveryErrorLog(_log, extract_host(address))
@@ -79,7 +81,7 @@ class WebhookReceiver:
         except (URLError, HTTPException, OSError, ValueError) as error:
             self._trouble.log_cause(_why(error))
             return isinstance(error, HTTPError) and error.code < 500 and error.code not in _LATER
-        self._trouble.reset()
+        self._trouble.clear_causes()
         return True
 
 

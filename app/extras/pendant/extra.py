@@ -17,7 +17,7 @@ class PendantExtra(OptionalFeature):
     """Optional feature with the buttons and handwheel of a USB pendant, and the table [pendant]."""
 
     supervised_threads = {"pendant": "PENDANT CONNECTION"}
-    list_machine_tables = {"app.extras.pendant.driver.pendant_table": ("pendant",)}
+    machine_tables = {"app.extras.pendant.driver.pendant_table": ("pendant",)}
     preceding_table = "setter"
 
     def remove_own_inputs(self, machine: Machine) -> Machine:

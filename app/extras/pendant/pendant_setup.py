@@ -80,16 +80,16 @@ def add_pendant(
         wheel,
         lambda: look(model, wanted),
         time.monotonic,
-        place=model.counts == "place",
-        ring=ports.wakeup.wake if ports.wakeup is not None else lambda: None,
+        has_absolute_wheel=model.counts == "place",
+        report_change=ports.wakeup.request_poll if ports.wakeup is not None else lambda: None,
     )
     pendant.start()
     away = pendant.get_state().missing_reason
     station = PendantStation(
         ports.station,
         pendant,
-        stops=any(name in bound for name in STOP_INPUTS),
-        wheel=wheel is not None or any(name.startswith("wheel_") for name in bound),
+        has_stops=any(name in bound for name in STOP_INPUTS),
+        has_wheel=wheel is not None or any(name.startswith("wheel_") for name in bound),
     )
     ports = replace(
         ports,

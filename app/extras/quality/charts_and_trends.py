@@ -65,10 +65,10 @@ class TrendsSection(QualitySection):
     chart_share = 0.42
 
     def __init__(
-        self, desk: Desk, parts_watch: PartsWatch, now: Callable[[], datetime] = lambda: datetime.now(UTC)
+        self, desk: Desk, parts_watch: PartsWatch, get_utc: Callable[[], datetime] = lambda: datetime.now(UTC)
     ) -> None:
         super().__init__(desk, parts_watch)
-        self._now = now
+        self._now = get_utc
         self._shift: tuple[int, int] | None = None
         self._made: tuple[object, ChartDrawing] = (None, ChartDrawing())
         self._rows: tuple[object, tuple[TableRow, ...]] = (None, ())
@@ -76,15 +76,15 @@ class TrendsSection(QualitySection):
     @property
     def row_count(self) -> int:
         """Return the number of trends."""
-        return len(self.trends)
+        return len(self.trend_names)
 
     @property
     def selected_trend(self) -> str:
         """Return the name of the selected trend."""
-        return self.trends[self.marked]
+        return self.trend_names[self.marked]
 
     @property
-    def trends(self) -> tuple[str, ...]:
+    def trend_names(self) -> tuple[str, ...]:
         """Return the names of the trends of this machine.
 
         A mill has no wear trend, because DL and DR are not recorded.
@@ -117,7 +117,7 @@ class TrendsSection(QualitySection):
             self.shift_hours,
         )
         if self._rows[0] != of:
-            self._rows = of, tuple(TableRow((kind, self._figure(kind))) for kind in self.trends)
+            self._rows = of, tuple(TableRow((kind, self._figure(kind))) for kind in self.trend_names)
         question = tr("SHIFT HOURS, FOR EXAMPLE 6-14?") if self.selected_trend == "AVAILABILITY" else ""
         title = Message("TRENDS  ·  {program}", program=self.program_name) if self.program_name else "TRENDS"
         return TableContent(
@@ -170,7 +170,7 @@ class TrendsSection(QualitySection):
         )
 
     def _stop_words(self) -> str:
-        stops = convert_stops(self.watch.parts_book.current.stops)
+        stops = convert_stops(self.watch.parts_book.current_data.stops)
         rows = analyze_stop_reasons(stops)
         if not rows:
             return tr("no stops yet")
@@ -287,7 +287,7 @@ class TrendsSection(QualitySection):
         return tuple(Plot(title, tuple(each)) for title, each in zip(titles, curves, strict=True))
 
     def _stop_plots(self) -> tuple[Plot, ...]:
-        rows = analyze_stop_reasons(convert_stops(self.watch.parts_book.current.stops))[:_MOST_BARS]
+        rows = analyze_stop_reasons(convert_stops(self.watch.parts_book.current_data.stops))[:_MOST_BARS]
         if not rows:
             return ()
         bars = tuple(

@@ -29,11 +29,11 @@ class QualityExtra(OptionalFeature):
         "shift": Subcommand("share", "print a shift report: parts, times, stops, alarms, offsets, readings"),
     }
     own_special_functions = ("TOOL LIFE",)
-    list_machine_tables = {"app.extras.quality.gauge_table": ("gauge",)}
+    machine_tables = {"app.extras.quality.gauge_table": ("gauge",)}
     preceding_table = "dnc"
 
     @property
-    def pages(self) -> Sequence[PageDescription]:
+    def page_descriptions(self) -> Sequence[PageDescription]:
         """Return the description of the MEASURED PARTS page."""
         from app.desk.page_description import PageDescription
 

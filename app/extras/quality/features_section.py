@@ -79,7 +79,7 @@ class FeatureDraft:
         """Return the name of the selected field."""
         return self.field_names[self.field_index]
 
-    def get_field_text(self, field: str, mode: ValueMode) -> str:
+    def get_field_text(self, field: str, value_mode: ValueMode) -> str:
         """Return the value of a field as text."""
         feature = self.feature
         if field == "NAME":
@@ -93,7 +93,7 @@ class FeatureDraft:
         if field in _WHOLE:
             return str(getattr(feature, _WHOLE[field]))
         value = getattr(feature, _LENGTHS[field])
-        return format_size(value, mode) if field == "NOMINAL" else format_deviation(value, mode)
+        return format_size(value, value_mode) if field == "NOMINAL" else format_deviation(value, value_mode)
 
     def toggle_choice(self) -> None:
         """Switch the selected field to the other of its two choices."""
@@ -107,7 +107,7 @@ class FeatureDraft:
         else:
             self.feature = replace(feature, grows=-feature.grows)
 
-    def set_field(self, text: str, mode: ValueMode) -> None:
+    def set_field(self, text: str, value_mode: ValueMode) -> None:
         """Set the selected field to the typed text.
 
         Raises EntryError.
@@ -116,7 +116,7 @@ class FeatureDraft:
         if field == "NAME":
             self.feature = replace(self.feature, name=text.strip().upper())
         elif field in _LENGTHS:
-            length = convert_entry_to_mm(evaluate_expression(text), mode)
+            length = convert_entry_to_mm(evaluate_expression(text), value_mode)
             self.feature = replace(self.feature, **{_LENGTHS[field]: length})  # type: ignore[arg-type]
         else:
             value = evaluate_expression(text)
@@ -134,16 +134,16 @@ class FeaturesSection(QualitySection):
     name = "FEATURES"
     use = "nominal dimension, tolerance, sampling plan"
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch, plan: SamplePlan) -> None:
+    def __init__(self, desk: Desk, parts_watch: PartsWatch, sample_plan: SamplePlan) -> None:
         super().__init__(desk, parts_watch)
-        self.plan = plan
+        self.plan = sample_plan
         self.draft: FeatureDraft | None = None
 
     @property
     def field_names(self) -> tuple[str, ...]:
         """Return the names of the fields that a feature has in the language of the machine."""
         absent = {"omniturn": set[str](), "sinumerik": _OF_OMNITURN, "klartext": _OF_OMNITURN | _OF_LATHES}
-        return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.language])
+        return tuple(each for each in FIELD_NAMES if each not in absent[self.desk.machine.program_language])
 
     @property
     def row_count(self) -> int:
@@ -207,7 +207,7 @@ class FeaturesSection(QualitySection):
             raw_columns=frozenset({1}),
         )  # fmt: skip
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the list or of the feature that is being edited."""
         if self.draft is not None:
             return {"F6": FunctionKey("SAVE", self.save_feature)}

@@ -71,7 +71,7 @@ def _names(store: Store, wanted: str | None) -> list[str]:
 def _data(store: Store, name: str) -> PartsData:
     from app.extras.quality.parts_data import read_parts_data
 
-    return read_parts_data(store, name, limit=-1)
+    return read_parts_data(store, name, max_rows=-1)
 
 
 # --- JSON ------------------------------------------------------------------------------------------------

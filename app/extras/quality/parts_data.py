@@ -37,7 +37,7 @@ class PartsData:
     ``last_corrections`` is the number of the latest change of each offset axis.
     """
 
-    program: str = ""
+    program_name: str = ""
     features: tuple[FeatureRow, ...] = ()
     readings: tuple[ReadingRow, ...] = ()
     last_corrections: dict[tuple[str, int, str], int] = field(default_factory=dict)
@@ -55,9 +55,9 @@ class PartsData:
         """
         return tuple(row for row in self.cycles if row.outcome == COMPLETE and row.seconds > 0.0)
 
-    def select_readings(self, feature: int) -> tuple[ReadingRow, ...]:
+    def select_readings(self, feature_id: int) -> tuple[ReadingRow, ...]:
         """Return the readings of a feature in the order of measurement."""
-        return tuple(row for row in self.readings if row.feature == feature)
+        return tuple(row for row in self.readings if row.feature == feature_id)
 
     def select_readings_since_correction(self, row: FeatureRow) -> tuple[ReadingRow, ...]:
         """Return the readings of parts that were started after the last change of the feature's offset.
@@ -107,20 +107,20 @@ def make_feature_row(feature: MeasuredFeature, program: str, feature_id: int) ->
     )
 
 
-def read_parts_data(store: Store, program: str, limit: int = MAX_ROWS) -> PartsData:
+def read_parts_data(store: Store, program: str, max_rows: int = MAX_ROWS) -> PartsData:
     """Read the stored data of a program.
 
-    The result contains the latest ``limit`` rows of each type, or all rows if ``limit`` is -1. The call can
-    take a long time. Raises StoreError.
+    The result contains the latest ``max_rows`` rows of each type, or all rows if ``max_rows`` is -1. The
+    call can take a long time. Raises StoreError.
     """
     with store.read() as connection:
         return PartsData(
             program,
             measured_parts.read_features(connection, program),
-            measured_parts.read_readings(connection, program, limit),
+            measured_parts.read_readings(connection, program, max_rows),
             measured_parts.read_last_corrections(connection),
-            part_cycles.read_cycles(connection, program, limit),
-            part_cycles.read_corrections(connection, program, limit),
+            part_cycles.read_cycles(connection, program, max_rows),
+            part_cycles.read_corrections(connection, program, max_rows),
             part_cycles.read_cycle_times_since(connection, format_utc(datetime.now(UTC) - _DAYS)),
         )
 
@@ -130,10 +130,10 @@ def get_loaded_parts_data(book: PartsBook) -> PartsData:
 
     The data are empty until they have been read.
     """
-    found = book.current.feature_data.get(BOOK_KEY)
-    if isinstance(found, PartsData) and found.program == book.current.program:
+    found = book.current_data.feature_data.get(BOOK_KEY)
+    if isinstance(found, PartsData) and found.program_name == book.current_data.program_name:
         return found
-    return PartsData(book.current.program)
+    return PartsData(book.current_data.program_name)
 
 
 CSV_COLUMNS = (
@@ -169,6 +169,6 @@ def write_readings_csv(data: PartsData, folder: Path) -> Path:
 
     Raises OSError.
     """
-    path = folder / f"{Path(data.program).stem}-readings.csv"
+    path = folder / f"{Path(data.program_name).stem}-readings.csv"
     write_atomically(path, make_readings_csv(data).encode())
     return path

@@ -54,13 +54,13 @@ class PlotsPane(QWidget):
     def show_drawing(self, drawing: ChartDrawing) -> None:
         """Show a drawing if it has changed."""
         look = self.theme
-        if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.u):
+        if drawing == self._shown and (self._theme, self._u) == (look.palette.name, look.unit_px):
             return
         plots = [plot for plot in drawing.plots if not plot.is_empty]
         barred = bool(plots) and bool(plots[0].bars)
         if not (barred or self._chart.prepare_plots(len(plots))):
             return
-        self._shown, self._theme, self._u = drawing, look.palette.name, look.u
+        self._shown, self._theme, self._u = drawing, look.palette.name, look.unit_px
         self._bars.plot = plots[0] if barred else None
         self._bars.setVisible(barred or not plots)
         self._bars.update()
@@ -71,7 +71,7 @@ class PlotsPane(QWidget):
             for plot in plots:
                 self._draw(plot, (min(across), max(across)))
         self._chart.apply_theme()
-        self._chart.set_left_width(9.0)
+        self._chart.set_left_axis_width(9.0)
         for drawn in self._chart.plots:
             drawn.layout.activate()  # Otherwise a hidden window retains the old layout.
         self._lay_out()
@@ -107,9 +107,11 @@ class PlotsPane(QWidget):
             self._level(drawn, level)
         if plot.violations:
             x, y = (np.asarray(each) for each in zip(*plot.violations, strict=True))
-            pen = make_line_pen(self.theme.color("alarm"))
+            pen = make_line_pen(self.theme.get_color("alarm"))
             pen.setWidthF(2.0)
-            ring = pg.ScatterPlotItem(x=x, y=y, symbol="o", size=2.2 * self.theme.u, brush=None, pen=pen)
+            ring = pg.ScatterPlotItem(
+                x=x, y=y, symbol="o", size=2.2 * self.theme.unit_px, brush=None, pen=pen
+            )
             drawn.add_item(ring)
 
     def _curve(self, drawn: chart.ChartPlot, curve: PlotCurve) -> None:
@@ -123,7 +125,7 @@ class PlotsPane(QWidget):
                 x=curve.part_numbers,
                 y=curve.values,
                 symbol="o",
-                size=1.0 * self.theme.u,
+                size=1.0 * self.theme.unit_px,
                 pen=None,
                 brush=colour,
             )
@@ -135,7 +137,7 @@ class PlotsPane(QWidget):
             drawn.add_item(label)
 
     def _level(self, drawn: chart.ChartPlot, level: PlotLevel) -> None:
-        pen = make_line_pen(self.theme.color(_INKS[level.kind]), _STYLES[level.kind])
+        pen = make_line_pen(self.theme.get_color(_INKS[level.line_type]), _STYLES[level.line_type])
         drawn.add_item(pg.InfiniteLine(level.value, angle=0, pen=pen))
 
     def _range(self, drawn: chart.ChartPlot, plot: Plot, across: tuple[float, float]) -> None:
@@ -157,8 +159,8 @@ class PlotsPane(QWidget):
         The title has a background, so no limit line crosses it.
         """
         (left, _), (_, top) = drawn.vb.viewRange()
-        ground = self.theme.color("panel")
-        title = pg.TextItem(words, color=self.theme.color("text"), anchor=(0.0, 0.0), fill=ground)
+        ground = self.theme.get_color("panel")
+        title = pg.TextItem(words, color=self.theme.get_color("text"), anchor=(0.0, 0.0), fill=ground)
         title.setZValue(10.0)
         title.setFont(self.theme.make_font(1.8, is_bold=True))
         title.setPos(left, top)
@@ -185,7 +187,7 @@ class BarsPane(QWidget):
             self._bars(painter, room, self.plot)
 
     def _bars(self, painter: ThemedPainter, room: QRectF, plot: Plot) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.draw_text_line(
             QRectF(room.x(), room.y(), room.width(), _TITLE * u), plot.title, 1.9, "text", at=ALIGN_CENTER
         )
@@ -196,7 +198,7 @@ class BarsPane(QWidget):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
             bar = QRectF(row.x(), row.bottom() - 0.42 * high, 0.8 * row.width() * value / most, 0.3 * high)
             painter.fillRect(bar, find_curve_color(self.theme, number))
-            painter.setPen(self.theme.color("text"))
+            painter.setPen(self.theme.get_color("text"))
             painter.setFont(self.theme.fit_font(name, 1.9, row.width()))
             draw_raw_text(
                 painter, QRectF(row.x(), row.y(), row.width(), 0.55 * high), Qt.AlignmentFlag.AlignLeft, name

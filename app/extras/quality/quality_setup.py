@@ -28,7 +28,7 @@ class MeasuredPartsFunction(PageFunction):
 
     def make_fact_rows(self) -> tuple[TableRow, ...]:
         """Return the rows for the numbers of features and readings and the measurements that are due."""
-        watch = self.desk.page_registry.find(PartsWatch)
+        watch = self.desk.page_registry.find_model(PartsWatch)
         if watch is None or watch.parts_book.lock_reason:
             return (
                 TableRow((tr("STORED"), watch.parts_book.lock_reason if watch is not None else NO_VALUE)),
@@ -37,7 +37,7 @@ class MeasuredPartsFunction(PageFunction):
         return (
             TableRow((tr("FEATURES"), str(len(data.features)))),
             TableRow((tr("READINGS"), str(len(data.readings)))),
-            TableRow((tr("MEASUREMENT DUE"), watch.due_reminder() or NO_VALUE)),
+            TableRow((tr("MEASUREMENT DUE"), watch.find_reminder() or NO_VALUE)),
         )
 
     def prompt_text(self) -> str:
@@ -47,10 +47,10 @@ class MeasuredPartsFunction(PageFunction):
 
 def attach_quality(desk: Desk, machine: Machine) -> None:
     """Attach measured parts to TurnDesk if production data are available."""
-    watch = desk.page_registry.find(PartsWatch)
+    watch = desk.page_registry.find_model(PartsWatch)
     if watch is None:
         return
-    watch.parts_book.readers[BOOK_KEY] = read_parts_data
+    watch.parts_book.feature_readers[BOOK_KEY] = read_parts_data
     plan = SamplePlan(desk, watch)
     watch.production_plans.append(plan)
     desk.page_registry.attach_model(
@@ -79,8 +79,8 @@ class QualityFunctions(SpecialFunctionList):
 
     __slots__ = ("_made", "_make")
 
-    def __init__(self, make: SectionFactory, worker: LatestRequestWorker) -> None:
-        self._make = make
+    def __init__(self, make_sections: SectionFactory, worker: LatestRequestWorker) -> None:
+        self._make = make_sections
         self._made: Sequence[SpecialFunction] = ()
         super().__init__((), worker)
 

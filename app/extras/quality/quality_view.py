@@ -66,13 +66,13 @@ class MeasuredPartsPage(SpecialPage):
         Returns whether steps remain.
         """
         self._ask_pane()
-        self.model.worker.poll()
+        self.model.worker.deliver_results()
         return not self.model.functions or self.chart is None or not self.chart.prepare_next_plot()
 
     def _ask_pane(self) -> None:
         if not self._asked:
             self._asked = True
-            self.model.worker.enqueue(_pane_class, self._pane_there, self.desk.say)
+            self.model.worker.enqueue_work(_pane_class, self._pane_there, self.desk.say)
 
     def _pane_there(self, pane: type[PlotsPane]) -> None:
         self.chart = pane(self.theme, self)
@@ -85,7 +85,7 @@ class MeasuredPartsPage(SpecialPage):
             self.chart.apply_theme()
 
     def _lay_out(self) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(LIST * u)
         pad = 0 if self.number_pad.isHidden() else round(PAD * u) + gap
         low = 0 if self.letter_pad.isHidden() else round(LETTER_PAD_HEIGHT * u) + gap

@@ -23,7 +23,7 @@ from app.extras.quality.section import (
 )
 from app.extras.quality.serial_gauge import Gauge, GaugeReading, NoGauge
 from app.extras.quality.wear_correction import CorrectionPreview, make_correction, make_proposal
-from app.offsets.offset_changes import OffsetHistory, OffsetQuestions, find_change_refusal
+from app.offsets.offset_changes import ConfirmedOffsetChanges, OffsetHistory, find_change_refusal
 from app.production.parts_watch import PartsWatch
 from core.access.access_table import ProtectedChange
 from core.executor.snapshot import Snapshot
@@ -33,7 +33,7 @@ from core.store.production import measured_parts
 from core.store.production.measured_parts import FeatureRow, ReadingRow
 from core.store.store_rows import OffsetKind
 
-CHART_HEIGHT_SHARE = 0.45  # ratio of the height for the chart of a proposed correction
+CHART_HEIGHT_RATIO = 0.45  # ratio of the height for the chart of a proposed correction
 OUTLIER_TOLERANCES = 3.0  # tolerances of deviation above which a typing error or another part is likely
 MM_PER_UNIT = {"mm": 1.0, "in": 25.4}
 
@@ -44,10 +44,10 @@ class NewReading:
 
     feature: FeatureRow
     part_number: int
-    value: float  # in mm
-    unit: str
+    size_mm: float  # in mm
+    measured_unit: str
     source: str
-    gauge: str = ""
+    gauge_name: str = ""
 
 
 class ReadingsSection(QualitySection):
@@ -59,9 +59,11 @@ class ReadingsSection(QualitySection):
     name = "READINGS"
     use = "measure a part and see the correction needed"
 
-    def __init__(self, desk: Desk, parts_watch: PartsWatch, folder: Path, gauge: Gauge | None = None) -> None:
+    def __init__(
+        self, desk: Desk, parts_watch: PartsWatch, csv_folder: Path, gauge: Gauge | None = None
+    ) -> None:
         super().__init__(desk, parts_watch)
-        self.folder = folder
+        self.csv_folder = csv_folder
         self.gauge = gauge or NoGauge()
         self._part = 0  # 0 means the last part that was made
         self.correction_effect = CorrectionPreview(desk)
@@ -87,7 +89,7 @@ class ReadingsSection(QualitySection):
         """
         self.limit_selection()
         mode, feature = self.control_unit, self.selected_feature
-        self.chart_share = CHART_HEIGHT_SHARE if self.correction_effect.is_question_open else 0.0
+        self.chart_share = CHART_HEIGHT_RATIO if self.correction_effect.is_question_open else 0.0
         made = self.correction_effect.make_table(mode) if self.correction_effect.is_question_open else None
         if made is not None:
             return made
@@ -143,7 +145,7 @@ class ReadingsSection(QualitySection):
     def _gauge_words(self) -> str:
         return self.gauge.status_text
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys for the part number, the gauge, the file and the correction."""
         correct = {
             "F8": FunctionKey("CORRECT", self.propose_correction),
@@ -199,13 +201,13 @@ class ReadingsSection(QualitySection):
         Raises EntryError for a size of 0 or less.
         """
         row, feature = reading.feature, make_feature(reading.feature)
-        if reading.value <= 0.0:
+        if reading.size_mm <= 0.0:
             raise EntryError(
                 Message("{row} must be more than 0; type the measured size, not the deviation", row=row.name)
             )
-        if abs(reading.value - feature.middle) > OUTLIER_TOLERANCES * feature.width:
+        if abs(reading.size_mm - feature.middle) > OUTLIER_TOLERANCES * feature.width:
             asked = tr("{name} {size} FAR OUT OF TOLERANCE. Y: SAVE   N: MEASURE AGAIN")
-            shown = format_size(reading.value, self.control_unit)
+            shown = format_size(reading.size_mm, self.control_unit)
             self.desk.ask_operator(
                 tr(Message(asked, name=row.name, size=shown)), partial(self._keep, reading)
             )
@@ -216,7 +218,14 @@ class ReadingsSection(QualitySection):
 
     def _keep(self, taken: NewReading) -> None:
         row = ReadingRow(
-            0, taken.feature.id, taken.part_number, taken.value, taken.unit, "", taken.source, taken.gauge
+            0,
+            taken.feature.id,
+            taken.part_number,
+            taken.size_mm,
+            taken.measured_unit,
+            "",
+            taken.source,
+            taken.gauge_name,
         )
         self.watch.parts_book.write_change(
             ProtectedChange.READINGS,
@@ -227,8 +236,8 @@ class ReadingsSection(QualitySection):
                 "program {program}, part {part}: {feature} measured as {taken} mm",
                 feature=taken.feature.name,
                 part=taken.part_number,
-                program=self.parts_data.program,
-                taken=f"{taken.value:g}",
+                program=self.parts_data.program_name,
+                taken=f"{taken.size_mm:g}",
             ),
         )
 
@@ -241,7 +250,7 @@ class ReadingsSection(QualitySection):
                     text,
                     name=reading.feature.name,
                     part=reading.part_number,
-                    size=format_size(reading.value, self.control_unit),
+                    size=format_size(reading.size_mm, self.control_unit),
                 )
             )
         )
@@ -269,7 +278,7 @@ class ReadingsSection(QualitySection):
                     "program {program}, part {part}: reading of {feature} ({last} mm) removed",
                     feature=feature.name,
                     part=last.part,
-                    program=self.parts_data.program,
+                    program=self.parts_data.program_name,
                     last=f"{last.value:g}",
                 ),
             ),
@@ -332,7 +341,7 @@ class ReadingsSection(QualitySection):
         try:
             found = make_proposal(self.parts_data, feature, self.control_unit)
             if found.reason:
-                mean = format_size(found.mean_deviation, self.control_unit)
+                mean = format_size(found.mean_deviation_mm, self.control_unit)
                 self.desk.say(f"{feature.name} {mean}: {tr(found.reason)}")
                 return
             change = make_correction(found, self.desk, self.control_unit)
@@ -382,7 +391,7 @@ class ReadingsSection(QualitySection):
         why = self._undo_barred()
         if not why and self._last is not None:
             kind, number, _reason = self._last
-            questions = OffsetQuestions(OffsetHistory(self.desk, kind, self.control_unit))
+            questions = ConfirmedOffsetChanges(OffsetHistory(self.desk, kind, self.control_unit))
             why = questions.ask_undo(kind, number, tr("CORRECTION UNDONE"))
         if why:
             self.desk.say(why)
@@ -404,8 +413,8 @@ class ReadingsSection(QualitySection):
         if self.find_missing_precondition():
             self.desk.say(self.find_missing_precondition())
             return
-        data, folder = self.parts_data, self.folder
-        self.watch.parts_book.worker.enqueue(
+        data, folder = self.parts_data, self.csv_folder
+        self.watch.parts_book.worker.enqueue_work(
             lambda: write_readings_csv(data, folder), self._written, self.watch.report_refusal
         )
 

@@ -69,7 +69,7 @@ class SamplePlan:
         made = self.desk.program_runs.part_counter.count + (1 if snapshot.counts else 0)
         return find_block_reason(self._planned(made))
 
-    def due_reminder(self) -> str:
+    def find_reminder(self) -> str:
         """Return the prompt text that names the features to measure, or an empty string."""
         return make_due_notice(self._planned(self.desk.program_runs.part_counter.count))
 

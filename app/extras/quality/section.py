@@ -47,7 +47,7 @@ class PlotLevel:
 
     value: float
     name: str
-    kind: str
+    line_type: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,19 +92,19 @@ def make_control_plots(
     part_numbers: Sequence[int],
     limits: tuple[float, float],
     names: tuple[str, str],
-    unit: float,
+    unit_mm: float,
 ) -> tuple[Plot, ...]:
     """Return the plots of location and spread over the part numbers.
 
     Lengths are in units of ``unit`` mm. Each point is at the number of the last part of its sample. The
     upper plot shows size limits only for samples of one part, because the limits do not apply to averages.
     """
-    location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit)
+    location = _plot(names[0], charts.location, _last_parts(part_numbers, charts.sample_size), unit_mm)
     if charts.sample_size == 1:
-        tolerance = tuple(PlotLevel(limit / unit, "", "tolerance") for limit in limits)
+        tolerance = tuple(PlotLevel(limit / unit_mm, "", "tolerance") for limit in limits)
         location = Plot(location.title, location.curves, (*location.levels, *tolerance), location.violations)
     first = 1 if charts.sample_size == 1 else 0  # A moving range belongs to the later of its two parts.
-    spread = _plot(names[1], charts.spread, _last_parts(part_numbers, charts.sample_size)[first:], unit)
+    spread = _plot(names[1], charts.spread, _last_parts(part_numbers, charts.sample_size)[first:], unit_mm)
     return location, spread
 
 
@@ -113,7 +113,7 @@ def make_correction_plot(
     proposal: CorrectionProposal,
     title: str,
     names: tuple[str, str],
-    unit: float,
+    unit_mm: float,
 ) -> Plot:
     """Return the plot of sizes over part numbers, with the mean and the size expected after a correction.
 
@@ -123,20 +123,24 @@ def make_correction_plot(
     if (np.diff(parts) <= 0.0).any():
         # A part was measured twice or the count was reset, so readings are numbered in sequence.
         parts = np.arange(1.0, len(parts) + 1.0)
-    sizes = np.asarray([size for _, size in readings]) / unit
+    sizes = np.asarray([size for _, size in readings]) / unit_mm
     last, first = parts[-1], parts[-min(proposal.reading_count, len(parts))]
     now = PlotCurve(
-        np.array([first, last]), np.full(2, proposal.mean_deviation / unit), 1, has_dots=False, name=names[0]
+        np.array([first, last]),
+        np.full(2, proposal.mean_deviation_mm / unit_mm),
+        1,
+        has_dots=False,
+        name=names[0],
     )
     then = PlotCurve(
         np.array([last + 1.0, last + 1.0 + FORECAST_PARTS]),
-        np.full(2, proposal.expected_size / unit),
+        np.full(2, proposal.expected_size_mm / unit_mm),
         2,
         has_dots=False,
         name=names[1],
     )
-    middle = PlotLevel(proposal.feature.middle / unit, "", "centre")
-    tolerance = tuple(PlotLevel(limit / unit, "", "tolerance") for limit in proposal.feature.limits)
+    middle = PlotLevel(proposal.feature.middle / unit_mm, "", "centre")
+    tolerance = tuple(PlotLevel(limit / unit_mm, "", "tolerance") for limit in proposal.feature.limits)
     return Plot(title, (PlotCurve(parts, sizes), now, then), (middle, *tolerance))
 
 
@@ -186,7 +190,7 @@ class QualitySection(NumericFunction):
 
         On a mill, DL and DR replace wear corrections.
         """
-        return self.desk.machine.language == "klartext"
+        return self.desk.machine.program_language == "klartext"
 
     @property
     def control_unit(self) -> ValueMode:
@@ -221,20 +225,20 @@ class QualitySection(NumericFunction):
         return self.watch.parts_book.lock_reason or ("" if self.parts_data.features else NO_FEATURE_MESSAGE)
 
 
-def format_size(mm: float, mode: ValueMode) -> str:
+def format_size(size_mm: float, value_mode: ValueMode) -> str:
     """Return a size in mm as text with a resolution of 0.001 mm or .00001 in."""
-    return format_fixed(mm, 3) if mode.is_metric else format_fixed(mm / mode.unit_mm, 5)
+    return format_fixed(size_mm, 3) if value_mode.is_metric else format_fixed(size_mm / value_mode.unit_mm, 5)
 
 
-def format_deviation(mm: float, mode: ValueMode) -> str:
-    """Return a deviation in mm as text with its sign, in the unit of ``mode``."""
-    text = format_size(mm, mode)
+def format_deviation(deviation_mm: float, value_mode: ValueMode) -> str:
+    """Return a deviation in mm as text with its sign, in the unit of ``value_mode``."""
+    text = format_size(deviation_mm, value_mode)
     return text if not text.strip("0.") or text[0] not in "0123456789." else f"+{text}"
 
 
-def convert_entry_to_mm(value: float, mode: ValueMode) -> float:
-    """Convert a typed length from the unit of ``mode`` to mm."""
-    return convert_to_mm(value, mode.is_metric)
+def convert_entry_to_mm(value: float, value_mode: ValueMode) -> float:
+    """Convert a typed length from the unit of ``value_mode`` to mm."""
+    return convert_to_mm(value, value_mode.is_metric)
 
 
 def get_diameter_sign(row: FeatureRow) -> str:

@@ -150,7 +150,7 @@ class NoGauge:
 
 RECEIVE_TIMEOUT_S = 0.1  # seconds of one receive call
 SILENCE_LIMIT_S = 300.0  # seconds without a line before the status text mentions it
-WireOpener = Callable[[LineSettings], SerialTransport]
+PortOpener = Callable[[LineSettings], SerialTransport]
 
 
 class SerialGauge:
@@ -158,11 +158,11 @@ class SerialGauge:
 
     def __init__(
         self,
-        model: GaugeModel,
-        wire: WireOpener = open_serial_port,
+        settings: GaugeModel,
+        open_port: PortOpener = open_serial_port,
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._model, self._open_wire, self._clock = model, wire, clock
+        self._model, self._open_wire, self._clock = settings, open_port, clock
         self._heard: queue.SimpleQueue[GaugeReading | str] = queue.SimpleQueue()
         self._ending = threading.Event()
         self._thread: threading.Thread | None = None

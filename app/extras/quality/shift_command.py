@@ -96,7 +96,7 @@ def _write(found: ShiftResults, path: Path, *, metric: bool) -> None:
     made = datetime.now().strftime("%Y-%m-%d %H:%M")
     with convert_to_command_error(FileOperationError, OSError):
         copy_to_medium(
-            path, make_shift_html(found, "", made, metric=metric).encode("utf-8", "backslashreplace")
+            path, make_shift_html(found, "", made, is_metric=metric).encode("utf-8", "backslashreplace")
         )
     sys.stdout.write(f"report saved to {path}: {found.part_count} parts\n")
 
@@ -120,7 +120,7 @@ def _text(found: ShiftResults) -> str:
             else ""
         )
         lines.append(
-            Message("{program}: {parts} parts{mean}", program=each.program, parts=each.parts, mean=mean)
+            Message("{program}: {parts} parts{mean}", program=each.program, parts=each.part_count, mean=mean)
         )
     lines += [
         Message(
@@ -149,7 +149,7 @@ def _make_json(results: ShiftResults) -> dict[str, object]:
         "programs": [
             {
                 "program": p.program,
-                "parts": p.parts,
+                "parts": p.part_count,
                 "no_part": dict(p.incomplete_cycles),
                 "cycle_times": list(p.cycle_times_s),
             }

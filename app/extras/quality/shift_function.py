@@ -26,7 +26,7 @@ from app.extras.quality.shift_results import (
 from app.production.parts_watch import PartsWatch
 from app.programs.atomic_files import FileOperationError, copy_to_medium, flush_folder
 from app.programs.removable_media import UsbStick, list_sticks
-from app.special.backup_and_restore import BackupPlace
+from app.special.backup_and_restore import BackupLocation
 from app.special.special_functions import SpecialFunction
 from core.executor.snapshot import Snapshot
 from core.message import Message
@@ -44,13 +44,13 @@ class ShiftReportFunction(SpecialFunction):
     name = "SHIFT REPORT"
     use = "parts, times, stops and alarms, for printing"
 
-    def __init__(self, desk: Desk, machine: str, worker: LatestRequestWorker, folder: Path) -> None:
+    def __init__(self, desk: Desk, machine_name: str, worker: LatestRequestWorker, csv_folder: Path) -> None:
         super().__init__(desk)
-        self.machine_name, self.worker, self.folder = machine, worker, folder
+        self.machine_name, self.worker, self.report_folder = machine_name, worker, csv_folder
         self.shifts_back = 0
         self.results: ShiftResults | None = None
         self.error_text = ""
-        self.save_locations: tuple[BackupPlace, ...] = ()
+        self.save_locations: tuple[BackupLocation, ...] = ()
         self._asked: tuple[int, int] | None = None  # shift and minute of the last request
 
     @property
@@ -59,7 +59,7 @@ class ShiftReportFunction(SpecialFunction):
         return len(self.save_locations)
 
     def _store(self) -> Store | None:
-        watch = self.desk.page_registry.find(PartsWatch)
+        watch = self.desk.page_registry.find_model(PartsWatch)
         return watch.parts_book.store if watch is not None else None
 
     def make_table(self, _snapshot: Snapshot) -> TableContent:
@@ -92,7 +92,7 @@ class ShiftReportFunction(SpecialFunction):
             self.error_text = tr("JOBS CANNOT BE SAVED: NO DATA STORE")
         elif wanted != self._asked:
             self._asked = wanted
-            self.worker.enqueue(
+            self.worker.enqueue_work(
                 partial(_calculate, store, self.desk, self.shifts_back), self._take, self._failed
             )
 
@@ -102,7 +102,7 @@ class ShiftReportFunction(SpecialFunction):
     def _failed(self, why: str) -> None:
         self.results, self.error_text = None, why
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys that select a shift and save the report."""
         if self.save_locations:
             return {"F4": FunctionKey("REFRESH", self.reload_locations)}
@@ -142,11 +142,11 @@ class ShiftReportFunction(SpecialFunction):
         if self.results is None:
             self.desk.say("REPORT IS NOT READY YET. WAIT A MOMENT")
         else:
-            self.worker.enqueue(
-                lambda: _places(self.folder, list_sticks()), self._places_found, self.desk.show_refusal
+            self.worker.enqueue_work(
+                lambda: _places(self.report_folder, list_sticks()), self._places_found, self.desk.show_refusal
             )
 
-    def _places_found(self, places: tuple[BackupPlace, ...]) -> None:
+    def _places_found(self, places: tuple[BackupLocation, ...]) -> None:
         self.save_locations, self.marked = places, 0
 
     def execute_row(self) -> bool:
@@ -156,7 +156,7 @@ class ShiftReportFunction(SpecialFunction):
         place = self.save_locations[min(self.marked, len(self.save_locations) - 1)]
         metric = self.desk.read_snapshot().modal.metric
         work = partial(_write, self.results, self.machine_name, place.path, metric=metric)
-        self.worker.enqueue(work, self._done, self.desk.show_refusal)
+        self.worker.enqueue_work(work, self._done, self.desk.show_refusal)
         self.save_locations = ()
         return True
 
@@ -177,7 +177,7 @@ def _rows(results: ShiftResults) -> list[tuple[str, str]]:
     rows = make_summary_rows(results)
     for each in results.programs:
         mean = f", {sum(each.cycle_times_s) / len(each.cycle_times_s):.1f} s" if each.cycle_times_s else ""
-        rows.append((each.program, f"{each.parts} {tr('PARTS')}{mean}"))
+        rows.append((each.program, f"{each.part_count} {tr('PARTS')}{mean}"))
     rows += [
         (tr(each.reason), f"{each.times} ×, {format_duration(each.seconds)}") for each in results.stop_reasons
     ]
@@ -190,17 +190,17 @@ def _calculate(store: Store, desk: Desk, back: int) -> ShiftResults:
     Raises StoreError.
     """
     now = datetime.now().astimezone()
-    watch = desk.page_registry.find(PartsWatch)
+    watch = desk.page_registry.find_model(PartsWatch)
     assert watch is not None
     store.write(lambda _connection: None).exception()  # waits until all earlier changes are stored
     shift = find_shift(get_shift_hours(store.settings.read_setting(SHIFT_HOURS_SETTING)), now, back)
     return calculate_shift_results(store, shift, now.timestamp(), watch.parts_book.tool_kind)
 
 
-def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupPlace, ...]:
+def _places(folder: Path, plugged: Sequence[UsbStick]) -> tuple[BackupLocation, ...]:
     return (
-        *(BackupPlace(stick.label, stick.path) for stick in plugged),
-        BackupPlace(tr("THIS CONTROL"), folder),
+        *(BackupLocation(stick.label, stick.path) for stick in plugged),
+        BackupLocation(tr("THIS CONTROL"), folder),
     )
 
 
@@ -219,7 +219,7 @@ def _write(results: ShiftResults, machine: str, folder: Path, *, metric: bool) -
         ) from error
     copy_to_medium(
         folder / name,
-        make_shift_html(results, machine, made, metric=metric).encode("utf-8", "backslashreplace"),
+        make_shift_html(results, machine, made, is_metric=metric).encode("utf-8", "backslashreplace"),
     )
     flush_folder(folder)
     return name

@@ -36,22 +36,23 @@ _LETTER = {
 }
 
 
-def make_title(results: ShiftResults, machine: str) -> str:
+def make_title(results: ShiftResults, machine_name: str) -> str:
     """Return the title of the report with the start and end of the shift in local time."""
     first, last = (datetime.fromtimestamp(each).strftime("%Y-%m-%d %H:%M") for each in results.shift)
-    of = f"{machine}: " if machine else ""
+    of = f"{machine_name}: " if machine_name else ""
     return of + tr(Message("shift from {first} to {last}", first=first, last=last))
 
 
-def make_shift_html(results: ShiftResults, machine: str, created_at: str, *, metric: bool) -> str:
+def make_shift_html(results: ShiftResults, machine_name: str, created_at: str, *, is_metric: bool) -> str:
     """Return the HTML page of the shift report.
 
     Lengths are in mm if ``metric`` is set, or else in inches. X of tools is a diameter.
     """
     body = "".join(
-        f"<h2>{escape(head)}</h2>{text}" if head else text for head, text in _sections(results, metric=metric)
+        f"<h2>{escape(head)}</h2>{text}" if head else text
+        for head, text in _sections(results, metric=is_metric)
     )
-    return make_page_head(make_title(results, machine), created_at, get_language()) + body + HTML_END
+    return make_page_head(make_title(results, machine_name), created_at, get_language()) + body + HTML_END
 
 
 def make_summary_rows(results: ShiftResults) -> list[tuple[str, str]]:
@@ -166,9 +167,9 @@ def _table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
 def _program(row: ProgramResults) -> tuple[str, ...]:
     none = ", ".join(f"{count} × {tr(how)}" for how, count in row.incomplete_cycles)
     if not row.cycle_times_s:
-        return row.program, str(row.parts), none, "", "", ""
+        return row.program, str(row.part_count), none, "", "", ""
     times = (min(row.cycle_times_s), sum(row.cycle_times_s) / len(row.cycle_times_s), max(row.cycle_times_s))
-    return (row.program, str(row.parts), none, *(f"{format_fixed(each, 1)} s" for each in times))
+    return (row.program, str(row.part_count), none, *(f"{format_fixed(each, 1)} s" for each in times))
 
 
 def _lives(found: ShiftResults) -> str:

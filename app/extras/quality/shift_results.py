@@ -1,6 +1,6 @@
 """Results of a shift, calculated from stored data, and the start and end of a shift.
 
-The results use the same rows as the trends and ``turndesk parts``. Nothing is counted again.
+The results use the same rows as the trends and ``turndesk part_count``. Nothing is counted again.
 """
 
 from __future__ import annotations
@@ -132,12 +132,12 @@ _MIN_CLOCK_STEP_BACK_S = 1.0  # seconds of backward jump from which the clock co
 class ProgramResults(NamedTuple):
     """Results of one program.
 
-    ``parts`` is the number of counted parts. ``incomplete_cycles`` contains the number of cycles without a
-    part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
+    ``part_count`` is the number of counted parts. ``incomplete_cycles`` contains the number of cycles
+    without a part for each outcome. ``cycle_times_s`` are the times of complete cycles in seconds.
     """
 
     program: str
-    parts: int
+    part_count: int
     incomplete_cycles: tuple[tuple[str, int], ...]
     cycle_times_s: tuple[float, ...]
 
@@ -168,7 +168,7 @@ class ShiftResults:
     @property
     def part_count(self) -> int:
         """Return the number of parts of all programs."""
-        return sum(each.parts for each in self.programs)
+        return sum(each.part_count for each in self.programs)
 
     @property
     def stopped_s(self) -> float:
@@ -186,25 +186,25 @@ class ShiftResults:
         return max(0.0, self.availability.planned_s - self.availability.producing_s - self.stopped_s)
 
 
-def parse_store_time(at: str) -> float:
+def parse_store_time(time_text: str) -> float:
     """Return a time of the store, converted to seconds of UTC."""
-    return datetime.fromisoformat(at).timestamp()
+    return datetime.fromisoformat(time_text).timestamp()
 
 
-def make_cycle_span(row: CycleRow | CycleTime, now: float) -> TimeSpan | None:
+def make_cycle_span(row: CycleRow | CycleTime, now_s: float) -> TimeSpan | None:
     """Return the time span of a cycle, or None if the cycle has not ended.
 
     The span begins at the start of the cycle and has its duration, but does not extend beyond ``now``.
     """
     start = parse_store_time(row.started)
-    if row.ended is None or start > now:
+    if row.ended is None or start > now_s:
         return None
-    return TimeSpan(start, max(start, min(start + row.seconds, now)))
+    return TimeSpan(start, max(start, min(start + row.seconds, now_s)))
 
 
-def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now: float) -> list[TimeSpan]:
+def make_cycle_spans(rows: Iterable[CycleRow | CycleTime], now_s: float) -> list[TimeSpan]:
     """Return the time spans of all cycles that have ended."""
-    return [span for row in rows if (span := make_cycle_span(row, now)) is not None]
+    return [span for row in rows if (span := make_cycle_span(row, now_s)) is not None]
 
 
 def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
@@ -213,28 +213,28 @@ def convert_stops(rows: Iterable[StopRow]) -> list[ProductionStop]:
 
 
 def calculate_shift_results(
-    store: Store, shift: Shift, now: float, tools: OffsetKind = OffsetKind.TOOL
+    store: Store, shift: Shift, now_s: float, tool_kind: OffsetKind = OffsetKind.TOOL
 ) -> ShiftResults:
     """Calculate and return the results of a shift.
 
     This function runs on a worker. Raises StoreError.
     """
     since, end = shift.utc_texts
-    until = max(shift.start_s, min(shift.end_s, now))
+    until = max(shift.start_s, min(shift.end_s, now_s))
     with store.read() as connection:
         cycles = part_cycles.read_cycles_between(connection, since, end)
         stops = part_cycles.read_stops_between(connection, since, end)
         alarms = event_log.find_events_between(connection, ALARM_EVENT_KINDS, since, end)
         readings = measured_parts.read_readings_between(connection, since, end)
-        lives = tool_lives.read_tool_lives(connection, tools)
+        lives = tool_lives.read_tool_lives(connection, tool_kind)
         inserts = tool_lives.read_insert_changes(connection, -1)
         offsets = offset_history.read_history_in_store(connection, _MAX_CHANGES)
-    running = make_cycle_spans(cycles, now)
+    running = make_cycle_spans(cycles, now_s)
     ended = [row for row in cycles if row.ended is not None and since <= row.ended < end]
     return ShiftResults(
         shift,
         until,
-        _make_program_results(ended, _select_interrupted(cycles, on=now < shift.end_s)),
+        _make_program_results(ended, _select_interrupted(cycles, on=now_s < shift.end_s)),
         calculate_availability(TimeSpan(shift.start_s, until), running) if until > shift.start_s else None,
         stops,
         analyze_stop_reasons(_limit_stops(convert_stops(stops), shift.start_s, until)),
@@ -245,7 +245,7 @@ def calculate_shift_results(
         len(readings),
         tuple(each for each in readings if not make_feature(each[0]).good(each[1].value)),
         tuple(running),
-        tuple(_make_remarks(shift, until, now, cycles)),
+        tuple(_make_remarks(shift, until, now_s, cycles)),
     )
 
 

@@ -36,7 +36,7 @@ CORRECTION_STEP_MM = {
 }  # rounding of a correction in mm, for metric and inch
 
 
-def make_proposal(data: PartsData, row: FeatureRow, mode: ValueMode) -> CorrectionProposal:
+def make_proposal(data: PartsData, row: FeatureRow, value_mode: ValueMode) -> CorrectionProposal:
     """Return the correction that is required by the readings since the last correction.
 
     Raises QualityError.
@@ -52,7 +52,7 @@ def make_proposal(data: PartsData, row: FeatureRow, mode: ValueMode) -> Correcti
                 name=name,
             )
         )
-    return propose_correction(feature, sizes, CORRECTION_STEP_MM[mode.is_metric])
+    return propose_correction(feature, sizes, CORRECTION_STEP_MM[value_mode.is_metric])
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class OffsetCorrection:
     text: str  # for example ``T3 WEAR X −.0006: SPIGOT .5012 → .5006``
 
 
-def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -> OffsetCorrection:
+def make_correction(proposal: CorrectionProposal, desk: Desk, value_mode: ValueMode) -> OffsetCorrection:
     """Return the proposal as a change of the offset table.
 
     Raises EntryError with the reason if the change is not possible.
@@ -76,12 +76,12 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -
     if why_not:
         raise EntryError(why_not)
     kind = OffsetKind.TOOL if feature.by is CorrectingOffset.TOOL else OffsetKind.SECONDARY
-    change = format_signed(proposal.change_mm, mode.is_metric)
+    change = format_signed(proposal.change_mm, value_mode.is_metric)
     why = tr(
         Message(
             "{name} measured: the mean of {count} readings is {mean}, offset change {change}",
             name=feature.name,
-            mean=format_size(proposal.mean_deviation, mode),
+            mean=format_size(proposal.mean_deviation_mm, value_mode),
             count=proposal.reading_count,
             change=change,
         )
@@ -89,9 +89,9 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -
     name = f"wear_{feature.axis}" if kind is OffsetKind.TOOL else feature.axis
     row = book.get_rows(kind).get(feature.number)
     value = (
-        _tool_value(name, row, proposal, mode, feature.number)
+        _tool_value(name, row, proposal, value_mode, feature.number)
         if kind is OffsetKind.TOOL
-        else _secondary_value(name, row, proposal, mode)
+        else _secondary_value(name, row, proposal, value_mode)
     )
     words = tr(
         Message(
@@ -99,8 +99,8 @@ def make_correction(proposal: CorrectionProposal, desk: Desk, mode: ValueMode) -
             offset=feature.corrected_by,
             change=change,
             feature=feature.name,
-            old=format_size(proposal.mean_deviation, mode),
-            new=format_size(proposal.expected_size, mode),
+            old=format_size(proposal.mean_deviation_mm, value_mode),
+            new=format_size(proposal.expected_size_mm, value_mode),
         )
     )
     return OffsetCorrection(kind, feature.number, {name: value}, why, words)
@@ -126,7 +126,7 @@ def _secondary_value(name: str, row: object, proposal: CorrectionProposal, mode:
     before = row if isinstance(row, SecondaryRow) else SecondaryRow()
     value = add_correction(getattr(before, name), proposal.offset_change_mm / mode.unit_mm, mode.is_metric)
     field = FIELDS_BY_KIND[OffsetKind.SECONDARY][name]
-    if not field.accepts(value):
+    if not field.is_valid_value(value):
         shown, low, high = (
             format_signed(value, mode.is_metric),
             field.minimum / mode.unit_mm,
@@ -173,12 +173,12 @@ class CorrectionPreview:
 
     @property
     def _effect(self) -> OffsetEffect | None:
-        return self.desk.page_registry.find(OffsetEffect)
+        return self.desk.page_registry.find_model(OffsetEffect)
 
     def _tables(self, change: OffsetCorrection) -> tuple[OffsetTables, OffsetTables]:
         book = self.desk.offset_book
-        tools: dict[int, ToolRow] = dict(book.tools)
-        secondary: dict[int, SecondaryRow] = dict(book.secondary)
+        tools: dict[int, ToolRow] = dict(book.tool_offsets)
+        secondary: dict[int, SecondaryRow] = dict(book.secondary_offsets)
         before = OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
         values: Mapping[str, Any] = change.new_values
         if change.kind is OffsetKind.TOOL:
@@ -187,7 +187,7 @@ class CorrectionPreview:
             secondary[change.number] = secondary.get(change.number, SecondaryRow())._replace(**values)
         return before, OffsetTables(make_tool_offsets(tools), make_secondary_offsets(secondary))
 
-    def make_table(self, mode: ValueMode) -> TableContent | None:
+    def make_table(self, value_mode: ValueMode) -> TableContent | None:
         """Return the table of diameters and shoulders before and after the correction.
 
         Returns None if no simulated part is available.
@@ -195,7 +195,7 @@ class CorrectionPreview:
         effect = self._effect
         if effect is None or effect.is_busy or effect.error_text or effect.compared_part is None:
             return None
-        return make_part_table(effect.compared_part, mode)
+        return make_part_table(effect.compared_part, value_mode)
 
     def describe_status(self) -> str:
         """Return the status of the simulation as text."""
@@ -210,16 +210,16 @@ class CorrectionPreview:
             else ""
         )
 
-    def make_chart(self, mode: ValueMode) -> ChartDrawing:
+    def make_chart(self, value_mode: ValueMode) -> ChartDrawing:
         """Return the chart of the readings, their mean, and the expected size of the next parts."""
         found = self.proposal
         if found is None or not self._readings:
             return ChartDrawing()
-        of = (self.question, self._readings, mode)
+        of = (self.question, self._readings, value_mode)
         if self._drawn[0] != of:
-            change = format_deviation(found.expected_size - found.mean_deviation, mode)
+            change = format_deviation(found.expected_size_mm - found.mean_deviation_mm, value_mode)
             title = tr(Message("{name}: {change} FROM NEXT PART", name=found.feature.name, change=change))
             newest = self._readings[-CHART_READING_COUNT:]
-            plot = make_correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), mode.unit_mm)
+            plot = make_correction_plot(newest, found, title, (tr("NOW"), tr("AFTER")), value_mode.unit_mm)
             self._drawn = of, ChartDrawing((plot,), of)
         return self._drawn[1]

@@ -75,12 +75,12 @@ class ShapeForm:
     def __post_init__(self) -> None:
         if self.replaced_piece is not None:
             self._enter_values(self.replaced_piece.filled_shape)
-        elif self.shape.contour:
+        elif self.shape.has_point_table:
             self.point_texts = [{"X": "0", "Z": "0"}]
         self.calculate()
         self.selected_row = self._first()
 
-    def use_settings(self, settings: ProgramSettings) -> None:
+    def apply_settings(self, settings: ProgramSettings) -> None:
         """Set other tool data and calculate the form again."""
         self.settings = settings
         self.calculate()
@@ -99,7 +99,7 @@ class ShapeForm:
         for place, each in enumerate(self.fields):
             if self.filled_shape.values.get(each.word) is None:
                 return place
-        return len(self.fields) + 1 if self.shape.contour else 0
+        return len(self.fields) + 1 if self.shape.has_point_table else 0
 
     # --- calculation ---------------------------------------------------------------------------------
 
@@ -116,7 +116,7 @@ class ShapeForm:
             for refused in self._refusals():
                 self.errors.setdefault(refused.field_word, refused.text)
         self.lines = [] if self.errors else self.filled_shape.make_lines(self.settings)
-        self.remarks = () if self.errors else self.shape.says(self.filled_shape, self.settings)
+        self.remarks = () if self.errors else self.shape.make_notes(self.filled_shape, self.settings)
 
     def _refusals(self) -> list[FieldError]:
         try:
@@ -160,7 +160,7 @@ class ShapeForm:
     @property
     def row_count(self) -> int:
         """Return the number of fields and points, including the empty point at the end."""
-        return len(self.fields) + (len(self.point_texts) + 1 if self.shape.contour else 0)
+        return len(self.fields) + (len(self.point_texts) + 1 if self.shape.has_point_table else 0)
 
     @property
     def selected_field(self) -> ShapeField | None:
@@ -234,7 +234,7 @@ class ShapeForm:
     @property
     def current_sketch(self) -> Sketch:
         """Return the sketch, whose dimensions are the fields of the form."""
-        return self.shape.sketch(self.filled_shape)
+        return self.shape.make_sketch(self.filled_shape)
 
     @property
     def is_calculating(self) -> bool:
@@ -413,7 +413,7 @@ class AddedForm(ABC):
         """Return whether this form can make a program from a file with the given name."""
 
     @abstractmethod
-    def calculate(self, form: ShapeForm, show: ShowForm, show_message: Callable[[str], None]) -> None:
+    def calculate(self, form: ShapeForm, show_form: ShowForm, show_message: Callable[[str], None]) -> None:
         """Calculate the form on a worker.
 
         ``show_message`` is called with the reason if the form cannot be calculated.
@@ -424,7 +424,7 @@ class AddedForm(ABC):
         """Cancel the calculation."""
 
     @abstractmethod
-    def function_keys(self, form: ShapeForm, show: ShowForm) -> Mapping[int, FunctionKey]:
+    def function_keys(self, form: ShapeForm, show_form: ShowForm) -> Mapping[int, FunctionKey]:
         """Return the additional function keys of this form."""
 
     @abstractmethod

@@ -16,7 +16,7 @@ from core.extras.shapes.shape_pieces import find_settings, has_units, insert_sha
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
 from core.extras.shapes.templates import HEAD_SHAPE
 from core.language.source import Dialect
-from core.message import Message, find_nearest
+from core.message import Message, find_similar_word
 
 KIND, POINTS = "kind", "points"
 _KEYS = {"KIND": "edge_kind"}  # The field KIND of EDGE TURN would conflict with the key of the step.
@@ -41,7 +41,7 @@ class GeneratedProgram:
     ``step_kinds`` are the kinds of the steps, and ``remarks`` are the remarks about the program lines.
     """
 
-    lines: tuple[str, ...]
+    program_lines: tuple[str, ...]
     step_kinds: tuple[str, ...]
     remarks: tuple[str, ...]
 
@@ -99,7 +99,7 @@ def _shape(number: int, step: ShapeStep, dialect: Dialect) -> Shape | str:
     name = " ".join(kind.lower().replace("-", " ").replace("_", " ").split())
     if name in kinds:
         return kinds[name]
-    near = find_nearest(name, kinds)
+    near = find_similar_word(name, kinds)
     return Message(
         "step {number}: kind {kind} does not exist; {nearest}",
         number=number,
@@ -113,12 +113,12 @@ def _strange(number: int, step: ShapeStep, shapes: Sequence[Shape | str]) -> lis
     shape = shapes[number - 1]
     if isinstance(shape, str):
         return []
-    keys = {KIND, *get_words_by_key(shape), *((POINTS,) if shape.contour else ())}
+    keys = {KIND, *get_words_by_key(shape), *((POINTS,) if shape.has_point_table else ())}
     found: list[str] = []
     for key, value in step.items():
         where = Message("step {number}, {shape}", number=number, shape=shape.name.lower())
         if key not in keys:
-            near = find_nearest(key, keys)
+            near = find_similar_word(key, keys)
             found.append(
                 Message(
                     "{place}: {key} is unknown; {nearest}",

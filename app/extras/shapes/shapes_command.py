@@ -91,7 +91,7 @@ def run(args: argparse.Namespace) -> int:
         )
     who = authorize_writing(args)
     made = _written(args, machine, dialect)
-    text = "\n".join(made.lines) + "\n"
+    text = "\n".join(made.program_lines) + "\n"
     errors, cycle = _proved(args, machine, ProgramSource(_name(args, dialect), text, dialect))
     if args.out is not None:
         save_generated_program(args, text, who)
@@ -104,7 +104,7 @@ def _language(out: str | None, machine: Machine) -> Dialect:
 
     Raises CommandError for Klartext.
     """
-    said = Dialect(machine.language) if out is None else guess_dialect(Path(out).name)
+    said = Dialect(machine.mdi_language) if out is None else guess_dialect(Path(out).name)
     if said is Dialect.KLARTEXT:
         raise CommandError(
             Message(
@@ -118,9 +118,9 @@ def _language(out: str | None, machine: Machine) -> Dialect:
 
 
 def _name(args: argparse.Namespace, dialect: Dialect) -> str:
-    from core.language.source import default_extension
+    from core.language.source import get_default_extension
 
-    return Path(args.out).name if args.out is not None else f"shapes{default_extension(dialect)}"
+    return Path(args.out).name if args.out is not None else f"shapes{get_default_extension(dialect)}"
 
 
 def _written(args: argparse.Namespace, machine: Machine, dialect: Dialect) -> GeneratedProgram:
@@ -180,7 +180,8 @@ def _tell(
         sys.stdout.write(text)
     else:
         sys.stdout.write(
-            f"{args.out}: {len(made.lines)} lines, steps: {len(made.step_kinds)}, cycle {cycle:.1f} s\n"
+            f"{args.out}: {len(made.program_lines)} lines, steps: {len(made.step_kinds)}, cycle "
+            f"{cycle:.1f} s\n"
         )
     for line in (*made.remarks, *errors):
         sys.stderr.write(f"turndesk: {line}\n")
@@ -190,20 +191,20 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
     from app.extras.shapes.shape_steps import POINTS, get_shapes_by_kind, get_words_by_key
 
     found = {
-        kind: [*get_words_by_key(shape), *((POINTS,) if shape.contour else ())]
+        kind: [*get_words_by_key(shape), *((POINTS,) if shape.has_point_table else ())]
         for kind, shape in get_shapes_by_kind(dialect).items()
     }
     if as_json:
         sys.stdout.write(json.dumps(found) + "\n")
         return EXIT_OK
     for kind, shape in get_shapes_by_kind(dialect).items():
-        sys.stdout.write(f"{kind}: {shape.use}\n")
+        sys.stdout.write(f"{kind}: {shape.purpose}\n")
         for key, word in get_words_by_key(shape).items():
             known = shape.find_field(word)
             choices = f": {', '.join(known.choices).lower()}" if known is not None and known.choices else ""
             label = known.label.lower() if known is not None else ""
             sys.stdout.write(f"  {key:<10} {label}{choices}\n")
-        if shape.contour:
+        if shape.has_point_table:
             sys.stdout.write(f"  {POINTS:<10} a list of x, z, and chamfer c, radius r or arc a\n")
     return EXIT_OK
 

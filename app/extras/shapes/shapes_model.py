@@ -71,43 +71,43 @@ class ShapesModel(PanelModel):
         for each in self.added_forms:
             each.close()
 
-    def poll(self) -> None:
+    def process_results(self) -> None:
         """Process the results of the workers.
 
         This method is called once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         for each in self.added_forms:
             each.poll()
 
     # --- opening -------------------------------------------------------------------------------------
 
-    def open(self, name: str, text: str, line: int, *, helpers: bool = False) -> str:
+    def open_for_text(self, name: str, text: str, cursor_line: int, *, lists_helpers: bool = False) -> str:
         """Open the shapes for a program text.
 
-        ``line`` is the cursor line, counted from 1. ``helpers`` lists calculators and templates instead of
-        shapes, and does not open the piece at the cursor. Returns the reason if opening is not possible, or
-        an empty string.
+        ``cursor_line`` is the cursor line, counted from 1. ``lists_helpers`` lists calculators and templates
+        instead of shapes, and does not open the piece at the cursor. Returns the reason if opening is not
+        possible, or an empty string.
         """
         if not supports_shapes(name):
             return tr("SHAPES WORK ONLY IN OMNITURN AND SINUMERIK PROGRAMS")
         dialect = guess_dialect(name)
         forms = {**SHAPES_BY_DIALECT[dialect], **{each.key: each.shape for each in self.added_forms}}
         self.initial_settings = replace(self.initial_settings, dialect=dialect)
-        self.worker.request(lambda _request: self.read_shop_data(), self._have_shop, self._no_shop)
+        self.worker.request_work(lambda _request: self.read_shop_data(), self._have_shop, self._no_shop)
         self.notice, self.pending_action, self.form = "", None, None
-        self.shape_table = CALCULATORS_BY_DIALECT[dialect] if helpers else forms
+        self.shape_table = CALCULATORS_BY_DIALECT[dialect] if lists_helpers else forms
         self._take(text)
-        here = find_piece(self.pieces, line - 1)
+        here = find_piece(self.pieces, cursor_line - 1)
         self.cursor_line = find_insertion_line(
-            self.program_lines, self.pieces, line - 1, self.initial_settings.dialect
+            self.program_lines, self.pieces, cursor_line - 1, self.initial_settings.dialect
         )
         if here is not None and self.lists_shapes:
             self._open_piece(here)
         else:
             self.selected_row = 0 if not self.listed_pieces else max(1, self.selected_row)
             if self.lists_shapes:
-                self.notice = describe_damaged_comment(self.program_lines, line - 1, dialect)
+                self.notice = describe_damaged_comment(self.program_lines, cursor_line - 1, dialect)
         return ""
 
     @property
@@ -136,7 +136,7 @@ class ShapesModel(PanelModel):
         self.shop_data = shop
         if self.form is not None and self.form.replaced_piece is None:
             form = self.form
-            form.use_settings(
+            form.apply_settings(
                 find_settings(self.program_lines, self.cursor_line, shop, self.initial_settings)
             )
             self._preview()
@@ -151,9 +151,9 @@ class ShapesModel(PanelModel):
         """Return whether the list is shown instead of a form."""
         return self.form is None
 
-    def choose(self, place: int) -> None:
+    def select_row(self, row: int) -> None:
         """Select a shape in the list or a piece of the program."""
-        self.selected_row = max(0, min(place, len(self.shape_table) + len(self.listed_pieces) - 1))
+        self.selected_row = max(0, min(row, len(self.shape_table) + len(self.listed_pieces) - 1))
 
     def open_selected(self) -> None:
         """Open the form of the selected shape or piece."""
@@ -174,7 +174,7 @@ class ShapesModel(PanelModel):
             if head is not None:
                 self._open_piece(head)
                 return
-        elif not shape.noted:
+        elif not shape.has_comment:
             pass  # a calculator, which does not need a head
         elif self._adder_of(shape) is not None and not self.program_lines:
             self.cursor_line = 0  # the form writes a head
@@ -231,7 +231,7 @@ class ShapesModel(PanelModel):
             found |= self._adder.function_keys(self.form, self._show_calculated)
         if self.form.replaced_piece is not None:
             found[5] = FunctionKey("DELETE", self.delete_piece)
-        if self.form.shape.contour:
+        if self.form.shape.has_point_table:
             found |= {
                 3: FunctionKey("POINT +", self.insert_point),
                 4: FunctionKey("POINT -", self.delete_point),
@@ -251,9 +251,9 @@ class ShapesModel(PanelModel):
         elif key == "Enter":
             self.open_selected()
         elif key in ROW_STEPS:
-            self.choose(self.selected_row + ROW_STEPS[key])
+            self.select_row(self.selected_row + ROW_STEPS[key])
         elif key in {"Left", "Right"}:
-            self.choose(len(self.shape_table) if key == "Right" and self.listed_pieces else 0)
+            self.select_row(len(self.shape_table) if key == "Right" and self.listed_pieces else 0)
         else:
             return False
         return True
@@ -296,10 +296,10 @@ class ShapesModel(PanelModel):
             self.form.handle_touch(point)
             self._preview()
 
-    def select_touched_cell(self, number: int, column: int) -> None:
+    def select_touched_cell(self, point_index: int, column: int) -> None:
         """Select the touched cell of a point."""
         if self.form is not None:
-            self.form.select_row(len(self.form.fields) + number, column)
+            self.form.select_row(len(self.form.fields) + point_index, column)
 
     def insert_point(self) -> None:
         """Insert a point before the selected point (F3)."""

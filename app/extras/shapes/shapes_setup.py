@@ -36,15 +36,15 @@ def make_shop_data(machine: Machine, tools: Mapping[int, ToolShape]) -> ShopData
     z, c = by_name.get("Z"), by_name.get("C")
     return ShopData(
         max_rpm=machine.spindle.max_rpm,
-        spindle_power=machine.spindle.power or ShopData().spindle_power,
-        max_acceleration=z.amax if z is not None else 0.0,
-        max_c_rpm=c.vmax / 6.0 if c is not None and c.vmax else ShopData().max_c_rpm,
+        spindle_power_w=machine.spindle.power or ShopData().spindle_power_w,
+        max_acceleration_mm_s2=z.max_acceleration if z is not None else 0.0,
+        max_c_rpm=c.max_speed / 6.0 if c is not None and c.max_speed else ShopData().max_c_rpm,
         live_tool_codes=_live(machine),
         has_live_output=bool(machine.live_tool_output),
-        third_axis=machine.third_axis if machine.c_enabled else "",
-        has_spindle_as_c=machine.spindle_is_c,
+        third_axis=machine.third_axis_name if machine.is_c_enabled else "",
+        has_spindle_as_c=machine.is_spindle_c_axis,
         chuck_codes=_chuck(machine),
-        travel=(_travel(by_name.get("X")), _travel(z)),
+        travel_mm=(_travel(by_name.get("X")), _travel(z)),
         tools=dict(tools),
     )
 

@@ -18,7 +18,7 @@ from app.extras.shapes.shape_places import supports_shapes
 from app.extras.shapes.shapes_model import ShapesModel
 from app.screen.drawings import SketchPanel
 from app.screen.entry_panel import NumberPad, draw_entry_text
-from app.screen.page_base import EditorPanel, HeadKey, Page, PageHost
+from app.screen.page_base import EditorPanel, HeaderKey, Page, PageHost
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import (
     ALIGN_CENTER,
@@ -68,9 +68,9 @@ class ShapeRowsPanel(RowPanel):
     heading = RedrawingAttribute("")
     is_entry_open = RedrawingAttribute(False)
 
-    def __init__(self, theme: ScreenTheme, on_select: Callable[[int, int], None], parent: QWidget) -> None:
+    def __init__(self, theme: ScreenTheme, select_cell: Callable[[int, int], None], parent: QWidget) -> None:
         super().__init__(theme, parent)
-        self._choose = on_select
+        self._choose = select_cell
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the rows of the list, and scroll the list so that the selected row is visible."""
@@ -87,7 +87,7 @@ class ShapeRowsPanel(RowPanel):
             self._row(painter, box, self.displayed_rows[number], number)
 
     def _row(self, painter: ThemedPainter, box: QRectF, line: _Line, number: int) -> None:
-        u, marked = self.theme.u, number == self.selected_row
+        u, marked = self.theme.unit_px, number == self.selected_row
         if marked:
             painter.fill_rect(box, "here")
             painter.fill_rect(QRectF(box.x(), box.y(), 0.5 * u, box.height()), "lit")
@@ -108,30 +108,30 @@ class ShapeRowsPanel(RowPanel):
     def _label(self, painter: ThemedPainter, box: QRectF, line: _Line, *, marked: bool) -> None:
         """Draw the label in two lines if it would be too small or truncated in one line."""
         label = tr(line.label)
-        room = box.adjusted(0, 0, -0.6 * self.theme.u, 0)
+        room = box.adjusted(0, 0, -0.6 * self.theme.unit_px, 0)
         cut = label.rfind(" ", 0, 2 + len(label) // 2 + 1)
         wide = measure_text(label, self.theme.make_font(_SMALL, is_bold=marked))
         parts = [label[:cut], label[cut + 1 :]] if wide > room.width() and cut > 0 else [label]
-        high = min(room.height() / len(parts), 2.6 * self.theme.u) if len(parts) > 1 else room.height()
+        high = min(room.height() / len(parts), 2.6 * self.theme.unit_px) if len(parts) > 1 else room.height()
         top = room.center().y() - high * len(parts) / 2
         for place, part in enumerate(parts):
             at = QRectF(room.x(), top + place * high, room.width(), high)
             painter.draw_text_line(at, part, 1.9, "text", at=ALIGN_LEFT, bold=marked, raw=True)
 
     def _figure(self, painter: ThemedPainter, box: QRectF, figure: str, tone: str, *, marked: bool) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         if marked:
             frame = box.adjusted(0, 0.5 * u, 0, -0.5 * u)
             painter.draw_box(frame, "accent", 0.2, "ground")
             inside = frame.adjusted(0.6 * u, 0, -0.4 * u, 0)
             shown = "" if figure == _UNSAID else figure
-            draw_entry_text(painter, inside, shown, size=2.2, has_cursor=not figure.startswith(_TURN))
+            draw_entry_text(painter, inside, shown, height_units=2.2, has_cursor=not figure.startswith(_TURN))
         else:
             painter.draw_text_line(box, figure, 2.1, tone, at=ALIGN_RIGHT, raw=True, bold=tone != "soft")
 
     def _cells(self, painter: ThemedPainter, area: QRectF, line: _Line, number: int, *, marked: bool) -> None:
         """Draw the number and the values of a point."""
-        u = self.theme.u
+        u = self.theme.unit_px
         first = QRectF(area.x(), area.y(), 2.4 * u, area.height())
         painter.draw_text_line(
             first, line.label, 1.8, line.tone if line.tone == "alarm" else "soft", raw=True
@@ -174,7 +174,7 @@ class ShapeLinesPanel(Panel):
 
         If the panel is too small for all lines, its last row shows the number of lines that do not fit.
         """
-        room, u = self.inside(), self.theme.u
+        room, u = self.inside(), self.theme.unit_px
         high = 2.5 * u
         if self.error_text:
             self._trouble(painter, room)
@@ -199,20 +199,20 @@ class ShapeLinesPanel(Panel):
         if not self.remarks:
             return area
         painter.setFont(self.theme.make_font(1.8, is_bold=True))
-        painter.setPen(self.theme.color("text"))
+        painter.setPen(self.theme.get_color("text"))
         text = "\n".join(tr(each) for each in self.remarks)
         flags = Qt.TextFlag.TextWordWrap | Qt.AlignmentFlag.AlignTop
         used = painter.boundingRect(area, flags, text)
         if used.height() <= area.height():
             painter.draw_wrapped_text(area, flags, text)
-            return area.adjusted(0, used.height() + self.theme.u, 0, 0)
+            return area.adjusted(0, used.height() + self.theme.unit_px, 0, 0)
         self._draw_remark_page(painter, area, flags, text)
         return area.adjusted(0, area.height(), 0, 0)
 
     def _draw_remark_page(self, painter: ThemedPainter, area: QRectF, flags: Qt.TextFlag, text: str) -> None:
         """Draw one page of the remarks, which contains only whole lines, with the page number below."""
         line = painter.fontMetrics().lineSpacing()
-        lines = max(1, int((area.height() - 2.0 * self.theme.u) / line))
+        lines = max(1, int((area.height() - 2.0 * self.theme.unit_px) / line))
         whole = painter.boundingRect(QRectF(0, 0, area.width(), 0), flags, text).height()
         pages = math.ceil(whole / (lines * line))
         page = self._page % pages
@@ -220,12 +220,14 @@ class ShapeLinesPanel(Panel):
         painter.setClipRect(QRectF(area.x(), area.y(), area.width(), lines * line))
         painter.draw_wrapped_text(area.adjusted(0, -page * lines * line, 0, whole), flags, text)
         painter.restore()
-        foot = QRectF(area.x(), area.bottom() - 2.0 * self.theme.u, area.width(), 2.0 * self.theme.u)
+        foot = QRectF(
+            area.x(), area.bottom() - 2.0 * self.theme.unit_px, area.width(), 2.0 * self.theme.unit_px
+        )
         painter.draw_text_line(foot, f"{page + 1}/{pages} ▸", 1.7, "accent", at=ALIGN_RIGHT, raw=True)
 
     def _trouble(self, painter: ThemedPainter, room: QRectF) -> None:
         painter.setFont(self.theme.make_font(2.0, is_bold=True))
-        painter.setPen(self.theme.color("alarm"))
+        painter.setPen(self.theme.get_color("alarm"))
         painter.draw_wrapped_text(room, Qt.TextFlag.TextWordWrap, tr(self.error_text))
 
 
@@ -249,17 +251,23 @@ class ShapesView(EditorPanel):
         self.number_pad = NumberPad(look, editor_page.handle_touched_key, page_key=None, parent=self)
         self._seen: tuple[object, ...] = ()
 
-    def make_head_keys(self, name: str) -> Sequence[HeadKey]:
+    def make_header_keys(self, program_name: str) -> Sequence[HeaderKey]:
         """Return the key for calculators, preceded by the key for shapes if the program supports shapes."""
-        calculators = HeadKey(tr("CALCULATOR ⇧F4"), "Calculators")
-        return (HeadKey(tr("SHAPES ⇧F3"), "Shapes"), calculators) if supports_shapes(name) else (calculators,)
+        calculators = HeaderKey(tr("CALCULATOR ⇧F4"), "Calculators")
+        return (
+            (HeaderKey(tr("SHAPES ⇧F3"), "Shapes"), calculators)
+            if supports_shapes(program_name)
+            else (calculators,)
+        )
 
-    def open_for_text(self, key: str, name: str, text: str, line: int) -> str:
+    def open_for_text(self, key_name: str, program_name: str, text: str, line_number: int) -> str:
         """Open the shapes or the calculators, depending on the key.
 
         Returns the reason if opening is not possible, or an empty string.
         """
-        return self.model.open(name, text, line, helpers=key == "Calculators")
+        return self.model.open_for_text(
+            program_name, text, line_number, lists_helpers=key_name == "Calculators"
+        )
 
     def refresh(self) -> None:
         """Update the panel if the model has changed.
@@ -320,16 +328,16 @@ class ShapesView(EditorPanel):
             else model.listed_pieces[place - len(keys)].filled_shape.shape
         )
         form = ShapeForm(shape, model.initial_settings)
-        self.sketch_panel.displayed = shape.sketch(form.filled_shape), (), "", frozenset()
+        self.sketch_panel.displayed = shape.make_sketch(form.filled_shape), (), "", frozenset()
         self.lines_panel.error_text, self.lines_panel.displayed_lines, self.lines_panel.remarks = (
             "",
             (),
-            (shape.use,),
+            (shape.purpose,),
         )
 
     def _show_form(self, form: ShapeForm) -> None:
         lines = [_line_of(cell) for cell in form.make_cells()]
-        if form.shape.contour:
+        if form.shape.has_point_table:
             lines += [_point(form, number) for number in range(len(form.point_texts) + 1)]
         self.rows_panel.heading = tr(form.shape.name) + (
             "" if form.replaced_piece is None else f"  ·  {form.replaced_piece.first_line + 1}"
@@ -352,7 +360,7 @@ class ShapesView(EditorPanel):
             if row == model.selected_row:
                 model.open_selected()
             else:
-                model.choose(row)
+                model.select_row(row)
         elif row < len(form.fields):
             model.select_touched(form.fields[row].word)
         else:
@@ -364,7 +372,7 @@ class ShapesView(EditorPanel):
 
     def lay_out(self) -> None:
         """Arrange all parts of the panel."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap, left = max(4, round(0.7 * u)), round(_SHARE * self.width())
         right, x = self.width() - left - gap, left + gap
         low = self._pad_height() if self.model.is_pad_visible else round(0.4 * self.height())
@@ -378,8 +386,8 @@ class ShapesView(EditorPanel):
 
         The sketch is hidden if the remaining height is too small for it.
         """
-        high = max(self.number_pad.min_height_px, round(min(_PAD * self.theme.u, 0.6 * self.height())))
-        drawn = self.height() - high >= _DRAWN * self.theme.u
+        high = max(self.number_pad.min_height_px, round(min(_PAD * self.theme.unit_px, 0.6 * self.height())))
+        drawn = self.height() - high >= _DRAWN * self.theme.unit_px
         self.sketch_panel.setVisible(drawn)
         return high if drawn else self.height()
 
@@ -390,7 +398,7 @@ class ShapesView(EditorPanel):
 
 def _find_shapes_model(desk: Desk) -> ShapesModel:
     """Return the shapes model of TurnDesk, or else attach and return a new model without machine data."""
-    found = desk.page_registry.find(ShapesModel)
+    found = desk.page_registry.find_model(ShapesModel)
     if found is None:
         found = ShapesModel()
         desk.page_registry.attach_model(found)

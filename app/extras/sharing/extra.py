@@ -25,10 +25,10 @@ class SharingExtra(OptionalFeature):
     }
     supervised_threads = {"sharing": "PROGRAM SHARING"}
 
-    list_machine_tables = {"core.extras.sharing.sharing_table": ("sharing",)}
+    machine_tables = {"core.extras.sharing.sharing_table": ("sharing",)}
 
     @property
-    def pages(self) -> Sequence[PageDescription]:
+    def page_descriptions(self) -> Sequence[PageDescription]:
         """Return the description of the SHARED PROGRAMS page."""
         from app.desk.page_description import PageDescription
 
@@ -55,7 +55,9 @@ class SharingExtra(OptionalFeature):
 
         attach_sharing(desk, machine, journal)
 
-    def start_services(self, desk: Desk, journal: Journal, report: ReportFunction) -> CloseFunction | None:
+    def start_services(
+        self, desk: Desk, journal: Journal, report_reason: ReportFunction
+    ) -> CloseFunction | None:
         """Start the synchronization thread, and return the function that stops it.
 
         The result is None if the machine file has no [sharing] table or the location cannot be used.

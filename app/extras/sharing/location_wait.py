@@ -25,7 +25,7 @@ _OPEN = (  # a pipe in its place is reported by its reader
 
 
 def wait_for_location(
-    location: SharedLocation, work: Callable[[], T], report_after_s: float = _TOLD_AFTER
+    location: SharedLocation, run_work: Callable[[], T], report_after_s: float = _TOLD_AFTER
 ) -> T:
     """Run ``work`` and return its result, or raise its exception.
 
@@ -36,7 +36,7 @@ def wait_for_location(
     if isinstance(location, SharedFolder):
         _wait_for_folder(location, report_after_s)
     answer: Future[T] = Future()
-    threading.Thread(target=_work, args=(work, answer), name="shared-place", daemon=True).start()
+    threading.Thread(target=_work, args=(run_work, answer), name="shared-place", daemon=True).start()
     if not wait([answer], report_after_s).done:
         _tell(location, report_after_s)
     return answer.result()

@@ -115,7 +115,7 @@ def _begin(sharing: ProgramSharing, args: argparse.Namespace) -> int:
 
 
 def _status(sharing: ProgramSharing, args: argparse.Namespace) -> int:
-    shared = sharing.preview()
+    shared = sharing.preview_synchronization()
     sys.stdout.write(
         json.dumps(make_status_json(sharing, shared)) + "\n" if args.json else _table(sharing, shared)
     )
@@ -154,7 +154,7 @@ def _claim(sharing: ProgramSharing) -> None:
     homes = [
         each.machine_id
         for each in found
-        if make_program_key(each.desk) == make_program_key(sharing.machine_name)
+        if make_program_key(each.machine_name) == make_program_key(sharing.machine_name)
     ]
     if homes:
         sharing.machine_id = store_machine_id(find_data_folder(), homes[0])
@@ -163,7 +163,7 @@ def _claim(sharing: ProgramSharing) -> None:
 def _compare(sharing: ProgramSharing, args: argparse.Namespace) -> int:
     from app.editor.version_history import compare_texts, decode_text
 
-    version = _chosen(sharing.preview(), args)
+    version = _chosen(sharing.preview_synchronization(), args)
     rows = compare_texts(
         decode_text(sharing.read_local_text(version.program_key)), decode_text(sharing.read_text(version))
     )
@@ -299,7 +299,8 @@ def make_status_json(sharing: ProgramSharing, result: SharingResult) -> dict[str
         "waiting": result.unpublished_count,
         "programs": [_program(result, family) for _, family in sorted(result.programs.items())],
         "desks": [
-            {"desk": each.desk, "told": each.at, "has": dict(each.has)} for each in result.machine_states
+            {"desk": each.machine_name, "told": each.reported_at, "has": dict(each.version_ids)}
+            for each in result.machine_states
         ],
         "strays": list(result.foreign_items),
         "not_shared": dict(result.rejected_files),

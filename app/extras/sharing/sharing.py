@@ -26,7 +26,7 @@ from core.extras.sharing.shared_location import (
     SharingErrorCause,
 )
 from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion, make_program_key
-from core.extras.sharing.version_record import MAX_PROGRAM_BYTES, MachineState, make_version
+from core.extras.sharing.version_record import MAX_PROGRAM_BYTES, PublishedMachineState, make_version
 from core.input_file import read_input_bytes
 from core.message import CodedError, Message, get_error_code
 from core.store import program_records
@@ -40,20 +40,21 @@ _PATIENCE = 2.0  # seconds that closing waits; a thread that hangs in a dead net
 class SharingThread:
     """Thread that synchronizes shared programs at regular intervals.
 
-    The ``every`` parameter is the interval in seconds. The ``heard`` parameter is called with each result.
+    The ``interval_s`` parameter is the interval in seconds. The ``heard`` parameter is called with each
+    result.
     """
 
     def __init__(
         self,
         sharing: ProgramSharing,
-        every: float,
+        interval_s: float,
         result_handler: Callable[[SharingResult], None],
-        now: Callable[[], float] = time.monotonic,
+        read_clock: Callable[[], float] = time.monotonic,
     ) -> None:
-        self._sharing, self._every, self._heard = sharing, every, result_handler
+        self._sharing, self._every, self._heard = sharing, interval_s, result_handler
         self._wake, self._closing = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._repeat, name="sharing", daemon=True)
-        self._now, self._since = now, -1.0  # start time of the present synchronization, or negative
+        self._now, self._since = read_clock, -1.0  # start time of the present synchronization, or negative
 
     def start(self) -> None:
         """Start the thread.
@@ -69,7 +70,7 @@ class SharingThread:
         """
         self._wake.set()
 
-    def get_waiting_time(self) -> float:
+    def get_waiting_time_s(self) -> float:
         """Return the time in seconds for which the present synchronization has waited for the location."""
         since = self._since
         return self._now() - since if since >= 0.0 else 0.0
@@ -118,7 +119,7 @@ class SharingResult:
     )  # state of each family, see ``ProgramVersions.state``
     # machines that have a version, by id
     machines_by_version: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    machine_states: tuple[MachineState, ...] = ()
+    machine_states: tuple[PublishedMachineState, ...] = ()
     foreign_items: tuple[str, ...] = ()
     rejected_files: Mapping[str, str] = field(
         default_factory=dict
@@ -126,9 +127,9 @@ class SharingResult:
     unpublished_count: int = 0  # versions that are not published yet
     error_text: str = ""
 
-    def find_machines_with(self, version: str) -> tuple[str, ...]:
+    def find_machines_with(self, version_id: str) -> tuple[str, ...]:
         """Return the names of the machines that have this version in their program folder."""
-        return self.machines_by_version.get(version, ())
+        return self.machines_by_version.get(version_id, ())
 
 
 class ProgramSharing:
@@ -138,11 +139,16 @@ class ProgramSharing:
     """
 
     def __init__(
-        self, location: SharedLocation, desk: str, machine_id: str, folder: Path, store: Callable[[], Store]
+        self,
+        location: SharedLocation,
+        machine_name: str,
+        machine_id: str,
+        program_folder: Path,
+        get_store: Callable[[], Store],
     ) -> None:
-        self.location, self.machine_name, self.machine_id = location, desk, machine_id
+        self.location, self.machine_name, self.machine_id = location, machine_name, machine_id
         self.last_result = SharingResult()
-        self._files, self._store = LocalProgramFiles(folder), store
+        self._files, self._store = LocalProgramFiles(program_folder), get_store
         self._lock = threading.Lock()  # for one synchronization or change at a time
 
     # --- synchronization -------------------------------------------------------------------------------
@@ -168,7 +174,7 @@ class ProgramSharing:
                 self.last_result = replace(self.last_result, error_text=str(error))
             return self.last_result
 
-    def preview(self) -> SharingResult:
+    def preview_synchronization(self) -> SharingResult:
         """Return the result that a synchronization would have, without storing anything.
 
         Raises StoreError.
@@ -230,11 +236,14 @@ class ProgramSharing:
     def _publish(self, store: Store, found: Found) -> str:
         """Publish local versions, and return an error message or an empty string."""
         others = [each for each in found.machine_states if each.machine_id != self.machine_id]
-        if any(make_program_key(each.desk) == make_program_key(self.machine_name) for each in others):
+        if any(make_program_key(each.machine_name) == make_program_key(self.machine_name) for each in others):
             return str(SharingErrorCause.NAME_TAKEN.make_error(self.location.name, self.machine_name))
         state = self._state(store)
         mine = next((each for each in found.machine_states if each.machine_id == self.machine_id), None)
-        is_state_published = mine is not None and (mine.desk, dict(mine.has)) == (state.desk, dict(state.has))
+        is_state_published = mine is not None and (mine.machine_name, dict(mine.version_ids)) == (
+            state.machine_name,
+            dict(state.version_ids),
+        )
         try:
             for batch in self._batches(store):
                 self.location.publish(batch, state)
@@ -265,7 +274,7 @@ class ProgramSharing:
         if batch:
             yield batch
 
-    def _state(self, store: Store) -> MachineState:
+    def _state(self, store: Store) -> PublishedMachineState:
         with store.read() as connection:
             families = shared_versions.read_shared_programs(connection)
         has = {
@@ -273,7 +282,7 @@ class ProgramSharing:
             for each in families.values()
             if each.local_version_id in each.versions
         }
-        return MachineState(self.machine_id, self.machine_name, get_utc_now_text(), has)
+        return PublishedMachineState(self.machine_id, self.machine_name, get_utc_now_text(), has)
 
     def _tell(
         self, store: Store, found: Found | None, error_text: str, fresh: Sequence[SharedVersion] = ()
@@ -305,12 +314,12 @@ class ProgramSharing:
             text = shared_versions.read_version_text(connection, version.text)
         return self.location.read_text(version) if text is None else text
 
-    def read_local_text(self, key: str) -> bytes:
+    def read_local_text(self, program_key: str) -> bytes:
         """Return the local text of a program, or empty bytes if there is no local version.
 
         Raises StoreError.
         """
-        family = self.last_result.programs.get(key, ProgramVersions())
+        family = self.last_result.programs.get(program_key, ProgramVersions())
         here = family.versions.get(family.local_version_id)
         if here is None:
             return b""
@@ -354,7 +363,7 @@ class ProgramSharing:
             self._tell(store, None, self.last_result.error_text)
             return name
 
-    def resolve_with_local(self, key: str) -> None:
+    def resolve_with_local(self, program_key: str) -> None:
         """Resolve a conflict in favor of the local version.
 
         Raises VersionCopyError and StoreError.
@@ -362,7 +371,7 @@ class ProgramSharing:
         with self._lock:
             store = self._store()
             self._note(store, is_settled=False)
-            family = _family(store, key)
+            family = _family(store, program_key)
             here, others = (
                 family.versions.get(family.local_version_id),
                 [each.id for each in family.newest_remote_versions],
@@ -403,11 +412,11 @@ class ProgramSharing:
         return file.name if file is not None else version.program
 
 
-def _holders(desks: Sequence[MachineState]) -> dict[str, tuple[str, ...]]:
+def _holders(desks: Sequence[PublishedMachineState]) -> dict[str, tuple[str, ...]]:
     found: dict[str, set[str]] = {}
     for desk in desks:
-        for version in desk.has.values():
-            found.setdefault(version, set()).add(desk.desk)
+        for version in desk.version_ids.values():
+            found.setdefault(version, set()).add(desk.machine_name)
     return {version: tuple(sorted(names)) for version, names in found.items()}
 
 

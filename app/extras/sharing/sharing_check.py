@@ -9,7 +9,7 @@ from core.extras.sharing.sharing_table import SharingTable
 from core.machine.machine_model import Machine
 
 
-def check_sharing(machine: Machine, report: CheckResults) -> None:
+def check_sharing(machine: Machine, results: CheckResults) -> None:
     """Add a row that shows whether the shared location responds and whether it is set up."""
     table = machine.hardware.find_driver_table(SharingTable)
     if table is None:
@@ -18,10 +18,10 @@ def check_sharing(machine: Machine, report: CheckResults) -> None:
     try:
         found = place.read_contents({})
     except SharingError as error:
-        report.rows.append(CheckRow("sharing", place.name, "no answer", str(error)))
-        report.faults.append(str(error))
+        results.rows.append(CheckRow("sharing", place.name, "no answer", str(error)))
+        results.faults.append(str(error))
     else:
-        desks = ", ".join(sorted(each.desk for each in found.machine_states)) or (
+        desks = ", ".join(sorted(each.machine_name for each in found.machine_states)) or (
             "no control shares programs yet"
         )
-        report.rows.append(CheckRow("sharing", place.name, "ok", desks))
+        results.rows.append(CheckRow("sharing", place.name, "ok", desks))

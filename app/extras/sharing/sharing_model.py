@@ -74,9 +74,9 @@ class RemoteVersionArchive:
 
     sharing: ProgramSharing
 
-    def find_remote_versions(self, key: str) -> Sequence[SharedVersion]:
+    def find_remote_versions(self, program_key: str) -> Sequence[SharedVersion]:
         """Return the newest versions that this machine does not have."""
-        return self.sharing.last_result.programs.get(key, ProgramVersions()).newest_remote_versions
+        return self.sharing.last_result.programs.get(program_key, ProgramVersions()).newest_remote_versions
 
     def versions(self, name: str) -> Sequence[VersionRow]:
         """Return the versions with their authors and the machines that have them."""
@@ -108,14 +108,14 @@ class SharingModel:
     """Model of the SHARED PROGRAMS page.
 
     ``sharing`` is None if no shared location is configured. ``synchronize_now`` starts a synchronization on
-    the sharing thread. ``get_waiting_time`` returns the time in seconds for which the thread has waited for
+    the sharing thread. ``get_waiting_time_s`` returns the time in seconds for which the thread has waited for
     the location.
     """
 
     desk: Desk
     sharing: ProgramSharing | None = None
     synchronize_now: Callable[[], None] = lambda: None
-    get_waiting_time: Callable[[], float] = lambda: 0.0
+    get_waiting_time_s: Callable[[], float] = lambda: 0.0
     selected_row: int = 0
     worker: LatestRequestWorker = field(default_factory=lambda: LatestRequestWorker("sharing-page"))
     remote_versions: RemoteVersions = field(init=False)
@@ -175,7 +175,7 @@ class SharingModel:
 
         This method is called once per frame.
         """
-        self.worker.poll()
+        self.worker.deliver_results()
         self.selected_row = max(0, min(self.selected_row, len(self.last_result.programs) - 1))
         key = self.selected_program[0] if self.selected_program is not None else ""
         now = self.selected_program[1] if self.selected_program is not None else None
@@ -183,7 +183,7 @@ class SharingModel:
             return
         self._seen = now, key
         sharing = self.sharing
-        self.worker.enqueue(
+        self.worker.enqueue_work(
             lambda: decode_text(sharing.read_local_text(key)),
             lambda text: self.remote_versions.open_history(key, text),
             self.desk.show_refusal,
@@ -220,7 +220,7 @@ class SharingModel:
 
     def _silence(self) -> str:
         """Return a message if the location has not responded for a long time, or an empty string."""
-        seconds = self.get_waiting_time()
+        seconds = self.get_waiting_time_s()
         if self.sharing is None or seconds < _PATIENCE:
             return ""
         words = tr("{name}: NO RESPONSE FOR {seconds} S. PROGRAMS STAY LOCAL FOR NOW")
@@ -234,7 +234,7 @@ class SharingModel:
         if shown is None:
             return TableRow((NO_VALUE,) * 5)
         on = ", ".join(self.last_result.find_machines_with(shown.id)) or NO_VALUE
-        saved = format_local_time(shown.saved, seconds=False)
+        saved = format_local_time(shown.saved, with_seconds=False)
         return TableRow(((here or shown).program, words, shown.desk, saved, on), state != "same", tone)
 
     def prompt_text(self) -> str:
@@ -341,7 +341,7 @@ class SharingModel:
             self.desk.user_access.persistence.log_change(change, who)
             self.synchronize_now()
 
-        self.worker.enqueue(work, done, self.desk.show_refusal)
+        self.worker.enqueue_work(work, done, self.desk.show_refusal)
 
     def _find_use_refusal(self, key: str) -> str:
         """Return the reason why a program must not be replaced now, or an empty string."""

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 MACHINE_ID_FILE = "sharing-id"
 
 
-def make_sharing(machine: Machine, store: Callable[[], Store]) -> ProgramSharing | None:
+def make_sharing(machine: Machine, get_store: Callable[[], Store]) -> ProgramSharing | None:
     """Return the program sharing of a machine, or None if the machine file has no [sharing] table.
 
     Raises CommandError if the machine id cannot be stored.
@@ -42,7 +42,11 @@ def make_sharing(machine: Machine, store: Callable[[], Store]) -> ProgramSharing
 
     folder = find_data_folder()
     return ProgramSharing(
-        make_location(table), table.desk or machine.name, read_machine_id(folder), folder / "programs", store
+        make_location(table),
+        table.desk or machine.name,
+        read_machine_id(folder),
+        folder / "programs",
+        get_store,
     )
 
 
@@ -83,12 +87,12 @@ def start_sharing(desk: Desk, journal: Journal) -> Callable[[], None] | None:
     from app.extras.sharing.sharing import SharingThread
     from app.extras.sharing.sharing_model import SharingModel
 
-    model = desk.page_registry.find(SharingModel)
+    model = desk.page_registry.find_model(SharingModel)
     if model is None or model.sharing is None:
         return None
     result_handler = SharingResultHandler(desk, journal)
     thread = SharingThread(model.sharing, table.look, result_handler.handle_result)
-    model.synchronize_now, model.get_waiting_time = thread.synchronize_now, thread.get_waiting_time
+    model.synchronize_now, model.get_waiting_time_s = thread.synchronize_now, thread.get_waiting_time_s
     thread.start()
     return thread.close
 

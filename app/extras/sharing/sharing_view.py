@@ -17,7 +17,7 @@ from app.screen.page_base import KeyActions, PageHost
 from app.screen.table_panel import ListPage, TablePanel
 from core.executor.snapshot import Snapshot
 
-LIST_HEIGHT_SHARE = 0.5  # ratio of the height
+LIST_HEIGHT_RATIO = 0.5  # ratio of the height
 
 
 class SharedProgramsPage(ListPage):
@@ -33,22 +33,22 @@ class SharedProgramsPage(ListPage):
         self.versions.title = "VERSIONS ON OTHER CONTROLS"
         self.versions.show()
 
-    def function_keys(self) -> Mapping[str, FunctionKey]:
+    def make_function_keys(self) -> Mapping[str, FunctionKey]:
         """Return the function keys of the model."""
         return self.model.function_keys()
 
-    def key_labels(self) -> tuple[str, ...]:
+    def make_key_labels(self) -> tuple[str, ...]:
         """Return the labels of the function keys of the model and of the scroll keys."""
-        return self.make_labels({"F6": "UP", "F8": "DOWN"}, self.function_keys())
+        return self.make_function_key_labels({"F6": "UP", "F8": "DOWN"}, self.make_function_keys())
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of the function keys."""
-        keys = self.function_keys()
+        keys = self.make_function_keys()
         scroll = {"F6": partial(self._scroll, -1), "F8": partial(self._scroll, 1)}
         return {**scroll, **{name: partial(self._do, name) for name in keys}}
 
     def _do(self, name: str) -> None:
-        self.function_keys()[name].action()
+        self.make_function_keys()[name].action()
 
     def _scroll(self, pages: int) -> None:
         self.versions.scroll_by(pages * self.versions.rows)
@@ -64,7 +64,7 @@ class SharedProgramsPage(ListPage):
 
     def resizeEvent(self, _event: QResizeEvent) -> None:
         """Arrange the list above the comparison."""
-        gap = max(4, round(0.7 * self.theme.u))
-        high = round(LIST_HEIGHT_SHARE * (self.height() - gap))
+        gap = max(4, round(0.7 * self.theme.unit_px))
+        high = round(LIST_HEIGHT_RATIO * (self.height() - gap))
         self.table.setGeometry(0, 0, self.width(), high)
         self.versions.setGeometry(0, high + gap, self.width(), self.height() - high - gap)

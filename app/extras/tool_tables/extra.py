@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from core.json_keys import JsonOutput
 
 
-class ToolTables(OptionalFeature):
+class ToolTablesExtra(OptionalFeature):
     """Optional feature with the command ``turndesk tools``."""
 
     subcommands = {
@@ -20,9 +20,9 @@ class ToolTables(OptionalFeature):
 
     def list_json_outputs(self) -> Mapping[str, Sequence[JsonOutput]]:
         """Return the JSON output of the tool table import, which follows ``offsets history --json``."""
-        from app.extras.tool_tables.import_command import IMPORT
+        from app.extras.tool_tables.import_command import IMPORT_OUTPUT
 
-        return {"offsets history --json": (IMPORT,)}
+        return {"offsets history --json": (IMPORT_OUTPUT,)}
 
 
-EXTRA = ToolTables()
+EXTRA = ToolTablesExtra()

@@ -21,15 +21,15 @@ from app.desk.command_errors import EXIT_OK, CommandError
 from app.desk.toml_file import describe_unknown_key, raise_mistakes
 from app.extras.tool_tables.import_plan import (
     FieldChange,
-    Status,
+    ImportStatus,
     StoredTools,
     ToolPlan,
-    changes_of,
+    collect_changes,
 )
 from core.access.access_table import ProtectedChange
 from core.extras.tool_tables.csv_columns import FIELD_NAMES
-from core.extras.tool_tables.table_file import format_of, read_table
-from core.extras.tool_tables.tool_entry import Reading, ToolTable, ToolTableError
+from core.extras.tool_tables.table_file import find_format, read_table
+from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTable, ToolTableError
 from core.json_keys import JsonOutput, declare_keys
 from core.message import Message
 from core.store.offsets import offset_tables
@@ -56,8 +56,8 @@ def import_table(args: argparse.Namespace) -> int:
         )
         word, table = _read(Path(args.file), args)
         stored = StoredTools(store.offsets.tool_offsets.read_rows(), store.offsets.tool_shapes.read_rows())
-        plans = stored.plans(table, positions=not args.no_positions)
-        raise_mistakes(Path(args.file), list(stored.mistakes(plans)))
+        plans = stored.make_plans(table, imports_positions=not args.no_positions)
+        raise_mistakes(Path(args.file), list(stored.find_mistakes(plans)))
         if not args.json:
             sys.stdout.writelines(f"{line}\n" for line in _preview(table, plans))
         wanted = _confirmed(plans, args) if may_save else ()
@@ -83,9 +83,9 @@ def _read(path: Path, args: argparse.Namespace) -> tuple[str, ToolTable]:
 
     Raises CommandError.
     """
-    options = Reading(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
+    options = ReadingOptions(args.unit, args.x, _columns(args.columns), 0, _only(args.only))
     try:
-        word = args.format or format_of(path.name)
+        word = args.format or find_format(path.name)
         return word, read_table(path, word, options)
     except ToolTableError as error:
         raise CommandError(str(error), error.code) from error
@@ -141,8 +141,8 @@ def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[T
 
     Raises CommandError if there is no terminal for the question.
     """
-    new = tuple(plan for plan in plans if plan.status is Status.NEW)
-    changed = tuple(plan for plan in plans if plan.status is Status.CHANGED)
+    new = tuple(plan for plan in plans if plan.status is ImportStatus.NEW)
+    changed = tuple(plan for plan in plans if plan.status is ImportStatus.CHANGED)
     if args.yes:
         if changed and not args.replace:
             sys.stderr.write(
@@ -169,7 +169,7 @@ def _confirmed(plans: tuple[ToolPlan, ...], args: argparse.Namespace) -> tuple[T
 
 
 def _names(plans: Iterable[ToolPlan]) -> str:
-    return ", ".join(f"T{plan.number}" for plan in plans)
+    return ", ".join(f"T{plan.tool_number}" for plan in plans)
 
 
 def _answer(question: str) -> bool:
@@ -186,7 +186,7 @@ def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], w
 
     Raises CommandError if the user does not confirm a suspicious change.
     """
-    changes = changes_of(plans)
+    changes = collect_changes(plans)
     confirm_changes(store, args, changes)
     reason = ChangeReason(args.why or Message("import {file}", file=Path(args.file).name), who)
     store.write(lambda connection: offset_tables.change_rows(connection, changes, reason)).result()
@@ -198,24 +198,24 @@ def _save(store: Store, args: argparse.Namespace, plans: tuple[ToolPlan, ...], w
 def _preview(table: ToolTable, plans: Iterable[ToolPlan]) -> Iterator[str]:
     """Yield one line for each changed field and for each note."""
     for plan in plans:
-        name = f"T{plan.number}"
-        if plan.status is Status.UNCHANGED:
+        name = f"T{plan.tool_number}"
+        if plan.status is ImportStatus.UNCHANGED:
             yield Message("{name} is unchanged", name=name)
-        elif plan.status is Status.LEFT_OUT:
-            yield Message("{name} is not imported ({place})", name=name, place=plan.place)
-        elif plan.status is Status.NEW:
-            yield Message("{name} is new ({place})", name=name, place=plan.place)
+        elif plan.status is ImportStatus.SKIPPED:
+            yield Message("{name} is not imported ({place})", name=name, place=plan.file_position)
+        elif plan.status is ImportStatus.NEW:
+            yield Message("{name} is new ({place})", name=name, place=plan.file_position)
         else:
-            yield Message("{name} exists and changes ({place})", name=name, place=plan.place)
+            yield Message("{name} exists and changes ({place})", name=name, place=plan.file_position)
         yield from (f"  {_change(each)}" for each in plan.changes)
         yield from (Message("  note: {note}", note=note) for note in plan.notes)
     yield from table.notes
 
 
 def _change(change: FieldChange) -> str:
-    field = FIELDS_BY_KIND[change.kind][change.name]
-    old = "not set" if change.old in {None, ""} else _shown(field.field_type, change.old)
-    return f"{field.label}: {old} → {_shown(field.field_type, change.new)}"
+    field = FIELDS_BY_KIND[change.offset_kind][change.field_name]
+    old = "not set" if change.old_value in {None, ""} else _shown(field.field_type, change.old_value)
+    return f"{field.label}: {old} → {_shown(field.field_type, change.new_value)}"
 
 
 def _shown(sort: FieldType, value: FieldValue | None) -> str:
@@ -233,8 +233,8 @@ def _write_json(
 ) -> None:
     tools = [
         {
-            "number": plan.number,
-            "place": plan.place,
+            "number": plan.tool_number,
+            "place": plan.file_position,
             "status": plan.status.value,
             "saved": plan in saved,
             "changes": [_change_json(each) for each in plan.changes],
@@ -247,15 +247,15 @@ def _write_json(
 
 
 def _change_json(change: FieldChange) -> dict[str, object]:
-    is_length = FIELDS_BY_KIND[change.kind][change.name].field_type is FieldType.LENGTH
+    is_length = FIELDS_BY_KIND[change.offset_kind][change.field_name].field_type is FieldType.LENGTH
     values = [
         convert_to_inches(value) if is_length and value is not None and not isinstance(value, str) else value
-        for value in (change.old, change.new)
+        for value in (change.old_value, change.new_value)
     ]
-    return {"table": change.kind.value, "field": change.name, "old": values[0], "new": values[1]}
+    return {"table": change.offset_kind.value, "field": change.field_name, "old": values[0], "new": values[1]}
 
 
-IMPORT = JsonOutput(
+IMPORT_OUTPUT = JsonOutput(
     "tools import FILE --json",
     "One object. Lengths are in inches, X is a radius. Without `--yes`, nothing is imported.",
     declare_keys(

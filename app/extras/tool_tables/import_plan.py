@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 _NEAR = 1e-6  # mm, the rounding of a file with six decimals
 
 
-class Status(StrEnum):
+class ImportStatus(StrEnum):
     """Status of an imported tool compared with the stored tool of the same number."""
 
     NEW = "new"
     CHANGED = "changed"
     UNCHANGED = "unchanged"
-    LEFT_OUT = "left-out"
+    SKIPPED = "left-out"
 
 
 class FieldChange(NamedTuple):
@@ -35,34 +35,34 @@ class FieldChange(NamedTuple):
     The old value is None if the field was not set.
     """
 
-    kind: OffsetKind
-    name: str
-    old: FieldValue | None
-    new: FieldValue
+    offset_kind: OffsetKind
+    field_name: str
+    old_value: FieldValue | None
+    new_value: FieldValue
 
 
 @dataclass(frozen=True, slots=True)
 class ToolPlan:
     """Planned changes of one tool, with its place in the file and notes for the user."""
 
-    number: int
-    place: str
-    status: Status
+    tool_number: int
+    file_position: str
+    status: ImportStatus
     changes: tuple[FieldChange, ...]
     notes: tuple[str, ...]
 
-    def values(self, kind: OffsetKind) -> dict[str, FieldValue]:
+    def get_new_values(self, kind: OffsetKind) -> dict[str, FieldValue]:
         """Return the new values of one offset table by field."""
-        return {each.name: each.new for each in self.changes if each.kind is kind}
+        return {each.field_name: each.new_value for each in self.changes if each.offset_kind is kind}
 
 
-Changes = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
+ChangesByTable = Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]]
 
 
-def changes_of(plans: tuple[ToolPlan, ...]) -> Changes:
+def collect_changes(plans: tuple[ToolPlan, ...]) -> ChangesByTable:
     """Return the new values of all plans by offset table and tool."""
     kinds = {
-        kind: {p.number: v for p in plans if (v := p.values(kind))}
+        kind: {p.tool_number: v for p in plans if (v := p.get_new_values(kind))}
         for kind in (OffsetKind.TOOL, OffsetKind.SHAPE)
     }
     return {kind: rows for kind, rows in kinds.items() if rows}
@@ -75,31 +75,31 @@ class StoredTools:
     tools: Mapping[int, ToolRow]
     shapes: Mapping[int, ShapeRow]
 
-    def plans(self, table: ToolTable, *, positions: bool) -> tuple[ToolPlan, ...]:
+    def make_plans(self, table: ToolTable, *, imports_positions: bool) -> tuple[ToolPlan, ...]:
         """Return the plan for each tool of an imported table.
 
         If ``positions`` is not set, X and Z are not imported.
         """
-        return tuple(self._plan(entry, positions=positions) for entry in table.tools.values())
+        return tuple(self._plan(entry, positions=imports_positions) for entry in table.tools.values())
 
     def _plan(self, entry: ToolEntry, *, positions: bool) -> ToolPlan:
         offset, notes = self._offset(entry, positions=positions)
         old_tool, old_shape = self.tools.get(entry.number), self.shapes.get(entry.number)
-        shape = dict(entry.shape)
+        shape = dict(entry.shape_values)
         changes = (
             *_differences(OffsetKind.TOOL, old_tool, offset),
             *_differences(OffsetKind.SHAPE, old_shape, shape),
         )
         known = old_tool is not None or old_shape is not None
         if changes:
-            status = Status.CHANGED if known else Status.NEW
+            status = ImportStatus.CHANGED if known else ImportStatus.NEW
         else:
-            status = Status.UNCHANGED if known else Status.LEFT_OUT
-        return ToolPlan(entry.number, entry.place, status, changes, (*entry.notes, *notes))
+            status = ImportStatus.UNCHANGED if known else ImportStatus.SKIPPED
+        return ToolPlan(entry.number, entry.position_text, status, changes, (*entry.notes, *notes))
 
     def _offset(self, entry: ToolEntry, *, positions: bool) -> tuple[dict[str, FieldValue], list[str]]:
         """Return the offset values that can be stored, and notes about the other values."""
-        offset, notes = dict(entry.offset), []
+        offset, notes = dict(entry.offset_values), []
         if not positions and {"x", "z"} & offset.keys():
             notes.append("X and Z are not imported")
             offset = {name: value for name, value in offset.items() if name not in {"x", "z"}}
@@ -116,18 +116,22 @@ class StoredTools:
             offset = {}
         return offset, notes
 
-    def mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
+    def find_mistakes(self, plans: tuple[ToolPlan, ...]) -> Iterator[CodedError]:
         """Yield an error for each contradiction in the tool shapes that would result from the plans."""
         from app.desk.stored_shapes import find_mistakes
 
         for plan in plans:
-            shape = replace_fields(self.shapes.get(plan.number, ShapeRow()), plan.values(OffsetKind.SHAPE))
-            tool = replace_fields(self.tools.get(plan.number, ToolRow()), plan.values(OffsetKind.TOOL))
+            shape = replace_fields(
+                self.shapes.get(plan.tool_number, ShapeRow()), plan.get_new_values(OffsetKind.SHAPE)
+            )
+            tool = replace_fields(
+                self.tools.get(plan.tool_number, ToolRow()), plan.get_new_values(OffsetKind.TOOL)
+            )
             for wrong in find_mistakes(shape, tool) if shape.kind and plan.changes else ():
                 text = Message(
                     "{place} (T{number}): {field}: {text}",
-                    place=plan.place,
-                    number=plan.number,
+                    place=plan.file_position,
+                    number=plan.tool_number,
                     field=wrong.field_name,
                     text=wrong.message,
                 )

@@ -15,7 +15,7 @@ from app.desk.translation import tr
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import ScreenTheme, ThemedPainter, draw_state_symbol
 from app.screen.table_panel import RowPanel
-from core.alarms import CATALOGUE, Reaction
+from core.alarms import CATALOG, Reaction
 from core.executor.snapshot import Alarm
 from core.message import Message, join_messages
 
@@ -52,18 +52,20 @@ class AlarmNotice(Panel):
             self._draw_message(painter)
 
     def _head(self, painter: ThemedPainter, tone: Tone, text: str) -> QRectF:
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), tone.value)
         painter.fill_rect(self.find_full_area().adjusted(0.5 * u, u, -0.5 * u, -0.5 * u), "panel")
         head = QRectF(0, 0, self.width(), 5.6 * u)
         painter.fill_rect(head, tone.value)
-        draw_state_symbol(painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, look.color("on_state"))
+        draw_state_symbol(
+            painter, QRectF(1.6 * u, 1.5 * u, 2.6 * u, 2.6 * u), tone, look.get_color("on_state")
+        )
         painter.draw_text_line(head.adjusted(5.6 * u, 0, -u, 0), text, 2.6, "on_state", margin=1.4)
         return self.find_full_area().adjusted(2 * u, 6.8 * u, -2 * u, -1.4 * u)
 
     def _draw_message(self, painter: ThemedPainter) -> None:
         room = self._head(painter, Tone.PAUSE, "PROGRAM STOP")
-        u = self.theme.u
+        u = self.theme.unit_px
         foot = QRectF(room.x(), room.bottom() - 3.4 * u, room.width(), 3.4 * u)
         room.setBottom(foot.top() - 0.6 * u)
         self._draw_wrapped(painter, room, self.message, 6.0)
@@ -92,7 +94,7 @@ class AlarmNotice(Panel):
 
     def _draw_more(self, painter: ThemedPainter, area: QRectF, more: tuple[Alarm, ...]) -> QRectF:
         """Draw the other alarms in one line at the bottom, and return the rectangle that remains."""
-        u = self.theme.u
+        u = self.theme.unit_px
         foot = QRectF(area.x(), area.bottom() - 2.6 * u, area.width(), 2.6 * u)
         text = Message(
             "OTHER ALARMS: {number}", number="  ·  ".join(f"{each.number} {tr(each.text)}" for each in more)
@@ -101,13 +103,13 @@ class AlarmNotice(Panel):
         return area.adjusted(0, 0, 0, -3.0 * u)
 
     def _labelled(self, painter: ThemedPainter, room: QRectF, label: str, text: str) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.draw_text_line(QRectF(room.x(), room.y(), room.width(), 2.0 * u), label, 1.6, "soft")
         self._draw_wrapped(painter, room.adjusted(0, 2.1 * u, 0, 0), text, 2.3)
 
     def _draw_wrapped(self, painter: ThemedPainter, area: QRectF, text: str, size: float) -> None:
         """Draw a wrapped text that is at most ``size`` units high, and small enough to fit."""
-        painter.setPen(self.theme.color("text"))
+        painter.setPen(self.theme.get_color("text"))
         while True:
             painter.setFont(self.theme.make_font(size, is_bold=True))
             flags = int(WRAP_ALIGNMENT.value) | WORD_WRAP
@@ -165,7 +167,7 @@ class AlarmList(RowPanel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the logged alarms and stops, or a message if the log is empty."""
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.inside()
         if not self.logged_stops:
             room.setHeight(3 * u)
@@ -184,10 +186,8 @@ class AlarmList(RowPanel):
         self._draw_pages(painter, foot)
 
     def _entry(self, painter: ThemedPainter, row: QRectF, entry: LoggedStop) -> None:
-        u, alarm = self.theme.u, entry.alarm
-        grave = (
-            CATALOGUE[alarm.code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP} or alarm.code == "estop"
-        )
+        u, alarm = self.theme.unit_px, entry.alarm
+        grave = CATALOG[alarm.code].reaction in {Reaction.DRIVES_OFF, Reaction.STOP} or alarm.code == "estop"
         left, wide = row.x() + _WHEN * u, row.width() - _WHEN * u
         row.setLeft(row.left() + 0.8 * u)
         if entry.recording_name:
@@ -215,7 +215,7 @@ class AlarmList(RowPanel):
 
         A key is drawn only if there are such entries.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         for number, (label, by) in enumerate((("NEWER", -self.rows), ("OLDER", self.rows))):
             possible = self.first_row > 0 if by < 0 else self.first_row + self.rows < len(self.logged_stops)
             if not possible:

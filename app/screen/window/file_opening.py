@@ -36,7 +36,7 @@ class FileOpening(QObject):
         """Handle the drag events of the window, and pass on all other events."""
         if event.type() not in _DRAGS or not isinstance(event, QDropEvent):
             return False
-        files = files_of(event.mimeData())
+        files = list_dropped_paths(event.mimeData())
         if not files or not event.possibleActions() & Qt.DropAction.CopyAction:
             event.ignore()  # after a move, the file manager would delete the file
             return True
@@ -68,6 +68,6 @@ class FileOpening(QObject):
         self.open_files([path])
 
 
-def files_of(data: QMimeData) -> list[Path]:
+def list_dropped_paths(data: QMimeData) -> list[Path]:
     """Return the local files and folders that were dropped."""
     return [Path(url.toLocalFile()) for url in data.urls() if url.isLocalFile()]

@@ -20,7 +20,7 @@ class InputTimes:
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self.clock = clock
-        self.touch_time = self.clock()  # Time of the last key press or touch.
+        self.input_time_s = self.clock()  # Time of the last key press or touch.
         self.on_wake: Callable[[], None] = lambda: None  # Called at each key press or touch.
         self.stall_duration_s = 0.0  # Duration of the last stall in seconds.
         self._alive: float | None = None
@@ -40,10 +40,10 @@ class InputTimes:
         self._lives(self.clock())
         self._frames += 1
 
-    def note_input(self) -> None:
+    def record_input(self) -> None:
         """Record an input event before its time is checked."""
-        self.touch_time = self.clock()
-        self._lives(self.touch_time)
+        self.input_time_s = self.clock()
+        self._lives(self.input_time_s)
         self.on_wake()
 
     def _lives(self, now: float) -> None:
@@ -75,11 +75,11 @@ class InputTimes:
         at = self.find_event_time(time_ms, event_source)
         return at <= self._behind or not self.is_screen_seen or self.clock() - at > STALL_TIME_S
 
-    def note_dropped(self, time_ms: int, event_source: str = "") -> None:
+    def record_dropped_answer(self, time_ms: int, event_source: str = "") -> None:
         """Record that an answer was dropped, so that the presses that follow are dropped, too."""
         self._dropped = max(self._dropped, self.find_event_time(time_ms, event_source))
 
-    def follows_dropped(self, time_ms: int, event_source: str = "") -> bool:
+    def follows_dropped_answer(self, time_ms: int, event_source: str = "") -> bool:
         """Return whether a press follows a dropped answer in the same stall or without a pause of 1 s."""
         at = self.find_event_time(time_ms, event_source)
         same_stall = self._behind - self.stall_duration_s < self._dropped and at <= self._behind

@@ -13,7 +13,7 @@ CTRL_MODIFIER = Qt.KeyboardModifier.ControlModifier
 SHIFT_MODIFIER = Qt.KeyboardModifier.ShiftModifier
 NO_MODIFIER = Qt.KeyboardModifier.NoModifier
 
-PALM_KEYS = {Key.Key_F11: "left", Key.Key_F12: "right"}
+PALM_BUTTON_KEYS = {Key.Key_F11: "left", Key.Key_F12: "right"}
 
 # Name of a key with these modifiers. Keypad and Shift are distinguished only where necessary.
 KEY_NAMES: dict[tuple[int, Qt.KeyboardModifier], str] = {
@@ -78,7 +78,7 @@ YES_KEY = "Yes"  # The key that means yes, and its touch target on the prompt li
 _SIGN_KEYS = {Key.Key_Slash, Key.Key_Plus, Key.Key_Minus, Key.Key_Comma, Key.Key_Period}
 
 
-def name_key(key: int, modifiers: Qt.KeyboardModifier) -> str:
+def find_key_name(key: int, modifiers: Qt.KeyboardModifier) -> str:
     """Return the name of a pressed key, or an empty string if the key has no function."""
     held = modifiers & (
         CTRL_MODIFIER | SHIFT_MODIFIER | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier

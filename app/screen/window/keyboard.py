@@ -28,8 +28,8 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QApplication, QLineEdit, QPlainTextEdit, QWidget
 
 from app.desk.late_presses import StartingAction
+from app.desk.stop_keys.key_watcher_client import KeyWatcherClient, OpenStopChannel
 from app.desk.stop_keys.stop_records import SOURCE_ESC, FocusRecord, StopKind, make_press_number
-from app.desk.stop_keys.watched_keys import KeyWatcherClient, OpenStopChannel
 from app.screen.window.input_times import InputTimes
 from app.screen.window.x_server import XServer, open_x_server
 
@@ -204,18 +204,18 @@ class KeyboardFilter(QObject):
         self._stops &= self._down.keys()
         return bool(self._stops)
 
-    def forget_pressed(self) -> None:
+    def ignore_pressed_keys(self) -> None:
         """Ignore the pressed keys until they are released, because the window or page has changed."""
         self._dead |= self._down.keys()
 
-    def read_pressed(self) -> None:
+    def read_pressed_keys(self) -> None:
         """Read which keys are down after the window has received the keyboard focus.
 
         These keys were pressed in another window, and are ignored until they are released.
         """
         if self._server is None:
             return
-        held = self._server.read_keys()
+        held = self._server.read_pressed_keys()
         self._down = {code: self._down.get(code, Key.Key_Shift) for code in held}
         self._dead = set(held)
 
@@ -235,7 +235,7 @@ class KeyboardFilter(QObject):
             window.installEventFilter(self)  # A menu or a dialog has its own window for key events.
         if self._server is None or not self._down:
             return
-        for code in self._down.keys() - self._server.read_keys():
+        for code in self._down.keys() - self._server.read_pressed_keys():
             key, dead = self._down.pop(code, None), code in self._dead
             self._dead.discard(code)
             self._known_up[code] = self.input_times.clock()
@@ -268,7 +268,7 @@ class KeyboardFilter(QObject):
 
     def _read_event_time(self, event: QInputEvent) -> None:
         """Record the time of an event, and whether it is late."""
-        self.input_times.note_input()
+        self.input_times.record_input()
         self._stamp, self._whose = event.timestamp(), _find_clock(event)
         self._late = self.input_times.was_delayed(self._stamp, self._whose)
         self._behind.set_late(is_late=self._late)
@@ -336,7 +336,7 @@ class KeyboardFilter(QObject):
         shift = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
         if self._server is None or not shift or event.text():
             return False
-        return not (self._shifts if self._late else self._server.read_keys() & _SHIFT_CODES)
+        return not (self._shifts if self._late else self._server.read_pressed_keys() & _SHIFT_CODES)
 
     def _released(self, event: QKeyEvent, code: int) -> bool:
         if event.isAutoRepeat():
@@ -405,15 +405,15 @@ class KeyboardFilter(QObject):
         return key_of_stop and not self._behind.has_text_field()
 
     def _relies_on_dropped(self) -> bool:
-        return self.input_times.follows_dropped(self._stamp, self._whose)
+        return self.input_times.follows_dropped_answer(self._stamp, self._whose)
 
-    def note_answer_dropped(self) -> None:
+    def record_answer_dropped(self) -> None:
         """Record that the current press was an answer to a question and was dropped."""
-        self.input_times.note_dropped(self._stamp, self._whose)
+        self.input_times.record_dropped_answer(self._stamp, self._whose)
 
     def _forget(self, starting: StartingAction) -> bool:
         if starting is StartingAction.FOLLOWING_KEY:
-            self.note_answer_dropped()
+            self.record_answer_dropped()
         self._behind.report_dropped(starting)
         return True
 

@@ -29,10 +29,10 @@ from app.screen.color_palettes import PALETTES
 from app.screen.page_table import AUTOMATIC, PagePreloader
 from app.screen.panel import TouchPanel
 from app.screen.screen_theme import ScreenTheme, style_application, use_language
-from app.screen.text_sizes import panel_size
+from app.screen.text_sizes import make_panel_size
 from app.screen.window.input_times import InputTimes
 from app.screen.window.key_actions import make_key_actions
-from app.screen.window.key_table import PALM_KEYS, REPEATING_KEYS, name_key
+from app.screen.window.key_table import PALM_BUTTON_KEYS, REPEATING_KEYS, find_key_name
 from app.screen.window.keyboard import KeyboardFilter, find_key_code
 from app.screen.window.typed_keys import TypedKeys
 from app.screen.window.window_frame import ScreenContext, WindowFrame
@@ -42,8 +42,8 @@ from core.message import Message
 
 FRAME_MS = 16  # Maximum 60 frames per second.
 IDLE_FRAME_MS = 48  # Interval at rest without recent input, if something new was shown.
-REST_FRAME_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
-IDLE_AFTER_S = 2.0  # Seconds.
+AT_REST_FRAME_MS = 96  # Interval if nothing new was shown. A change at rest wakes the window.
+IDLE_DELAY_S = 2.0  # Seconds.
 
 
 class MainWindow(QWidget):
@@ -84,7 +84,7 @@ class MainWindow(QWidget):
         """Show the model on the screen, and start polling it."""
         self.frame = WindowFrame(self.theme, desk, self.press_key, self)
         # It belongs to another window of this model.
-        if (earlier := desk.page_registry.find(PagePreloader)) is not None:
+        if (earlier := desk.page_registry.find_model(PagePreloader)) is not None:
             earlier.close()
         self.page_preloader = PagePreloader(desk, self.frame.find_page)
         desk.page_registry.attach_model(self.page_preloader)
@@ -100,7 +100,7 @@ class MainWindow(QWidget):
         late = desk.window_state.late_presses
         late.report_names, late.on_answer_dropped = (
             self._show_dropped,
-            self.keyboard_filter.note_answer_dropped,
+            self.keyboard_filter.record_answer_dropped,
         )
         self.frame.setGeometry(self.rect())
         self.refresh()
@@ -119,7 +119,7 @@ class MainWindow(QWidget):
             return
         self.set_late(is_late=False)
         changed = not known or self._is_animating(frame) or frame.has_changed()
-        if changed or frame.is_outdated():
+        if changed or frame.is_refresh_due():
             self.refresh()
         if not self._faces or self._faces[-1][1] != frame.screen_context:
             self._faces.append((self.input_times.clock(), frame.screen_context))
@@ -127,7 +127,7 @@ class MainWindow(QWidget):
         if self.page_preloader is not None:
             self.page_preloader.run_slice()
         self._pace(
-            FRAME_MS if self._is_animating(frame) else IDLE_FRAME_MS if changed or makes else REST_FRAME_MS
+            FRAME_MS if self._is_animating(frame) else IDLE_FRAME_MS if changed or makes else AT_REST_FRAME_MS
         )
 
     def _is_animating(self, frame: WindowFrame) -> bool:
@@ -136,7 +136,7 @@ class MainWindow(QWidget):
         return (
             not frame.is_at_rest
             or played
-            or self.input_times.clock() - self.input_times.touch_time < IDLE_AFTER_S
+            or self.input_times.clock() - self.input_times.input_time_s < IDLE_DELAY_S
         )
 
     def _wake_from_thread(self) -> None:
@@ -167,7 +167,7 @@ class MainWindow(QWidget):
         """Check which keys and buttons are really down for this page, and handle lost releases."""
         if self._page != frame.current_page.NAME:
             self._page = frame.current_page.NAME
-            self.keyboard_filter.forget_pressed()
+            self.keyboard_filter.ignore_pressed_keys()
         self.keyboard_filter.update()
         if (
             QApplication.mouseButtons() is not Qt.MouseButton.NoButton
@@ -182,10 +182,10 @@ class MainWindow(QWidget):
         Touch targets also call this.
         """
         frame = self.frame
-        action = (frame.key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
+        action = (frame.make_key_actions().get(key_name) if frame else None) or self._keys.get(key_name)
         if action is not None:
             if frame is not None:
-                frame.current_page.end_held_actions()
+                frame.current_page.stop_held_actions()
                 if key_name != "Esc":  # Esc removes the message itself.
                     frame.desk.prompt_answers.clear_message()
             action()
@@ -221,7 +221,7 @@ class MainWindow(QWidget):
         else:
             self.showMaximized()
 
-    def show_on(self, screen: QScreen) -> None:
+    def show_on_screen(self, screen: QScreen) -> None:
         """Show the window in a size that suits the screen.
 
         A small screen is filled completely. Otherwise the title bar of a window manager could push the
@@ -256,14 +256,14 @@ class MainWindow(QWidget):
         ``source`` names the key in the log.
         """
         if self.frame is not None:
-            self.frame.current_page.end_held_actions()
+            self.frame.current_page.stop_held_actions()
             self.frame.desk.start_feed_hold(source or SOURCE_SCREEN, press)
             self.refresh()
 
     def press_estop(self, press: int = 0) -> None:
         """Press the E-stop on any page, and in any field or question."""
         if self.frame is not None:
-            self.frame.current_page.end_held_actions()
+            self.frame.current_page.stop_held_actions()
             self.frame.desk.station_keys.press_estop(press)
             self.refresh()
 
@@ -344,7 +344,7 @@ class MainWindow(QWidget):
         screen = self.screen()
         if screen is not None:
             size, real = screen.size(), screen.physicalSize()
-            self.theme.screen = panel_size(size.width(), size.height(), real.width(), real.height())
+            self.theme.screen = make_panel_size(size.width(), size.height(), real.width(), real.height())
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         """Handle a key press.
@@ -359,14 +359,14 @@ class MainWindow(QWidget):
             return
         if (
             not event.isAutoRepeat()
-            and event.key() in PALM_KEYS
+            and event.key() in PALM_BUTTON_KEYS
             and not frame.automatic_page.file_prompt.isVisible()
         ):
-            self._palm(PALM_KEYS[Qt.Key(event.key())], down=True)
+            self._palm(PALM_BUTTON_KEYS[Qt.Key(event.key())], down=True)
             return
         if self.typed_keys.handle_typed(frame, event) or self.typed_keys.is_withheld(frame, event):
             return
-        name = name_key(find_key_code(event), event.modifiers())
+        name = find_key_name(find_key_code(event), event.modifiers())
         if (
             name
             and (name in REPEATING_KEYS or not event.isAutoRepeat())
@@ -378,8 +378,8 @@ class MainWindow(QWidget):
         """Release a palm button or a key of the page."""
         if self.frame is not None:
             self.frame.current_page.handle_key_release(event)
-        if not event.isAutoRepeat() and event.key() in PALM_KEYS:
-            self._palm(PALM_KEYS[Qt.Key(event.key())], down=False)
+        if not event.isAutoRepeat() and event.key() in PALM_BUTTON_KEYS:
+            self._palm(PALM_BUTTON_KEYS[Qt.Key(event.key())], down=False)
 
     def _palm(self, side: str, *, down: bool) -> None:
         if self.frame is not None:
@@ -398,7 +398,7 @@ class MainWindow(QWidget):
         if event.type() == QEvent.Type.ActivationChange:
             self._tell_keyboard()
             if self.isActiveWindow():
-                self.keyboard_filter.read_pressed()
+                self.keyboard_filter.read_pressed_keys()
             else:
                 self.release_all()
         super().changeEvent(event)
@@ -409,7 +409,7 @@ class MainWindow(QWidget):
 
     def release_all(self) -> None:
         """Release all keys, buttons and controls that are pressed."""
-        self.keyboard_filter.forget_pressed()
+        self.keyboard_filter.ignore_pressed_keys()
         if self.frame is not None:
             if self.frame.station_dock is not None:
                 self.frame.station_dock.release_all()

@@ -25,7 +25,7 @@ from app.screen.screen_theme import (
     draw_state_symbol,
     draw_text,
 )
-from app.screen.text_sizes import Role
+from app.screen.text_sizes import TextRole
 from core.message import Message, join_messages
 
 LATHE_ROW_COUNT = 3
@@ -53,7 +53,7 @@ class PositionPanel(Panel):
         if view is None:
             self.frame(painter, "POSITION")
             return
-        u = self.theme.u
+        u = self.theme.unit_px
         self.frame(painter, join_messages("  ·  ", (view.main_kind.value, view.unit, view.x_label)))
         self._heading(painter, view)
         room = QRectF(0, 3.0 * u, self.width(), self.height() - 3.6 * u)
@@ -66,23 +66,28 @@ class PositionPanel(Panel):
                 painter.fill_rect(line, "key")
 
     def _heading(self, painter: ThemedPainter, view: PositionReadout) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         place = QRectF(0, 1.8 * u, self.width() - 1.6 * u, 2.0 * u)
         painter.draw_text_line(place, view.second_kind.value, 1.5, "soft", at=ALIGN_RIGHT)
 
     def _row(self, painter: ThemedPainter, row: QRectF, axis: AxisReadout) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         share = self._find_row_share(row)
         painter.draw_text_line(
             QRectF(1.8 * u, row.y(), 5.6 * u, row.height()), axis.name, 5.6 * share, "accent"
         )
         if axis.diameter_mark:
             box = QRectF(7.4 * u, row.center().y() - 2.6 * u, 4.8 * u, 5.2 * u)
-            draw_x_mark(painter, box, axis.diameter_mark, 4.6, 0.4)
+            draw_x_symbol(painter, box, axis.diameter_mark, 4.6, 0.4)
         large = QRectF(13.2 * u, row.y(), 38.4 * u, row.height())
         plain = axis.is_homed and axis.is_known
         painter.draw_text_line(
-            large, axis.value, 7.0 * share, "text" if plain else "soft", at=ALIGN_RIGHT, role=Role.POSITION
+            large,
+            axis.value,
+            7.0 * share,
+            "text" if plain else "soft",
+            at=ALIGN_RIGHT,
+            role=TextRole.POSITION,
         )
         second_box = QRectF(52.4 * u, row.y(), self.width() - 54.0 * u, row.height())
         painter.draw_text_line(
@@ -100,17 +105,17 @@ class PositionPanel(Panel):
         A mill with five axes has less space per row than a lathe.
         """
         few = self.position_readout is None or len(self.position_readout.axes) <= LATHE_ROW_COUNT
-        return 1.0 if few else min(1.0, row.height() / (FULL_SIZE_ROW_HEIGHT * self.theme.u))
+        return 1.0 if few else min(1.0, row.height() / (FULL_SIZE_ROW_HEIGHT * self.theme.unit_px))
 
 
-def draw_x_mark(painter: ThemedPainter, box: QRectF, mark: str, size: float, line: float) -> None:
+def draw_x_symbol(painter: ThemedPainter, box: QRectF, symbol: str, size: float, line_width: float) -> None:
     """Draw the symbol of X, which is a filled Ø for a diameter or a hollow R for a radius.
 
     Sizes are in units.
     """
-    filled = mark == "Ø"
-    painter.draw_box(box, "mark", line, "mark" if filled else "")
-    painter.draw_text_line(box, mark, size, "on_mark" if filled else "mark", at=ALIGN_CENTER)
+    filled = symbol == "Ø"
+    painter.draw_box(box, "mark", line_width, "mark" if filled else "")
+    painter.draw_text_line(box, symbol, size, "on_mark" if filled else "mark", at=ALIGN_CENTER)
 
 
 # --- feed, spindle, tool and times --------------------------------------------------------------------
@@ -133,7 +138,7 @@ class ReadoutPanel(Panel):
 
         ``y`` and ``height`` are in units.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         return QRectF(1.4 * u, y * u, self.width() - 2.8 * u, height * u)
 
     def draw_label(
@@ -149,7 +154,7 @@ class ReadoutPanel(Panel):
         text: str,
         size: float,
         flags: Qt.AlignmentFlag = ALIGN_RIGHT,
-        role: Role = Role.TABLE,
+        role: TextRole = TextRole.TABLE,
     ) -> None:
         """Draw a value in bold, and make it smaller if its area is narrow."""
         painter.draw_text_line(rect, text, size, "text", at=flags, role=role)
@@ -159,7 +164,7 @@ class ReadoutPanel(Panel):
 
         A value other than 100 % is highlighted.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         plain = abs(fraction - 1.0) < 0.005
         figure = QRectF(rect.right() - 9 * u, rect.y(), 9 * u, rect.height())
         track = QRectF(rect.x(), rect.center().y() - 0.6 * u, rect.width() - 9.6 * u, 1.2 * u)
@@ -183,18 +188,27 @@ class FeedPanel(ReadoutPanel):
         if not isinstance(view, FeedReadout):
             return
         top = self.make_row(2.3, 4.8)
-        unit = QRectF(top.right() - 7.6 * self.theme.u, top.y(), 7.6 * self.theme.u, top.height())
+        unit = QRectF(top.right() - 7.6 * self.theme.unit_px, top.y(), 7.6 * self.theme.unit_px, top.height())
         self.draw_value(
-            painter, top.adjusted(0, 0, -8.2 * self.theme.u, 0), view.programmed_value, 4.2, role=Role.FEED
+            painter,
+            top.adjusted(0, 0, -8.2 * self.theme.unit_px, 0),
+            view.programmed_value,
+            4.2,
+            role=TextRole.FEED,
         )
         self.draw_label(
-            painter, unit.adjusted(0, 1.0 * self.theme.u, 0, 1.0 * self.theme.u), view.programmed_unit
+            painter,
+            unit.adjusted(0, 1.0 * self.theme.unit_px, 0, 1.0 * self.theme.unit_px),
+            view.programmed_unit,
         )
-        self.draw_label(painter, top, view.prefix)
+        self.draw_label(painter, top, view.value_prefix)
         actual = self.make_row(7.4, 2.8)
         self.draw_label(painter, actual, "ACTUAL")
         self.draw_value(
-            painter, actual.adjusted(7 * self.theme.u, 0, -8.2 * self.theme.u, 0), view.measured_value, 2.5
+            painter,
+            actual.adjusted(7 * self.theme.unit_px, 0, -8.2 * self.theme.unit_px, 0),
+            view.measured_value,
+            2.5,
         )
         self.draw_label(
             painter, QRectF(unit.x(), actual.y(), unit.width(), actual.height()), view.measured_unit
@@ -213,7 +227,7 @@ class SpindlePanel(ReadoutPanel):
         view = self.value
         if not isinstance(view, SpindleReadout):
             return
-        u = self.theme.u
+        u = self.theme.unit_px
         top = self.make_row(2.3, 4.8)
         if not view.is_known:
             self._draw_unknown(painter)
@@ -285,12 +299,14 @@ class TimesPanel(ReadoutPanel):
         room = self.inside()
         column = room.width() / len(self.value)
         longest = max((text for _name, text in self.value), key=len)
-        font = self.theme.fit_font(longest, 2.6, column - 0.6 * self.theme.u, is_bold=True)
+        font = self.theme.fit_font(longest, 2.6, column - 0.6 * self.theme.unit_px, is_bold=True)
         for number, (name, text) in enumerate(self.value):
-            at = QRectF(room.x() + number * column, room.y(), column - 0.6 * self.theme.u, room.height())
+            at = QRectF(
+                room.x() + number * column, room.y(), column - 0.6 * self.theme.unit_px, room.height()
+            )
             self.draw_label(painter, at.adjusted(0, 0, 0, -room.height() * 0.62), name, ALIGN_CENTER)
             painter.setFont(font)
-            painter.setPen(self.theme.color("text"))
+            painter.setPen(self.theme.get_color("text"))
             draw_text(painter, at.adjusted(0, room.height() * 0.36, 0, 0), ALIGN_CENTER, text)
 
 
@@ -298,10 +314,10 @@ class TimesPanel(ReadoutPanel):
 
 
 LATHE_COLUMN_COUNT = 3  # X, Z and C. A mill has more axes.
-HIGH = 9.0  # Units: a higher panel has room for large positions.
+HIGH_PANEL_HEIGHT = 9.0  # Units: a higher panel has room for large positions.
 
 
-class ReadoutLine(Panel):
+class ReadoutRow(Panel):
     """Display of all readouts of one snapshot.
 
     X has a filled Ø or a hollow R. A low panel shows the readouts in one row. A high panel shows large
@@ -325,10 +341,10 @@ class ReadoutLine(Panel):
         self.frame(
             painter, join_messages("  ·  ", (position.main_kind.value, position.unit, position.x_label))
         )
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.find_full_area().adjusted(1.2 * u, 2.2 * u, -1.2 * u, -0.6 * u)
         columns = max(LATHE_COLUMN_COUNT, len(position.axes))
-        if self.height() > HIGH * u:
+        if self.height() > HIGH_PANEL_HEIGHT * u:
             row = QRectF(room.x(), room.y() - 0.4 * u, room.width(), room.height() - 2.2 * u)
             self._axes(painter, row, position, room.width() / columns, 1.7)
             self._readings(
@@ -344,26 +360,26 @@ class ReadoutLine(Panel):
     def _axes(
         self, painter: ThemedPainter, room: QRectF, position: PositionReadout, share: float, scale: float
     ) -> None:
-        look, gap = self.theme, 1.8 * self.theme.u
+        look, gap = self.theme, 1.8 * self.theme.unit_px
         texts = [axis.value if axis.is_known else f"{axis.value} {UNKNOWN_VALUE}" for axis in position.axes]
-        size = look.em(3.4 * scale, Role.POSITION, room.height())
-        rooms = [share - gap - _before(axis) * scale * look.u for axis in position.axes]
+        size = look.find_em_height(3.4 * scale, TextRole.POSITION, room.height())
+        rooms = [share - gap - _before(axis) * scale * look.unit_px for axis in position.axes]
         fonts = [
             look.fit_font(text, size, each, is_bold=True) for text, each in zip(texts, rooms, strict=True)
         ]
-        size = min(font.pixelSize() for font in fonts) / look.u  # All axes have the same size.
+        size = min(font.pixelSize() for font in fonts) / look.unit_px  # All axes have the same size.
         for number, (axis, text) in enumerate(zip(position.axes, texts, strict=True)):
             at = QRectF(room.x() + number * share, room.y(), share - gap, room.height())
             self._name(painter, at, axis, scale)
             ink = "text" if axis.is_homed and axis.is_known else "alarm"
-            painter.draw_text_line(at, text, size, ink, at=ALIGN_RIGHT, fit=False, role=Role.POSITION)
+            painter.draw_text_line(at, text, size, ink, at=ALIGN_RIGHT, fit=False, role=TextRole.POSITION)
 
     def _name(self, painter: ThemedPainter, at: QRectF, axis: AxisReadout, scale: float) -> None:
-        u = scale * self.theme.u
+        u = scale * self.theme.unit_px
         painter.draw_text_line(QRectF(at.x(), at.y(), 3 * u, at.height()), axis.name, 2.8 * scale, "accent")
         if axis.diameter_mark:
             box = QRectF(at.x() + 2.8 * u, at.center().y() - 1.5 * u, 3.0 * u, 3.0 * u)
-            draw_x_mark(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
+            draw_x_symbol(painter, box, axis.diameter_mark, 2.4 * scale, 0.25)
 
     def _cells(self, view: MachineStatus) -> tuple[tuple[str, str, float], ...]:
         """Return label, value and fraction of the width for feed, spindle and tool."""
@@ -371,7 +387,7 @@ class ReadoutLine(Panel):
         return (
             (
                 Message("FEED {override}", override=format_percent(feed.override)),
-                f"{feed.prefix} {feed.measured_value} {tr(feed.measured_unit)}".strip(),
+                f"{feed.value_prefix} {feed.measured_value} {tr(feed.measured_unit)}".strip(),
                 0.36,
             ),
             (
@@ -384,25 +400,25 @@ class ReadoutLine(Panel):
 
     def _figures(self, painter: ThemedPainter, room: QRectF, view: MachineStatus) -> None:
         """Draw feed, spindle and tool, each with its label above it."""
-        u, x = self.theme.u, room.x() + 1.6 * self.theme.u
+        u, x = self.theme.unit_px, room.x() + 1.6 * self.theme.unit_px
         for label, figure, share in self._cells(view):
             wide = share * (room.width() - 1.6 * u)
             painter.draw_text_line(QRectF(x, room.y() - 0.4 * u, wide - u, 1.9 * u), label, 1.5, "soft")
             below = QRectF(x, room.y() + 1.5 * u, wide - 1.6 * u, room.height() - 1.7 * u)
-            painter.draw_text_line(below, figure, 2.3, "text", role=Role.FEED)
+            painter.draw_text_line(below, figure, 2.3, "text", role=TextRole.FEED)
             x += wide
 
     def _readings(self, painter: ThemedPainter, room: QRectF) -> None:
         """Draw feed, spindle and tool in one row, each with its label on its left."""
         if self.status is None:
             return
-        u, x = self.theme.u, room.x()
+        u, x = self.theme.unit_px, room.x()
         for label, figure, share in self._cells(self.status):
             wide = share * room.width() - u
             named = QRectF(x, room.y(), 0.38 * wide, room.height())
             painter.draw_text_line(named, label, 1.6, "soft")
             value = named.adjusted(named.width() + 0.6 * u, 0, wide - named.width(), 0)
-            painter.draw_text_line(value, figure, 2.5, "text", role=Role.FEED)
+            painter.draw_text_line(value, figure, 2.5, "text", role=TextRole.FEED)
             x += wide + u
 
 
@@ -418,10 +434,10 @@ TimeTexts = Sequence[tuple[str, str]]
 COMMENT, BLOCK = 0.38, 0.24  # Fractions of the width. Parts and times use the rest.
 
 
-class RunLine(Panel):
+class RunRow(Panel):
     """One row with comment, block, parts and times, in the position of the Automatic page's comment."""
 
-    ground_color = "panel"
+    background_color = "panel"
     comment_text, block_text, message_text = (
         RedrawingAttribute(""),
         RedrawingAttribute(""),
@@ -442,7 +458,7 @@ class RunLine(Panel):
 
         A message of M00 or M01 replaces the comment and the block.
         """
-        u, wide, high = self.theme.u, float(self.width()), float(self.height())
+        u, wide, high = self.theme.unit_px, float(self.width()), float(self.height())
         if self.stop_text:
             self._draw_alarm(painter)
             return
@@ -457,10 +473,10 @@ class RunLine(Panel):
 
     def _draw_alarm(self, painter: ThemedPainter) -> None:
         """Draw the alarm over the whole row, large enough to read from the machine."""
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         painter.fill_rect(self.find_full_area(), self._tone)
         sign = QRectF(u, 0.3 * u, 2.2 * u, 2.2 * u)
-        draw_state_symbol(painter, sign, Tone(self._tone), look.color("on_state"))
+        draw_state_symbol(painter, sign, Tone(self._tone), look.get_color("on_state"))
         painter.draw_text_line(
             self.find_full_area().adjusted(4.4 * u, 0, -u, 0), self.stop_text, 2.5, "on_state"
         )
@@ -470,12 +486,12 @@ class RunLine(Panel):
 
     def _draw_stop(self, painter: ThemedPainter, box: QRectF) -> None:
         """Draw the message of M00 or M01 over comment and block while the stop lasts."""
-        painter.fill_rect(box.adjusted(-1.4 * self.theme.u, 0, 0, 0), "pause")
+        painter.fill_rect(box.adjusted(-1.4 * self.theme.unit_px, 0, 0, 0), "pause")
         painter.draw_text_line(box, self.message_text, 2.4, "on_state", raw=True)
 
     def _draw_times(self, painter: ThemedPainter, area: QRectF) -> None:
         """Draw the times in columns, each with its name and value side by side."""
-        u, share = self.theme.u, area.width() / max(1, len(self.time_texts))
+        u, share = self.theme.unit_px, area.width() / max(1, len(self.time_texts))
         for number, (name, figure) in enumerate(self.time_texts):
             box = QRectF(area.x() + number * share, 0, share - 0.8 * u, area.height())
             half = 0.46 * box.width()

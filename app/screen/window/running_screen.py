@@ -17,13 +17,13 @@ from PySide6.QtNetwork import QLocalServer, QLocalSocket
 
 from app.desk.data_folder import find_data_folder
 
-ACCEPTED = b"accepted\n"
-WAITS = 2000  # ms for each step of a request; a screen that does not reply by then is not used
-MOST = 8192  # bytes of a request
+ACCEPTED_REPLY = b"accepted\n"
+TIMEOUT_MS = 2000  # ms for each step of a request; a screen that does not reply by then is not used
+MAX_REQUEST_BYTES = 8192  # bytes of a request
 _MOST_PATH = 100  # bytes of a socket's path that every system accepts
 
 
-def socket_name() -> str:
+def find_socket_name() -> str:
     """Return the name of the data folder's socket.
 
     This is its path, or a short name if the path is too long.
@@ -34,22 +34,22 @@ def socket_name() -> str:
     return f"turndesk-{hashlib.sha256(path).hexdigest()[:16]}"
 
 
-def hand_over(program: str) -> bool:
+def hand_over_program(program_path: str) -> bool:
     """Ask the running screen to open a program.
 
     Return False if no screen is running.
     """
-    path = Path(program).absolute()
+    path = Path(program_path).absolute()
     if not path.is_file():
         return False
     socket = QLocalSocket()
-    socket.connectToServer(socket_name())
-    if not socket.waitForConnected(WAITS):
+    socket.connectToServer(find_socket_name())
+    if not socket.waitForConnected(TIMEOUT_MS):
         return False
     socket.write(os.fsencode(path) + b"\n")
-    if not socket.waitForReadyRead(WAITS):
+    if not socket.waitForReadyRead(TIMEOUT_MS):
         return False
-    return socket.readLine().data() == ACCEPTED
+    return socket.readLine().data() == ACCEPTED_REPLY
 
 
 class RunningScreen(QObject):
@@ -65,15 +65,15 @@ class RunningScreen(QObject):
         self._server.setSocketOptions(QLocalServer.SocketOption.UserAccessOption)
         self._server.newConnection.connect(self._connect)
 
-    def listen(self) -> bool:
+    def start_listening(self) -> bool:
         """Start to listen.
 
         Return False if another screen already listens for this data folder.
         """
-        name = socket_name()
+        name = find_socket_name()
         probe = QLocalSocket()
         probe.connectToServer(name)
-        if probe.waitForConnected(WAITS):  # listen() would replace the socket of the other screen
+        if probe.waitForConnected(TIMEOUT_MS):  # listen() would replace the socket of the other screen
             return False
         QLocalServer.removeServer(name)  # left by a screen that was killed
         return self._server.listen(name)
@@ -90,13 +90,13 @@ class RunningScreen(QObject):
         Ignore a request that is too long or does not name a file.
         """
         if not socket.canReadLine():
-            if socket.bytesAvailable() > MOST:
+            if socket.bytesAvailable() > MAX_REQUEST_BYTES:
                 socket.abort()
             return
-        path = Path(os.fsdecode(bytes(socket.readLine(MOST).data()).rstrip(b"\n")))
+        path = Path(os.fsdecode(bytes(socket.readLine(MAX_REQUEST_BYTES).data()).rstrip(b"\n")))
         if not path.is_absolute() or not path.is_file():
             socket.abort()
             return
-        socket.write(ACCEPTED)
+        socket.write(ACCEPTED_REPLY)
         socket.flush()
         self._open_file(path)

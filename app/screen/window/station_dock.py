@@ -46,7 +46,7 @@ class StationDock(TouchPanel):
         pots = (desk.station_controls.spindle_pot.wanted, desk.station_controls.feed_pot.wanted)
         latched = desk.settings_store.current.latched and desk.machine.allows_one_hand
         self._shown = (
-            desk.station_controls.estop_pressed,
+            desk.station_controls.is_estop_pressed,
             pots,
             palms,
             latched,
@@ -62,7 +62,7 @@ class StationDock(TouchPanel):
             self._desk.station_controls.turn_spindle_pot(steps)
 
     def _row(self, y: float, high: float) -> QRectF:
-        u = self.theme.u
+        u = self.theme.unit_px
         scale = self.height() / DESIGN_HEIGHT
         return QRectF(1.4 * u, y * scale, self.width() - 2.8 * u, high * scale)
 
@@ -95,22 +95,22 @@ class StationDock(TouchPanel):
         painter.draw_text_line(at, right, 2.0, colour, at=ALIGN_RIGHT)
 
     def _mushroom(self, painter: ThemedPainter) -> None:
-        look, u = self.theme, self.theme.u
-        box, pressed = self._row(2.6, 13.2), self._desk.station_controls.estop_pressed
+        look, u = self.theme, self.theme.unit_px
+        box, pressed = self._row(2.6, 13.2), self._desk.station_controls.is_estop_pressed
         painter.fill_rect(box, "estop_plate")
         side = min(box.width() - 8.0 * u, box.height() - 1.6 * u)
         head = QRectF(box.x() + 0.8 * u, box.center().y() - side / 2, side, side)
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.color("estop_rim"))
+        painter.setBrush(look.get_color("estop_rim"))
         painter.drawEllipse(head)
         inset = (2.0 if pressed else 0.8) * u
-        painter.setBrush(look.color("estop"))
+        painter.setBrush(look.get_color("estop"))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
         for text, size, down in (("STOP", 2.2, -1.4), ("PRESSED" if pressed else "SCR LOCK", 1.6, 1.6)):
             painter.draw_text_line(
                 head.translated(0, down * u), text, size, "estop_ink", at=ALIGN_CENTER, margin=2.4
             )
-        self.controls.append(TouchControl(head, self._struck, acts_when_late=True))
+        self.controls.append(TouchControl(head, self._struck, stops_machine=True))
         out = QRectF(head.right() + 0.6 * u, box.y() + 0.8 * u, 0, box.height() - 1.6 * u)
         out.setRight(box.right() - 0.6 * u)
         self._release(painter, out, pressed)
@@ -162,7 +162,7 @@ class StationDock(TouchPanel):
         pot: OverridePot,
         turn: Callable[[int], None],
     ) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         wide = max(4.6 * u, float(FINGERTIP_PX))
         less = QRectF(box.x(), box.y(), wide, box.height())
         more = QRectF(box.right() - wide, box.y(), wide, box.height())
@@ -172,22 +172,24 @@ class StationDock(TouchPanel):
             self.controls.append(make_press_control(at, partial(turn, steps), name))
         track = box.adjusted(wide + 0.5 * u, 0, -wide - 0.5 * u, 0)
         painter.draw_box(track, "frame", 0.14, "panel")
-        self._slider(painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.maximum)
+        self._slider(
+            painter, track.adjusted(0.3 * u, 0.3 * u, -0.3 * u, -0.3 * u), pot.wanted / pot.max_fraction
+        )
 
         def slide(at: QPointF) -> None:
-            pot.set(round((at.x() - track.x()) / track.width() * pot.maximum * 20) / 20)
+            pot.set(round((at.x() - track.x()) / track.width() * pot.max_fraction * 20) / 20)
 
         self.controls.append(TouchControl(track, slide, slide, name=name, kind="slider"))
 
     def _slider(self, painter: ThemedPainter, inner: QRectF, share: float) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         filled = inner.width() * max(0.0, min(1.0, share))
         painter.fill_rect(QRectF(inner.x(), inner.y(), filled, inner.height()), "here")
         x = min(max(inner.x() + filled - 0.5 * u, inner.x()), inner.right() - u)
         painter.fill_rect(QRectF(x, inner.y(), u, inner.height()), "accent")
 
     def _hold(self, painter: ThemedPainter) -> None:
-        look, u, desk = self.theme, self.theme.u, self._desk
+        look, u, desk = self.theme, self.theme.unit_px, self._desk
         box = self._row(46.4, 7.0)
         painter.draw_box(box.adjusted(0.15 * u, 0.15 * u, -0.15 * u, -0.15 * u), "pause", 0.3, "panel")
         inner = box.adjusted(1.4 * u, 0, -1.4 * u, 0)
@@ -209,7 +211,7 @@ class StationDock(TouchPanel):
             partial(desk.station_controls.hold, is_down=True),
             partial(desk.station_controls.hold, is_down=False),
         )
-        self.controls.append(TouchControl(box, lambda _at: press(), None, release, acts_when_late=True))
+        self.controls.append(TouchControl(box, lambda _at: press(), None, release, stops_machine=True))
 
     def _start(self, painter: ThemedPainter) -> None:
         desk = self._desk
@@ -248,15 +250,15 @@ class StationDock(TouchPanel):
         return TouchControl(at, lambda _at: press(), None, release)
 
     def _palm(self, painter: ThemedPainter, box: QRectF, key: str, down: bool) -> None:
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         size = min(box.width(), box.height()) - 0.8 * u
         head = QRectF(box.center().x() - size / 2, box.center().y() - size / 2, size, size)
         ink = "frame" if self.is_start_disabled else "run"
         painter.setPen(look.make_pen(ink, 0.3))
-        painter.setBrush(look.color("key"))
+        painter.setBrush(look.get_color("key"))
         painter.drawEllipse(head)
         inset = (1.7 if down else 0.9) * u
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(look.color("lit" if down else ink))
+        painter.setBrush(look.get_color("lit" if down else ink))
         painter.drawEllipse(head.adjusted(inset, inset, -inset, -inset))
         painter.draw_text_line(head, key, 2.3, "on_lit" if down else "on_state", at=ALIGN_CENTER)

@@ -13,8 +13,8 @@ from app.screen.window.key_table import (
     REPEATED_WHEN_TYPED,
     STOP_LETTERS,
     YES_KEY,
+    find_key_name,
     find_typed_text,
-    name_key,
 )
 from app.screen.window.keyboard import KeyboardFilter, find_key_code, find_letter
 from app.screen.window.window_frame import WindowFrame
@@ -42,7 +42,7 @@ class TypedKeys:
         if (
             name not in AUTOMATIC_KEYS
             or frame.current_page is frame.automatic_page
-            or name in frame.current_page.key_actions()
+            or name in frame.current_page.make_key_actions()
         ):
             return False
         frame.desk.say(tr(Message("{key} WORKS ON THE AUTOMATIC PAGE: PRESS F1, THEN F2", key=name)))
@@ -72,7 +72,8 @@ class TypedKeys:
         text = event.text()
         if not text.isprintable() or not text or not frame.has_text_field():
             return (
-                frame.has_text_field() and name_key(find_key_code(event), event.modifiers()) in STOP_LETTERS
+                frame.has_text_field()
+                and find_key_name(find_key_code(event), event.modifiers()) in STOP_LETTERS
             )
         if not event.isAutoRepeat():
             self._rejected_text = tr(Message("{key} CANNOT BE ENTERED IN THIS FIELD", key=text))

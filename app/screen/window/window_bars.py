@@ -14,7 +14,7 @@ from app.desk.status.machine_status import Tone
 from app.desk.status.prompt_line import MessageKind
 from app.desk.status.readouts import Lamp
 from app.desk.translation import tr
-from app.screen.accessible import speak_text
+from app.screen.accessible import announce_text
 from app.screen.panel import Panel, RedrawingAttribute
 from app.screen.screen_theme import (
     ALIGN_CENTER,
@@ -27,7 +27,7 @@ from app.screen.screen_theme import (
     draw_text,
     measure_text,
 )
-from app.screen.text_sizes import Role
+from app.screen.text_sizes import TextRole
 from app.screen.window.key_table import NO_KEY, YES_KEY
 from app.screen.window_layout import FINGERTIP_PX
 
@@ -38,15 +38,15 @@ MESSAGE_STYLES = {
     MessageKind.SUCCESS: ("run", "✓"),
     MessageKind.QUESTION: ("wait", "?"),
 }
-PROMPT_SHARE = 0.47  # Fraction of the prompt line's height for message and question.
-LEAST_TWO = 5.0  # Units: smallest height of the state for two lines.
-SIGN_WIDTH = 5.0  # Units: width of the sign.
+PROMPT_WIDTH_FRACTION = 0.47  # Fraction of the prompt line's height for message and question.
+MIN_TWO_LINE_HEIGHT = 5.0  # Units: smallest height of the state for two lines.
+SYMBOL_WIDTH = 5.0  # Units: width of the sign.
 
 
 class TitleLine(Panel):
     """The title line, with page, program, machine state, signed-in user, machine name and clock."""
 
-    ground_color = "panel"
+    background_color = "panel"
 
     page_title = RedrawingAttribute("")
     access_text = RedrawingAttribute("")  # The signed-in user and level; empty if access levels are off.
@@ -69,7 +69,7 @@ class TitleLine(Panel):
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the page title, program, machine state, signed-in user, machine name and clock."""
         program, state, tone, machine, clock = self._shown
-        u, high = self.theme.u, self.height()
+        u, high = self.theme.unit_px, self.height()
         painter.fill_rect(QRectF(0, high - 0.16 * u, self.width(), 0.16 * u), "frame")
         painter.draw_text_line(QRectF(1.4 * u, 0, 24 * u, high), self.page_title, 2.2, "accent")
         painter.draw_text_line(
@@ -87,11 +87,11 @@ class TitleLine(Panel):
         painter.draw_text_line(right, clock, 2.2, "text", at=ALIGN_RIGHT, bold=False)
 
     def _draw_state(self, painter: ThemedPainter, state: str, tone: Tone) -> None:
-        look, u, high, state = self.theme, self.theme.u, self.height(), tr(state)
+        look, u, high, state = self.theme, self.theme.unit_px, self.height(), tr(state)
         box = QRectF(60 * u, 0.2 * u, 50 * u, high - 0.5 * u)
         painter.fill_rect(box, tone.value)
-        ink = look.color("on_state")
-        size = look.em(2.5, Role.STATE, box.height())
+        ink = look.get_color("on_state")
+        size = look.find_em_height(2.5, TextRole.STATE, box.height())
         painter.setFont(look.fit_font(state, size, box.width() - 8 * u, is_bold=True))
         wide = QFontMetricsF(painter.font()).horizontalAdvance(state)
         left = box.center().x() - (wide + 3.6 * u) / 2
@@ -154,12 +154,12 @@ class PromptLine(Panel):
         painter.fill_rect(area, "panel")
         if self.main_text != self._announced:
             self._announced = self.main_text
-            speak_text(self, tr(self.main_text))
+            announce_text(self, tr(self.main_text))
         if self.question_text and self.confirm_key:
             area.setRight(
                 self._draw_answer_keys(painter, area)
             )  # The targets use the full height, for touch.
-        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_SHARE * area.height())
+        upper = QRectF(area.x(), area.y(), area.width(), PROMPT_WIDTH_FRACTION * area.height())
         noticed = bool(self.message_text or self.question_text)
         self._state(painter, area.adjusted(0, upper.height() if noticed else 0, 0, 0))
         both = bool(self.message_text and self.question_text)
@@ -172,28 +172,28 @@ class PromptLine(Panel):
             self._notice(painter, place, self.question_text, MessageKind.QUESTION)
 
     def _state(self, painter: ThemedPainter, area: QRectF) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         room = area.adjusted(1.4 * u, 0, -1.4 * u, 0)
         if self.reason_text:
             low = room.adjusted(0, 0.48 * room.height(), 0, -0.05 * room.height())
-            painter.draw_text_line(low, self.reason_text, 1.9, "text", bold=False, role=Role.PROMPT)
+            painter.draw_text_line(low, self.reason_text, 1.9, "text", bold=False, role=TextRole.PROMPT)
             room.setBottom(low.top())
         lines = self._lines(tr(self.state_text), room)
         high = room.height() / len(lines)
         for number, line in enumerate(lines):
             row = QRectF(room.x(), room.y() + number * high, room.width(), high)
             size = 2.1 if self.reason_text else 2.3
-            painter.draw_text_line(row, line, size, "text", raw=True, role=Role.PROMPT)
+            painter.draw_text_line(row, line, size, "text", raw=True, role=TextRole.PROMPT)
 
     def _lines(self, text: str, room: QRectF) -> list[str]:
         """Return the text as one line, or as two lines if the letters can then be larger."""
         look, words = self.theme, text.split(" ")
-        one = look.em(2.3, Role.PROMPT, room.height())
-        two = look.em(2.3, Role.PROMPT, room.height() / 2)
+        one = look.find_em_height(2.3, TextRole.PROMPT, room.height())
+        two = look.find_em_height(2.3, TextRole.PROMPT, room.height() / 2)
         wide = measure_text(text, look.make_font(one, is_bold=True))
         if (
             len(words) < 2
-            or room.height() < LEAST_TWO * look.u
+            or room.height() < MIN_TWO_LINE_HEIGHT * look.unit_px
             or wide <= room.width()
             or two <= one * room.width() / wide
         ):
@@ -203,11 +203,11 @@ class PromptLine(Panel):
         return [first, text[len(first) + 1 :].strip()]
 
     def _notice(self, painter: ThemedPainter, area: QRectF, text: str, sort: MessageKind) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         ground, sign = MESSAGE_STYLES[sort]
         painter.fill_rect(area, ground)
         painter.draw_text_line(
-            QRectF(area.x(), area.y(), SIGN_WIDTH * u, area.height()),
+            QRectF(area.x(), area.y(), SYMBOL_WIDTH * u, area.height()),
             sign,
             3.0,
             "on_state",
@@ -215,7 +215,7 @@ class PromptLine(Panel):
             raw=True,
         )
         painter.draw_text_line(
-            area.adjusted(SIGN_WIDTH * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=Role.PROMPT
+            area.adjusted(SYMBOL_WIDTH * u, 0, -1.4 * u, 0), text, 2.3, "on_state", role=TextRole.PROMPT
         )
 
     def _draw_answer_keys(self, painter: ThemedPainter, area: QRectF) -> float:
@@ -223,7 +223,7 @@ class PromptLine(Panel):
 
         Return the x coordinate at which the text must end.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         left = area.right() - 2 * ANSWER_KEY_WIDTH * u
         for number, (word, key) in enumerate((("YES", YES_KEY), ("NO", NO_KEY))):
             box = QRectF(
@@ -241,7 +241,7 @@ class CommentLine(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the last comment of the program."""
-        u = self.theme.u
+        u = self.theme.unit_px
         room = self.find_full_area().adjusted(1.4 * u, 1.5 * u, -1.2 * u, -0.5 * u)
         painter.draw_text_line(room, self.text, 2.0, "accent", bold=False, raw=True)
 
@@ -268,7 +268,7 @@ class FunctionKeyBar(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw each function key that has a label, with disabled keys in a softer color."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap = 0.6 * u
         wide = (self.width() + gap) / len(self.key_labels)
         for number, label in enumerate(self.key_labels, 1):
@@ -309,7 +309,7 @@ class LampStrip(Panel):
 
     def draw(self, painter: ThemedPainter) -> None:
         """Draw the lamps in one row, and make each lamp with a key a touch target."""
-        u = self.theme.u
+        u = self.theme.unit_px
         gap = 0.6 * u
         wide = (self.width() + gap) / max(1, len(self.lamps))
         for number, lamp in enumerate(self.lamps):
@@ -319,7 +319,7 @@ class LampStrip(Panel):
                 self.add_target(box, partial(self._press, lamp.key), kind="lamp", is_on=lamp.is_lit)
 
     def _lamp(self, painter: ThemedPainter, box: QRectF, lamp: Lamp) -> None:
-        look, u = self.theme, self.theme.u
+        look, u = self.theme, self.theme.unit_px
         lit = "pause" if lamp.is_warning else "lit"
         line = lit if lamp.is_lit else "frame"
         inset = look.make_pen(line, 0.14).widthF() / 2
@@ -330,7 +330,7 @@ class LampStrip(Panel):
         room = box.adjusted(0.5 * u, 0.5 * u, -0.5 * u, -0.5 * u)
         if lamp.key and lamp.key not in self.hidden_keys:
             cap = QRectF(room.x() + 0.1 * u, room.center().y() - 1.5 * u, 2.6 * u, 3.0 * u)
-            painter.setPen(look.color(ink))
+            painter.setPen(look.get_color(ink))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(cap)
             painter.draw_text_line(cap, lamp.key, 2.2, ink, at=ALIGN_CENTER)
@@ -373,7 +373,7 @@ class NoticeRows(Panel):
 
         A row with keys is at least as high as a fingertip. A row without keys has two lines of text.
         """
-        u = self.theme.u
+        u = self.theme.unit_px
         if not row.keys:
             return round(LOW_NOTICE_HEIGHT * u)
         wide = self._find_text_width(row, self.width())
@@ -382,7 +382,7 @@ class NoticeRows(Panel):
 
     def _find_text_width(self, row: NoticeRow, wide: float) -> float:
         """Return the width for the texts of a row, next to its keys."""
-        return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.theme.u
+        return wide - (len(row.keys) * NOTICE_KEY + 2.4) * self.theme.unit_px
 
     @property
     def needs_new_height(self) -> bool:
@@ -406,7 +406,7 @@ class NoticeRows(Panel):
             top += high
 
     def _row(self, painter: ThemedPainter, box: QRectF, row: NoticeRow) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.fill_rect(box, row.color_name)
         wide = self._find_text_width(row, box.width())
         lines = [row.values_text] if row.values_text else []
@@ -425,7 +425,7 @@ class NoticeRows(Panel):
             self._key(painter, QRectF(x, box.y(), NOTICE_KEY * u - 0.6 * u, box.height()), name, label)
 
     def _key(self, painter: ThemedPainter, box: QRectF, name: str, label: str) -> None:
-        u = self.theme.u
+        u = self.theme.unit_px
         painter.fill_rect(box, "key")
         painter.draw_text_line(QRectF(box.x() + 0.8 * u, box.y(), 3.2 * u, box.height()), name, 1.8, "accent")
         painter.draw_text_line(

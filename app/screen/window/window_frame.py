@@ -26,7 +26,7 @@ from app.desk.status.state_prompt import find_time_left, make_page_prompt
 from app.desk.translation import tr
 from app.screen import page_table
 from app.screen.page_base import KeyActions, Page, PageHost
-from app.screen.page_table import find_page_name, make_page
+from app.screen.page_table import find_replacement_page, make_page
 from app.screen.panel import Panel
 from app.screen.screen_theme import ScreenTheme
 from app.screen.window.alarm_panels import AlarmList, AlarmNotice
@@ -34,8 +34,8 @@ from app.screen.window.key_table import AUTOMATIC_KEYS
 from app.screen.window.readout_panels import (
     FeedPanel,
     PositionPanel,
-    ReadoutLine,
-    RunLine,
+    ReadoutRow,
+    RunRow,
     SpindlePanel,
     TimesPanel,
     ToolPanel,
@@ -45,7 +45,7 @@ from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows,
 from app.screen.window_layout import (
     AutomaticLayout,
     Rect,
-    find_unit,
+    find_unit_px,
     find_work_area,
     make_layout,
     make_low_layout,
@@ -56,7 +56,7 @@ from core.message import Message
 _SEARCHTO, _FROM_LINE_1 = ("F6", "SEARCHTO"), ("Y", "FROM LINE 1")
 GAP_PX = 4  # Pixels below the notice rows.
 _REST_STATES = frozenset({MachineState.ESTOP, MachineState.DISABLED, MachineState.IDLE, MachineState.FAULT})
-MAX_AGE_S = 0.45  # Seconds after which everything is refreshed even without a visible change.
+MAX_REFRESH_AGE_S = 0.45  # Seconds after which everything is refreshed even without a visible change.
 _LAYOUT_DELAY_S = 3.0  # Seconds after a manual move before the layout of a page may change.
 
 
@@ -79,12 +79,12 @@ class WindowFrame(QWidget):
         )
         self._shown_at, self._paints = 0.0, 0
         self.title_line = TitleLine(theme, self)
-        self.readout_line = ReadoutLine(theme, self)
-        self.run_line = RunLine(theme, self)
+        self.readout_line = ReadoutRow(theme, self)
+        self.run_line = RunRow(theme, self)
         self.position_panel = PositionPanel(theme, self)
         self.feed_panel = FeedPanel(theme, "FEED", self)
         self.spindle_panel = SpindlePanel(theme, "SPINDLE", self)
-        is_mill = desk.machine.language == "klartext"
+        is_mill = desk.machine.program_language == "klartext"
         self.tool_panel = ToolPanel(theme, "TOOL" if is_mill else "TOOL  ·  OFFSET", self)
         self.times_panel = TimesPanel(theme, "PARTS  ·  TIME", self)
         self.strip = LampStrip(theme, press, self)
@@ -113,7 +113,7 @@ class WindowFrame(QWidget):
 
         Return False if the page cannot open or the current page cannot close.
         """
-        name = find_page_name(self.desk.machine.language, name)
+        name = find_replacement_page(self.desk.machine.program_language, name)
         if name == self.current_page.NAME:
             return True
         page = self.find_page(name)
@@ -134,13 +134,13 @@ class WindowFrame(QWidget):
         self._pages[name] = page
         return page
 
-    def open_recording(self, name: str) -> None:
+    def open_recording(self, recording_name: str) -> None:
         """Open the recording of an alarm in the scope."""
         before = self.current_page.NAME
         if before == page_table.SCOPE or self.open_page(page_table.SCOPE):
             self._before_scope = self._before_scope if before == page_table.SCOPE else before
             self.alarm_list.hide()
-            self.desk.page_registry.open_recording(name)
+            self.desk.page_registry.open_recording(recording_name)
 
     def toggle_scope(self) -> None:
         """Open the scope from any page, or return from the scope to that page."""
@@ -154,7 +154,10 @@ class WindowFrame(QWidget):
     def _front(self) -> None:
         page = self.current_page
         self.desk.window_state.set_page(can_start=page.STARTS, has_field=self.has_text_field)
-        self.key_bar.key_labels, self.key_bar.disabled_keys = page.key_labels(), page.disabled_keys()
+        self.key_bar.key_labels, self.key_bar.disabled_keys = (
+            page.make_key_labels(),
+            page.find_disabled_keys(),
+        )
         self._lay_out()
         self.alarm_list.hide()
         self.alarm_notice.stackUnder(self.alarm_list)
@@ -163,7 +166,7 @@ class WindowFrame(QWidget):
         self.window().setFocus()
         page.on_open()
 
-    def key_actions(self) -> KeyActions:
+    def make_key_actions(self) -> KeyActions:
         """Return the actions of all keys.
 
         The actions of the page have priority over those of the frame.
@@ -178,7 +181,7 @@ class WindowFrame(QWidget):
                 if page.shortcut
             },
             CLOSE_KEY: partial(self.desk.apply_setting, "first_job", False),
-            **self.current_page.key_actions(),
+            **self.current_page.make_key_actions(),
             **(self._make_log_keys() if self.alarm_list.isVisible() else {}),
         }
 
@@ -259,10 +262,10 @@ class WindowFrame(QWidget):
     def _place_parts(self, *, large: bool) -> Rect:
         """Arrange all parts for the current size, and return the rectangle of the page."""
         width, height = self.width(), self.height()
-        self.theme.set_unit(find_unit(width, height))
+        self.theme.set_unit(find_unit_px(width, height))
         with_dock = self.station_dock is not None and self.desk.settings_store.current.dock
         at = make_layout(width, height, with_dock)
-        low = make_low_layout(width, height, with_dock, moves=self.current_page.STARTS)
+        low = make_low_layout(width, height, with_dock, has_axis_motion=self.current_page.STARTS)
         self._docked = with_dock
         work = find_work_area(at) if large else low.work_area
         rows = Rect(work.x, work.y, work.w, min(self.notice_rows.apply_height(), work.h // 3))
@@ -308,7 +311,7 @@ class WindowFrame(QWidget):
         Touch targets must then not move.
         """
         now = self.desk.station_controls.clock()
-        if snapshot.state in {MachineState.JOG, MachineState.HOME}:
+        if snapshot.state in {MachineState.JOG, MachineState.HOMING}:
             self._moved_at = now
         return self._moved_at is not None and now - self._moved_at < _LAYOUT_DELAY_S
 
@@ -323,9 +326,9 @@ class WindowFrame(QWidget):
             desk.read_snapshot()
         )
 
-    def is_outdated(self) -> bool:
+    def is_refresh_due(self) -> bool:
         """Return whether the last refresh was more than 0.45 s ago."""
-        return self.desk.clock.read_seconds() - self._shown_at > MAX_AGE_S
+        return self.desk.clock.read_seconds() - self._shown_at > MAX_REFRESH_AGE_S
 
     def refresh(self) -> None:
         """Poll one snapshot, and show it in all parts."""
@@ -359,8 +362,8 @@ class WindowFrame(QWidget):
         self.current_page.refresh(snapshot, view, loaded)
         self._update_caret()
         self.key_bar.key_labels, self.key_bar.disabled_keys = (
-            self.current_page.key_labels(),
-            self.current_page.disabled_keys(),
+            self.current_page.make_key_labels(),
+            self.current_page.find_disabled_keys(),
         )
 
     def _update_caret(self) -> None:
@@ -402,7 +405,7 @@ class WindowFrame(QWidget):
         state = make_page_prompt(desk, snapshot, loaded, self.current_page.prompt_text())
         self.prompt_line.show_state(state, prompt_line.reason(view) or prompt_line.find_remedy(loaded, state))
         self.prompt_line.show_question(
-            desk.prompt_answers.question or self.current_page.pending_question(), desk.confirm_key
+            desk.prompt_answers.question or self.current_page.find_pending_question(), desk.confirm_key
         )
         self.prompt_line.show_message(desk.prompt_answers.message, kind=desk.prompt_answers.notice_kind)
 
@@ -435,7 +438,13 @@ class WindowFrame(QWidget):
             if self.desk.storage_state.read_problem()
             else ()
         )
-        return (*view.modes, *view.lamps, *kept, make_drives_lamp(snapshot, "D"), Lamp("RESET", False, "R"))
+        return (
+            *view.mode_lamps,
+            *view.lamps,
+            *kept,
+            make_drives_lamp(snapshot, "D"),
+            Lamp("RESET", False, "R"),
+        )
 
     def _make_notices(
         self, snapshot: Snapshot, loaded: LoadedProgram, *, here: bool

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.screen.window_layout import MIN_WINDOW_PX
 
-START_SIZE = (1280, 720)
+START_SIZE_PX = (1280, 720)
 TITLE_BAR_PX = 60  # Pixels that the title bar of a window manager uses.
 
 
@@ -35,9 +35,9 @@ def show_in_suitable_size(window: QWidget, screen: QScreen, *, is_kiosk: bool) -
     window.setMinimumSize(min(MIN_WINDOW_PX[0], room.width()), min(MIN_WINDOW_PX[1], room.height()))
     if is_kiosk or room.height() < MIN_WINDOW_PX[1] + TITLE_BAR_PX or room.width() <= MIN_WINDOW_PX[0]:
         show_full_screen(window, is_frameless=is_kiosk)
-    elif room.width() < 2 * START_SIZE[0]:
+    elif room.width() < 2 * START_SIZE_PX[0]:
         window.setGeometry(room)  # Without a window manager, nothing else sets the geometry.
         window.showMaximized()
     else:  # On a large screen, use a quarter of it.
-        window.resize(max(START_SIZE[0], room.width() // 2), max(START_SIZE[1], room.height() // 2))
+        window.resize(max(START_SIZE_PX[0], room.width() // 2), max(START_SIZE_PX[1], room.height() // 2))
         window.show()

@@ -28,7 +28,7 @@ class XServer:
         self._x.XkbSetDetectableAutoRepeat(self._display, 1, ctypes.byref(supported))
         self.reports_repeats = bool(supported.value)
 
-    def read_keys(self) -> frozenset[int]:
+    def read_pressed_keys(self) -> frozenset[int]:
         """Return the key codes of the keys that are down now."""
         bits = (ctypes.c_ubyte * _KEYS_HELD_KEYS)()
         self._x.XQueryKeymap(self._display, bits)

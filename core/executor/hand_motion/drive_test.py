@@ -17,7 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.executor.hand_motion.jog_line import Ramp, distance_to_limit
+from core.executor.hand_motion.jog_line import Ramp, get_distance_to_limit
 from core.executor.hand_motion.jog_ramps import plan_step_ramps
 from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger
 from core.executor.machine_context import MachineContext
@@ -26,9 +26,9 @@ from core.machine.machine_model import Axis
 from core.message import Message
 from core.ports import MachinePorts
 
-MAX_TRAVEL_MM = 2.54  # mm, largest travel of a step or a sine
+MAX_STEP_TRAVEL_MM = 2.54  # mm, largest travel of a step or a sine
 MAX_RAMP_TRAVEL_MM = 25.4  # mm, largest travel of a ramp, which needs distance to reach a constant speed
-PAUSE_S = 0.5  # s of rest after each move, for settling
+PAUSE_BETWEEN_MOVES_S = 0.5  # s of rest after each move, for settling
 _PAUSE_BETWEEN_SINES_S = 0.2  # s of rest after each sine
 _WAVES, _LASTS = 5, 0.8  # least number of periods and least s of a sine; the first period is for settling
 _MAX_SINE_PIECES = 40  # most ramps per period
@@ -50,11 +50,11 @@ class Shape(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class AxisTestLimits:
     """Limits of the axis in a test: speed in mm/s, acceleration in mm/s², and sample rate in Hz."""
 
-    max_speed: float
-    max_acceleration: float
+    max_speed_mm_s: float
+    max_acceleration_mm_s2: float
     sample_rate_hz: float
 
     @property
@@ -64,22 +64,22 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class DriveTestPath:
+class DriveTestMotion:
     """The motion of a drive test.
 
     ``travel_mm`` is the signed travel in mm, peak to peak for a sine. ``speed`` is the speed of a ramp in
-    mm/s. ``frequencies`` are the frequencies of the sines in Hz.
+    mm/s. ``frequencies_hz`` are the frequencies of the sines in Hz.
     """
 
     axis: str
     shape: Shape
     travel_mm: float
     speed: float = 0.0
-    frequencies: tuple[float, ...] = ()
+    frequencies_hz: tuple[float, ...] = ()
 
-    def find_refusal(self, limits: Limits) -> str:
+    def find_refusal(self, limits: AxisTestLimits) -> str:
         """Return why the values are not permitted for a test, or an empty string."""
-        longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_TRAVEL_MM
+        longest = MAX_RAMP_TRAVEL_MM if self.shape is Shape.RAMP else MAX_STEP_TRAVEL_MM
         if not 0.0 < abs(self.travel_mm) <= longest + _ROUNDING_TOLERANCE:
             return Message(
                 "the travel of this test must be greater than 0 and at most {longest} mm",
@@ -89,13 +89,13 @@ class DriveTestPath:
             return self._ramp_refusal(limits)
         return self._sine_refusal(limits) if self.shape is Shape.SINE else ""
 
-    def _ramp_refusal(self, limits: Limits) -> str:
-        if not 0.0 < self.speed <= limits.max_speed + _ROUNDING_TOLERANCE:
+    def _ramp_refusal(self, limits: AxisTestLimits) -> str:
+        if not 0.0 < self.speed <= limits.max_speed_mm_s + _ROUNDING_TOLERANCE:
             return Message(
                 "the speed of a ramp must be above 0 and at most {top} mm/s, the limit for manual moves",
-                top=f"{limits.max_speed:.0f}",
+                top=f"{limits.max_speed_mm_s:.0f}",
             )
-        if self.speed**2 / limits.max_acceleration > 0.5 * abs(self.travel_mm):
+        if self.speed**2 / limits.max_acceleration_mm_s2 > 0.5 * abs(self.travel_mm):
             return Message(
                 "a travel of {size} mm is too short to reach a constant speed of {speed} mm/s",
                 size=f"{abs(self.travel_mm):g}",
@@ -103,10 +103,10 @@ class DriveTestPath:
             )
         return ""
 
-    def _sine_refusal(self, limits: Limits) -> str:
-        if not self.frequencies or not all(0.5 <= each <= 200.0 for each in self.frequencies):
+    def _sine_refusal(self, limits: AxisTestLimits) -> str:
+        if not self.frequencies_hz or not all(0.5 <= each <= 200.0 for each in self.frequencies_hz):
             return "the sine frequency must be from 0.5 to 200 Hz"
-        fastest = max(self.frequencies)
+        fastest = max(self.frequencies_hz)
         if fastest > limits.max_sine_frequency_hz + _ROUNDING_TOLERANCE:
             return Message(
                 "this driver reports {rate} samples per second, which is not enough for a {fastest} Hz sine",
@@ -115,27 +115,30 @@ class DriveTestPath:
             )
         return ""
 
-    def sine_travel_mm(self, frequency: float, limits: Limits) -> float:
+    def compute_sine_travel_mm(self, frequency: float, limits: AxisTestLimits) -> float:
         """Return the signed peak-to-peak travel of the sine in mm.
 
         The travel is limited to what the axis can follow.
         """
         omega = 2.0 * math.pi * frequency
-        able = min(2.0 * limits.max_speed / omega, 2.0 * limits.max_acceleration / omega**2)
+        able = min(2.0 * limits.max_speed_mm_s / omega, 2.0 * limits.max_acceleration_mm_s2 / omega**2)
         return math.copysign(min(abs(self.travel_mm), able), self.travel_mm)
 
-    def make_ramps(self, limits: Limits) -> list[Ramp]:
+    def make_ramps(self, limits: AxisTestLimits) -> list[Ramp]:
         """Return the ramps of the test from rest to rest, as (seconds, start speed, acceleration)."""
         if self.shape is Shape.SINE:
-            return [piece for each in self.frequencies for piece in self._make_sine(each, limits)]
-        top = self.speed if self.shape is Shape.RAMP else limits.max_speed
+            return [piece for each in self.frequencies_hz for piece in self._make_sine(each, limits)]
+        top = self.speed if self.shape is Shape.RAMP else limits.max_speed_mm_s
         return [
             piece
             for distance in (self.travel_mm, -self.travel_mm)
-            for piece in (*plan_step_ramps(distance, top, limits.max_acceleration), (PAUSE_S, 0.0, 0.0))
+            for piece in (
+                *plan_step_ramps(distance, top, limits.max_acceleration_mm_s2),
+                (PAUSE_BETWEEN_MOVES_S, 0.0, 0.0),
+            )
         ]
 
-    def _make_sine(self, frequency: float, limits: Limits) -> list[Ramp]:
+    def _make_sine(self, frequency: float, limits: AxisTestLimits) -> list[Ramp]:
         """Return the ramps of one sine.
 
         The velocity is exact at the ends of each ramp and linear between them. The amplitude is smaller
@@ -145,19 +148,19 @@ class DriveTestPath:
         count = max(_MIN_SINE_PIECES, min(_MAX_SINE_PIECES, int(1.0 / (frequency * _MIN_RAMP_S))))
         waves = max(_WAVES, math.ceil(_LASTS * frequency))
         dt = 1.0 / (frequency * count)
-        peak = math.pi * frequency * self.sine_travel_mm(frequency, limits)
+        peak = math.pi * frequency * self.compute_sine_travel_mm(frequency, limits)
         speeds = peak * np.sin(2.0 * math.pi * np.arange(count + 1) / count)
         speeds[[0, -1]] = 0.0
         wave = [(dt, float(v), float(w - v) / dt) for v, w in pairwise(speeds)]
         return [*(wave * waves), (_PAUSE_BETWEEN_SINES_S, 0.0, 0.0)]
 
 
-def total_duration_s(ramps: list[Ramp]) -> float:
+def compute_duration_s(ramps: list[Ramp]) -> float:
     """Return the duration of the ramps in seconds."""
     return math.fsum(piece[0] for piece in ramps)
 
 
-def travel_range(ramps: list[Ramp]) -> tuple[float, float]:
+def compute_position_range(ramps: list[Ramp]) -> tuple[float, float]:
     """Return the lowest and the highest position relative to the start, in mm.
 
     If the ramps are interrupted, the axis stops within this range, because it can always brake as hard as
@@ -183,13 +186,17 @@ def slice_ramps(ramps: list[Ramp], start_s: float, end_s: float) -> list[Ramp]:
     return found
 
 
-def make_braking_ramp(ramps: list[Ramp], amax: float) -> list[Ramp]:
+def make_braking_ramp(ramps: list[Ramp], max_acceleration: float) -> list[Ramp]:
     """Return the ramp from the final speed to rest, or an empty list if the ramps end at rest."""
     if not ramps:
         return []
     dt, v, a = ramps[-1]
     last = v + a * dt
-    return [(abs(last) / amax, last, -math.copysign(amax, last))] if abs(last) > _ROUNDING_TOLERANCE else []
+    return (
+        [(abs(last) / max_acceleration, last, -math.copysign(max_acceleration, last))]
+        if abs(last) > _ROUNDING_TOLERANCE
+        else []
+    )
 
 
 def find_unsupported_reason(ports: MachinePorts) -> str:
@@ -226,7 +233,7 @@ class DriveTester:
         samples = self._context.ports.samples
         return samples.sample_rate_hz if samples is not None else TICK_SAMPLE_RATE_HZ
 
-    def find_refusal(self, path: DriveTestPath, lease_s: float) -> str:
+    def find_refusal(self, path: DriveTestMotion, lease_s: float) -> str:
         """Return why this test is refused, or an empty string if it may start."""
         if why := find_unsupported_reason(self._context.ports) or self._jogger.find_missing_axis_reason(
             path.axis
@@ -240,31 +247,31 @@ class DriveTester:
         context = self._context
         if self._jogger.axis_name:
             return Message("{axis} is still moving", axis=self._jogger.axis_name)
-        if context.signals.hold_requested:
+        if context.signals.is_hold_requested:
             return "feed hold is pressed"
         if context.spindle.is_guard_open:
             return "the guard is open"
         if context.spindle.is_requested or not context.spindle.is_stopped:
             return "the spindle is turning; stop it first"
-        if not context.sample.homed[context.ports.axes.axes.index(name)]:
+        if not context.axis_sample.homed[context.ports.axes.axes.index(name)]:
             return Message(
                 "{name} is not homed, so TurnDesk cannot check whether there is enough travel for the test",
                 name=name,
             )
         return ""
 
-    def _no_test(self, path: DriveTestPath) -> str:
+    def _no_test(self, path: DriveTestMotion) -> str:
         axis = self._context.machine.find_axis(path.axis)
-        if axis.rotary:
+        if axis.is_rotary:
             return Message("{axis} is a rotary axis; drive tests are only for linear axes", axis=axis.name)
         limits = self._limits(axis)
         return path.find_refusal(limits) or self._no_room(axis, path, limits)
 
-    def _no_room(self, axis: Axis, path: DriveTestPath, limits: Limits) -> str:
-        here = self._context.sample.demand[self._context.ports.axes.axes.index(axis.name)]
-        low, high = travel_range(path.make_ramps(limits))
+    def _no_room(self, axis: Axis, path: DriveTestMotion, limits: AxisTestLimits) -> str:
+        here = self._context.axis_sample.demand[self._context.ports.axes.axes.index(axis.name)]
+        low, high = compute_position_range(path.make_ramps(limits))
         for travel in (low, high):
-            if abs(travel) > _ROUNDING_TOLERANCE and abs(travel) > distance_to_limit(axis, here, travel):
+            if abs(travel) > _ROUNDING_TOLERANCE and abs(travel) > get_distance_to_limit(axis, here, travel):
                 end = "+" if travel > 0.0 else "−"
                 return Message(
                     "{axis} must move {distance} mm in the {end} direction for the test, but its travel ends "
@@ -275,16 +282,18 @@ class DriveTester:
                 )
         return ""
 
-    def _limits(self, axis: Axis) -> Limits:
-        return Limits(self._jogger.max_jog_speed(axis, homed=True), axis.amax, self._rate)
+    def _limits(self, axis: Axis) -> AxisTestLimits:
+        return AxisTestLimits(
+            self._jogger.get_max_jog_speed(axis, is_homed=True), axis.max_acceleration, self._rate
+        )
 
-    def start_test(self, path: DriveTestPath, lease_s: float) -> bool:
+    def start_test(self, path: DriveTestMotion, lease_s: float) -> bool:
         """Start a test from rest; return False if the lease expires before any axis moves.
 
         Raises DriverError if the setpoints are rejected.
         """
         self._ramps = path.make_ramps(self._limits(self._context.machine.find_axis(path.axis)))
-        self._lasts, self._until = total_duration_s(self._ramps), 0.0
+        self._lasts, self._until = compute_duration_s(self._ramps), 0.0
         begins = self._queue(path.axis, lease_s)
         self._number += begins
         return begins
@@ -309,7 +318,10 @@ class DriveTester:
 
     def _queue(self, name: str, lease: float) -> bool:
         """Queue the setpoints for the lease and the braking after it; return False if no motion remains."""
-        amax, until = self._context.machine.find_axis(name).amax, self._context.now + min(lease, MAX_LEASE_S)
+        amax, until = (
+            self._context.machine.find_axis(name).max_acceleration,
+            self._context.now + min(lease, MAX_LEASE_S),
+        )
 
         def go(start: float, _p: float, _v: float) -> list[Ramp]:
             if not self._until:

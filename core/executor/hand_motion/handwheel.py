@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 
 from core.executor.commands import SelectHandwheel
-from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN, Ramp
+from core.executor.hand_motion.jog_line import SOFT_LIMIT_MARGIN_MM, Ramp
 from core.executor.hand_motion.jog_ramps import plan_stop_at_distance
-from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, travel_end_message
+from core.executor.hand_motion.jogging import MAX_LEASE_S, Jogger, make_travel_end_message
 from core.executor.machine_context import MachineContext
 from core.executor.snapshot import MachineState
 from core.machine.machine_model import Axis
-from core.machine.station_rules import HANDWHEEL, HANDWHEEL_ENABLE_INPUT, axis_selector_input
+from core.machine.station_rules import HANDWHEEL_ENABLE_INPUT, HANDWHEEL_INPUT, get_axis_selector_input
 from core.message import Message
 
 # --- encoder counts and clicks --------------------------------------------------------------------------
@@ -47,21 +47,21 @@ class ClickCounter:
         self.still_time_s = 0.0  # s since the last motion of the wheel
         self.has_jumped = False  # the count has jumped in this tick, faster than a hand can turn
 
-    def read_clicks(self, counts: int, now: float) -> int:
+    def read_clicks(self, encoder_count: int, now: float) -> int:
         """Return the signed number of clicks since the last call.
 
         Half a click is ignored, so that a handwheel at rest causes no motion.
         """
-        before, self._last = self._last, (now, counts)
+        before, self._last = self._last, (now, encoder_count)
         if before is None:
-            self._base = counts
+            self._base = encoder_count
             return 0
-        passed, moved = now - before[0], abs(counts - before[1])
+        passed, moved = now - before[0], abs(encoder_count - before[1])
         self.has_jumped = moved > abs(self._per) * (_MAX_CLICKS_PER_S * passed + _EXTRA_CLICKS)
         if self.has_jumped or passed > _AWAY:
-            self._base, self.still_time_s = counts, 0.0
+            self._base, self.still_time_s = encoder_count, 0.0
             return 0
-        clicks = int((counts - self._base) / self._per)  # rounded towards zero
+        clicks = int((encoder_count - self._base) / self._per)  # rounded towards zero
         self._base += clicks * self._per
         self.still_time_s = 0.0 if clicks else self.still_time_s + passed
         return clicks
@@ -75,7 +75,7 @@ class Handwheel:
     """
 
     def __init__(self, context: MachineContext, jogger: Jogger) -> None:
-        model = context.machine.hardware.analog_inputs.get(HANDWHEEL)
+        model = context.machine.hardware.analog_inputs.get(HANDWHEEL_INPUT)
         self._context = context
         self._jogger = jogger
         self._there = model is not None and context.ports.blocks is None
@@ -88,7 +88,7 @@ class Handwheel:
         self._reported = ""  # the message already logged for this motion
         self._apart = -math.inf  # time until which jog keys are refused after simultaneous use
 
-    def select(self, command: SelectHandwheel, state: MachineState) -> None:
+    def select_axis(self, command: SelectHandwheel, state: MachineState) -> None:
         """Select the axis and the step, or renew the lease. Raises DriverError if a driver fails."""
         if self.end_reason:
             return
@@ -99,7 +99,7 @@ class Handwheel:
             self.axis, self._step, self._ready = command.axis, command.step, False
         self._until = self._context.now + min(command.lease, MAX_LEASE_S)
 
-    def deselect(self, state: MachineState) -> None:
+    def deselect_axis(self, state: MachineState) -> None:
         """Deselect the handwheel and stop its axis. Raises DriverError if a driver fails."""
         self._stop(state)
         self.axis = self.end_reason = ""
@@ -108,7 +108,7 @@ class Handwheel:
         """Disable the handwheel and log ``reason``. Raises DriverError if a driver fails."""
         self._stop(state)
         self.axis, self.end_reason = "", reason
-        self._context.log("refused", Message("handwheel: {what}", what=reason))
+        self._context.log_text("refused", Message("handwheel: {what}", what=reason))
 
     def follow_clicks(self, state: MachineState) -> bool:
         """Move the axis according to the clicks since the last tick; return whether the axis moves.
@@ -116,7 +116,7 @@ class Handwheel:
         Raises DriverError.
         """
         context, jogger = self._context, self._jogger
-        clicks = self._clicks.read_clicks(context.signals.handwheel_counts, context.now)
+        clicks = self._clicks.read_clicks(context.signals.handwheel_count, context.now)
         if not self.axis:
             return False
         if why := self._find_end_reason(state, self.axis):
@@ -157,7 +157,7 @@ class Handwheel:
             return "this machine has no handwheel"
         if why := self._jogger.find_missing_axis_reason(command.axis):
             return why
-        longest = MAX_CLICK_DEG if context.machine.find_axis(command.axis).rotary else MAX_CLICK_MM
+        longest = MAX_CLICK_DEG if context.machine.find_axis(command.axis).is_rotary else MAX_CLICK_MM
         if not 0.0 < command.step <= longest + _ROUNDING:
             return Message(
                 "a handwheel step must be above 0 and at most {longest}, not {step}",
@@ -178,7 +178,7 @@ class Handwheel:
             ),
             (signals.station_fault != "", signals.station_fault.lower()),
             (signals.handwheel_fault != "", signals.handwheel_fault),
-            (signals.hold_requested, "feed hold"),
+            (signals.is_hold_requested, "feed hold"),
             (self._clicks.has_jumped, "the handwheel count jumps; check the handwheel cable"),
             (
                 self.axis != "" and context.now > self._until,
@@ -186,7 +186,7 @@ class Handwheel:
             ),
             (not inputs.get(HANDWHEEL_ENABLE_INPUT, True), "the handwheel's enabling switch is not pressed"),
             (
-                not inputs.get(axis_selector_input(axis), True),
+                not inputs.get(get_axis_selector_input(axis), True),
                 Message("the axis selector switch is not set to {axis}", axis=axis),
             ),
         )
@@ -196,7 +196,9 @@ class Handwheel:
     def _follow(self, clicks: int) -> bool:
         context, jogger = self._context, self._jogger
         index = context.ports.axes.axes.index(self.axis)
-        start = context.sample.demand[index] if jogger.target_position is None else jogger.target_position
+        start = (
+            context.axis_sample.demand[index] if jogger.target_position is None else jogger.target_position
+        )
         wanted = self._limit_target(index, start + clicks * self._step)
         found = _TargetMove(context.machine.axes[index], self._top(index), self._step, wanted)
         jogger.follow_target(self.axis, found.pieces, wanted)
@@ -211,26 +213,26 @@ class Handwheel:
         return jogger.target_position is not None
 
     def _top(self, index: int) -> float:
-        return self._jogger.max_jog_speed(
-            self._context.machine.axes[index], self._context.sample.homed[index]
+        return self._jogger.get_max_jog_speed(
+            self._context.machine.axes[index], self._context.axis_sample.homed[index]
         )
 
     def _limit_target(self, index: int, wanted: float) -> float:
         """Limit a target to the travel. Clicks beyond the limit are dropped."""
         axis = self._context.machine.axes[index]
-        if axis.travel is None or not self._context.sample.homed[index]:
+        if axis.travel is None or not self._context.axis_sample.homed[index]:
             return wanted
-        here = self._context.sample.demand[index]
-        low, high = axis.travel[0] + SOFT_LIMIT_MARGIN, axis.travel[1] - SOFT_LIMIT_MARGIN
+        here = self._context.axis_sample.demand[index]
+        low, high = axis.travel[0] + SOFT_LIMIT_MARGIN_MM, axis.travel[1] - SOFT_LIMIT_MARGIN_MM
         allowed = min(max(wanted, min(low, here)), max(high, here))
         if allowed != wanted:
-            self._refuse_once(travel_end_message(axis.name, wanted - allowed))
+            self._refuse_once(make_travel_end_message(axis.name, wanted - allowed))
         return allowed
 
     def _refuse_once(self, what: str) -> None:
         if what != self._reported:
             self._reported = what
-            self._context.log("refused", Message("handwheel: {what}", what=what))
+            self._context.log_text("refused", Message("handwheel: {what}", what=what))
 
 
 class _TargetMove:
@@ -240,7 +242,7 @@ class _TargetMove:
     """
 
     def __init__(self, axis: Axis, top: float, step: float, wanted: float) -> None:
-        self._amax, self._top, self._step, self._wanted = axis.amax, top, step, wanted
+        self._amax, self._top, self._step, self._wanted = axis.max_acceleration, top, step, wanted
         self.goal = wanted
 
     def pieces(self, _start: float, p: float, v: float) -> list[Ramp]:

@@ -10,24 +10,24 @@ import numpy as np
 import numpy.typing as npt
 
 from core.machine.machine_model import Axis
-from core.ports import Segments
+from core.ports import MotionSegments
 
 FloatArray = npt.NDArray[np.float64]
 Ramp = tuple[float, float, float]  # seconds, speed at its start, acceleration
 Direction = tuple[float, float, float]  # unit vector in the machine's X, Y and Z
 
-SOFT_LIMIT_MARGIN = 0.01  # mm or degrees of clearance to the soft limit
+SOFT_LIMIT_MARGIN_MM = 0.01  # mm or degrees of clearance to the soft limit
 _UNIT_TOLERANCE = 1e-6  # tolerance of the length of a direction
 _MIN_SHARE = 1e-9  # share below which an axis does not move
 
 
-def distance_to_limit(axis: Axis, position: float, direction: float) -> float:
+def get_distance_to_limit(axis: Axis, position: float, direction: float) -> float:
     """Return the distance to the soft limit in this direction, or 0 if it is less than one encoder count."""
     if axis.travel is None:
         return math.inf
     low, high = axis.travel
-    left = (high - position if direction > 0.0 else position - low) - SOFT_LIMIT_MARGIN
-    return left if left > axis.count else 0.0
+    left = (high - position if direction > 0.0 else position - low) - SOFT_LIMIT_MARGIN_MM
+    return left if left > axis.count_size else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +35,7 @@ class JogLine:
     """A line of motion with the share of each machine axis in the distance. A single axis has the share 1."""
 
     axes: Sequence[Axis]
-    shares: FloatArray
+    axis_shares: FloatArray
 
     @classmethod
     def from_axis(cls, axes: Sequence[Axis], index: int) -> JogLine:
@@ -55,36 +55,40 @@ class JogLine:
 
     def has_same_direction(self, other: JogLine | None) -> bool:
         """Return whether both lines have the same direction."""
-        return other is not None and bool(np.allclose(self.shares, other.shares, rtol=0.0, atol=_MIN_SHARE))
+        return other is not None and bool(
+            np.allclose(self.axis_shares, other.axis_shares, rtol=0.0, atol=_MIN_SHARE)
+        )
 
     def iter_moving_axes(self) -> Iterator[tuple[int, Axis, float]]:
         """Yield the index, the axis and the share of each axis that moves."""
         yield from (
             (place, axis, share)
-            for place, (axis, share) in enumerate(zip(self.axes, self.shares.tolist(), strict=True))
+            for place, (axis, share) in enumerate(zip(self.axes, self.axis_shares.tolist(), strict=True))
             if share
         )
 
     @property
     def max_acceleration(self) -> float:
         """Return the highest acceleration along the line at which no axis exceeds its own limit."""
-        return min(axis.amax / abs(share) for _, axis, share in self.iter_moving_axes())
+        return min(axis.max_acceleration / abs(share) for _, axis, share in self.iter_moving_axes())
 
-    def project(self, values: FloatArray) -> float:
+    def project_on_line(self, values: FloatArray) -> float:
         """Return the component of a position or a velocity along the line."""
         return float(sum(values[place] * share for place, _, share in self.iter_moving_axes()))
 
-    def distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
+    def get_distance_to_limit(self, position: FloatArray | Sequence[float], sign: float) -> float:
         """Return the distance along the line to the nearest limit of travel of an axis.
 
         The direction along the line is ``sign``.
         """
         return min(
-            distance_to_limit(axis, position[place], math.copysign(share, share * sign)) / abs(share)
+            get_distance_to_limit(axis, position[place], math.copysign(share, share * sign)) / abs(share)
             for place, axis, share in self.iter_moving_axes()
         )
 
-    def make_setpoints(self, start: float, start_position: FloatArray, ramps: Sequence[Ramp]) -> Segments:
+    def make_setpoints(
+        self, start: float, start_position: FloatArray, ramps: Sequence[Ramp]
+    ) -> MotionSegments:
         """Return the ramps from the time ``start`` on as setpoints of all axes.
 
         Axes that do not move remain at ``start_position``.
@@ -92,14 +96,14 @@ class JogLine:
         n = len(ramps)
         dt = np.array([piece[0] for piece in ramps])
         t = start + np.concatenate([[0.0], np.cumsum(dt)[:-1]])
-        v = np.outer([piece[1] for piece in ramps], self.shares)
-        a = np.outer([piece[2] for piece in ramps], self.shares)
+        v = np.outer([piece[1] for piece in ramps], self.axis_shares)
+        a = np.outer([piece[2] for piece in ramps], self.axis_shares)
         position = np.tile(start_position, (n, 1))
         ways = (v + 0.5 * a * dt[:, np.newaxis]) * dt[:, np.newaxis]
         position[1:] += np.cumsum(ways, axis=0)[:-1]
-        return Segments(t, dt, position, v, a)
+        return MotionSegments(t, dt, position, v, a)
 
 
-def is_invalid_direction(direction: Direction) -> bool:
+def is_unit_vector_invalid(direction: Direction) -> bool:
     """Return whether the direction is invalid because it is not a unit vector."""
     return not abs(math.hypot(*direction) - 1.0) <= _UNIT_TOLERANCE

@@ -15,13 +15,13 @@ import numpy as np
 
 from core.block_ports import BlockController
 from core.executor.hand_motion.jog_line import (
-    SOFT_LIMIT_MARGIN,
+    SOFT_LIMIT_MARGIN_MM,
     Direction,
     FloatArray,
     JogLine,
     Ramp,
-    distance_to_limit,
-    is_invalid_direction,
+    get_distance_to_limit,
+    is_unit_vector_invalid,
 )
 from core.executor.hand_motion.jog_ramps import POSITION_TOLERANCE, plan_jog_ramps, plan_step_ramps
 from core.executor.machine_context import MachineContext
@@ -95,9 +95,11 @@ class Jogger:
             return Message("{axis} is still being jogged", axis=self.axis_name)
         if direction is None:
             return ""
-        if not set("XYZ") <= {axis.name for axis in context.machine.axes} or is_invalid_direction(direction):
+        if not set("XYZ") <= {axis.name for axis in context.machine.axes} or is_unit_vector_invalid(
+            direction
+        ):
             return "jogging in a tilted plane needs the axes X, Y and Z and a direction vector of length 1"
-        if not all(context.sample.homed):
+        if not all(context.axis_sample.homed):
             return "home all axes before jogging in a tilted plane"
         return ""
 
@@ -111,12 +113,12 @@ class Jogger:
         """Return why this axis does not exist or cannot be jogged, or an empty string."""
         machine = self._context.machine
         known = name in {axis.name for axis in machine.axes}
-        there = known and (name != "C" or machine.c_enabled or machine.kind != "lathe")
+        there = known and (name != "C" or machine.is_c_enabled or machine.kind != "lathe")
         return "" if there else Message("this machine has no axis {name} to jog", name=name)
 
     def _barred(self, name: str) -> str:
         context = self._context
-        if context.signals.hold_requested:
+        if context.signals.is_hold_requested:
             return "feed hold is pressed"
         if self.axis_name and self.axis_name != name:
             return Message("{axis} is still being jogged", axis=self.axis_name)
@@ -129,7 +131,7 @@ class Jogger:
         """
         context = self._context
         turns = context.spindle.is_requested or not context.spindle.is_stopped
-        if name == "C" and context.machine.spindle_is_c and turns:
+        if name == "C" and context.machine.is_spindle_c_axis and turns:
             return "the C axis is the spindle, and the spindle is turning; stop the spindle first"
         return ""
 
@@ -137,8 +139,8 @@ class Jogger:
         """Start the change to C-axis mode if necessary; return why C cannot move yet, or an empty string."""
         if (
             name != "C"
-            or not self._context.machine.spindle_is_c
-            or self._context.spindle.engage_c_axis(orient=False)
+            or not self._context.machine.is_spindle_c_axis
+            or self._context.spindle.engage_c_axis(should_orient=False)
         ):
             return ""
         return "the spindle drive is switching to C-axis mode; release the key or button and jog again in 2 s"
@@ -148,11 +150,11 @@ class Jogger:
 
         A step is never shortened.
         """
-        line, sample = self._line_of(name, direction), self._context.sample
+        line, sample = self._line_of(name, direction), self._context.axis_sample
         homed = all(sample.homed[place] for place, _, _ in line.iter_moving_axes())
-        if not homed or abs(distance) <= line.distance_to_limit(sample.demand, distance) + _STEP_ROUNDING:
+        if not homed or abs(distance) <= line.get_distance_to_limit(sample.demand, distance) + _STEP_ROUNDING:
             return ""
-        return travel_end_message(name, distance)
+        return make_travel_end_message(name, distance)
 
     def start_step(
         self, name: str, distance: float, speed: float, direction: Direction | None = None
@@ -163,21 +165,23 @@ class Jogger:
         self._splice(line, lambda _start, _p, _v: plan_step_ramps(distance, top, line.max_acceleration))
         self._axis, self.is_stepping = self._context.ports.axes.axes.index(name), True
 
-    def jog(self, name: str, velocity: float, lease_s: float, direction: Direction | None = None) -> bool:
+    def start_or_renew_jog(
+        self, name: str, velocity: float, lease_s: float, direction: Direction | None = None
+    ) -> bool:
         """Start or renew a jog; return False if no travel remains in that direction.
 
         ``direction`` is the direction of an axis of a tilted plane, in machine coordinates. Raises
         DriverError if the setpoints are rejected.
         """
         context, line = self._context, self._line_of(name, direction)
-        homed = all(context.sample.homed[place] for place, _, _ in line.iter_moving_axes())
+        homed = all(context.axis_sample.homed[place] for place, _, _ in line.iter_moving_axes())
         speed = math.copysign(min(abs(velocity), self._max_line_speed(line)), velocity)
         until = context.now + min(lease_s, MAX_LEASE_S)
 
         def go(start: float, p: FloatArray, v: FloatArray) -> list[Ramp]:
-            room = line.distance_to_limit(p, speed) if homed else math.inf
+            room = line.get_distance_to_limit(p, speed) if homed else math.inf
             return plan_jog_ramps(
-                line.project(v), speed, line.max_acceleration, max(until - start, 0.0), room
+                line.project_on_line(v), speed, line.max_acceleration, max(until - start, 0.0), room
             )
 
         moves = self._splice(line, go)
@@ -187,19 +191,19 @@ class Jogger:
 
     def _max_line_speed(self, line: JogLine) -> float:
         """Return the highest jog speed along the line."""
-        homed = self._context.sample.homed
+        homed = self._context.axis_sample.homed
         return min(
-            self.max_jog_speed(axis, homed[place]) / abs(share)
+            self.get_max_jog_speed(axis, homed[place]) / abs(share)
             for place, axis, share in line.iter_moving_axes()
         )
 
-    def run_drive_test(self, name: str, ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
+    def run_drive_test(self, name: str, make_ramps: Callable[[float, float, float], list[Ramp]]) -> bool:
         """Start or continue a drive test; return False if no motion of the test remains.
 
         Raises DriverError.
         """
         index = self._context.ports.axes.axes.index(name)
-        plays = self._splice_axis(index, ramps)
+        plays = self._splice_axis(index, make_ramps)
         if plays:
             self._axis, self.is_testing = index, True
         return plays
@@ -219,15 +223,19 @@ class Jogger:
         context = self._context
         index = context.ports.axes.axes.index(name)
         axis, until = context.machine.axes[index], context.now + min(lease_s, MAX_LEASE_S)
-        top = min(speed, self.max_jog_speed(axis, context.sample.homed[index]))
+        top = min(speed, self.get_max_jog_speed(axis, context.axis_sample.homed[index]))
 
         def go(start: float, p: float, v: float) -> list[Ramp]:
             distance = target - p
             if abs(distance) <= POSITION_TOLERANCE:
                 return []
-            room = distance_to_limit(axis, p, distance)
+            room = get_distance_to_limit(axis, p, distance)
             return plan_jog_ramps(
-                v, math.copysign(top, distance), axis.amax, max(until - start, 0.0), min(abs(distance), room)
+                v,
+                math.copysign(top, distance),
+                axis.max_acceleration,
+                max(until - start, 0.0),
+                min(abs(distance), room),
             )
 
         moves = self._splice_axis(index, go)
@@ -236,11 +244,11 @@ class Jogger:
         return moves
 
     def follow_target(
-        self, name: str, ramps: Callable[[float, float, float], list[Ramp]], target: float
+        self, name: str, make_ramps: Callable[[float, float, float], list[Ramp]], target: float
     ) -> None:
         """Move to the handwheel's target, starting from the present motion. Raises DriverError."""
         index = self._context.ports.axes.axes.index(name)
-        if self._splice_axis(index, ramps):
+        if self._splice_axis(index, make_ramps):
             self._axis, self.target_position, self.is_stopping = index, target, False
 
     def stop(self) -> None:
@@ -251,7 +259,9 @@ class Jogger:
         self._short = self._short or self.is_stepping or self.is_testing
         self._splice(
             line,
-            lambda _start, _p, v: plan_jog_ramps(line.project(v), 0.0, line.max_acceleration, 0.0, math.inf),
+            lambda _start, _p, v: plan_jog_ramps(
+                line.project_on_line(v), 0.0, line.max_acceleration, 0.0, math.inf
+            ),
         )
         self.is_stepping, self.target_position, self.is_stopping = False, None, True
 
@@ -273,18 +283,18 @@ class Jogger:
     def finish_jog(self) -> None:
         """Finish the jog of an axis at rest; log a completed test, or a step that was stopped early."""
         if self._short and self.is_testing:
-            self._context.log(
+            self._context.log_text(
                 "refused",
                 Message("the drive test of {axis} was stopped before it was finished", axis=self.axis_name),
             )
         elif self._short:
-            self._context.log(
+            self._context.log_text(
                 "refused",
                 Message("the jog step of {axis} was stopped before it was finished", axis=self.axis_name),
             )
         elif self.is_testing:
             self.completed_test_count += 1
-            self._context.log("test", Message("{axis} drive test", axis=self.axis_name))
+            self._context.log_text("test", Message("{axis} drive test", axis=self.axis_name))
         self.clear_jog()
 
     def clear_jog(self) -> None:
@@ -320,14 +330,14 @@ class Jogger:
                 return True
         return False
 
-    def max_jog_speed(self, axis: Axis, homed: bool) -> float:
+    def get_max_jog_speed(self, axis: Axis, is_homed: bool) -> float:
         """Return the highest jog speed of an axis, which is lower if the axis is not homed."""
-        endless = axis.travel is None or axis.rotary
-        rapid = axis.vmax if endless else min(axis.vmax, self._context.machine.limits.manual_rapid)
-        return rapid if homed else _UNHOMED_SPEED_FRACTION * rapid
+        endless = axis.travel is None or axis.is_rotary
+        rapid = axis.max_speed if endless else min(axis.max_speed, self._context.machine.limits.manual_rapid)
+        return rapid if is_homed else _UNHOMED_SPEED_FRACTION * rapid
 
 
-def travel_end_message(name: str, direction: float) -> str:
+def make_travel_end_message(name: str, direction: float) -> str:
     """Return the message for an axis that is at the end of its travel."""
     return Message(
         "{name} is at the end of its travel in the {ending} direction",
@@ -395,10 +405,12 @@ class BlockJogger(Jogger):
         """Start a step from rest. Raises DriverError if the controller rejects it."""
         assert direction is None  # otherwise the request was refused
         index, top = self._speed(name, speed)
-        self._sink.step_to(name, self._context.sample.demand[index] + distance, top)
+        self._sink.move_by_step(name, self._context.axis_sample.demand[index] + distance, top)
         self._axis, self.is_stepping = index, True
 
-    def jog(self, name: str, velocity: float, lease_s: float, direction: Direction | None = None) -> bool:
+    def start_or_renew_jog(
+        self, name: str, velocity: float, lease_s: float, direction: Direction | None = None
+    ) -> bool:
         """Start or renew a jog; return False if no travel remains in that direction.
 
         Raises DriverError if the controller rejects the jog.
@@ -409,9 +421,9 @@ class BlockJogger(Jogger):
             return True
         index, top = self._speed(name, abs(velocity))
         axis = self._context.machine.axes[index]
-        limits = axis.travel if self._context.sample.homed[index] else None
+        limits = axis.travel if self._context.axis_sample.homed[index] else None
         if limits is not None:
-            limits = limits[0] + SOFT_LIMIT_MARGIN, limits[1] - SOFT_LIMIT_MARGIN
+            limits = limits[0] + SOFT_LIMIT_MARGIN_MM, limits[1] - SOFT_LIMIT_MARGIN_MM
         moves = self._sink.start_jog(name, math.copysign(top, velocity), min(lease_s, MAX_LEASE_S), limits)
         if moves:
             self._axis = index
@@ -423,7 +435,7 @@ class BlockJogger(Jogger):
         Raises DriverError.
         """
         index, top = self._speed(name, speed)
-        here = self._context.sample.demand[index]
+        here = self._context.axis_sample.demand[index]
         limits = (min(here, target), max(here, target))
         moves = self._sink.start_jog(
             name, math.copysign(top, target - here), min(lease_s, MAX_LEASE_S), limits
@@ -449,7 +461,7 @@ class BlockJogger(Jogger):
         if pressed is None or pressed.until <= self._context.now or self._unready():
             return True
         self.button_input = button
-        return not self.jog(pressed.axis, pressed.velocity, pressed.until - self._context.now)
+        return not self.start_or_renew_jog(pressed.axis, pressed.velocity, pressed.until - self._context.now)
 
     def clear_jog(self) -> None:
         """Clear the active jog and the jog that waits for its end."""
@@ -459,7 +471,7 @@ class BlockJogger(Jogger):
     def _speed(self, name: str, speed: float) -> tuple[int, float]:
         index = self._context.ports.axes.axes.index(name)
         axis = self._context.machine.axes[index]
-        return index, min(speed, self.max_jog_speed(axis, self._context.sample.homed[index]))
+        return index, min(speed, self.get_max_jog_speed(axis, self._context.axis_sample.homed[index]))
 
     def _unready(self) -> str:
         state = self._sink.state()

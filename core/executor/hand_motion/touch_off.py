@@ -55,13 +55,13 @@ class TouchOff:
             self._command.sign,
             self._command.press,
         ):
-            self.cancel("another touch-off direction was selected")
+            self.cancel_touch_off("another touch-off direction was selected")
             self._ended = command.press
             return False
         self._until = self._context.now + min(command.lease, MAX_LEASE_S)
         return False
 
-    def cancel(self, reason: str) -> None:
+    def cancel_touch_off(self, reason: str) -> None:
         """Cancel the touch-off for the given reason and stop the axis. Raises DriverError."""
         if self.phase is None:
             return
@@ -80,36 +80,36 @@ class TouchOff:
         runs_in = self._was_made and not before and self._model is not None
         return runs_in and self.phase is None and state is MachineState.JOG
 
-    def advance(self) -> None:
+    def advance_one_tick(self) -> None:
         """Advance the touch-off by one tick. Raises DriverError."""
         assert self.phase is not None
         if why := self._find_abort_reason():
-            self.cancel(why)
+            self.cancel_touch_off(why)
             return
         here = self._here
         if self._braking:
             if self._jogger.finish_if_at_rest():
                 self._braking = False
                 self._at_rest(here)
-        elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW}:
+        elif self._made and self.phase in {TouchPhase.SEARCH, TouchPhase.SLOW_TOUCH}:
             self._handle_touch(here)
         elif self._made and self.phase is TouchPhase.RETURN:
-            self.cancel("a touch was detected on the return move; check the tool setter")
+            self.cancel_touch_off("a touch was detected on the return move; check the tool setter")
         elif self._move_to_target(here):
             self._arrived()
-        self._seen = (self._context.sample.t, here)
+        self._seen = (self._context.axis_sample.t, here)
 
     # --- conditions -----------------------------------------------------------------------------------------
 
     def _begin(self, command: TouchOffTool, state: MachineState, wheel: str) -> bool:
         if why := self._find_refusal(command, state, wheel):
             self._ended = command.press
-            self._context.log("refused", Message("touch-off: {why}", why=why))
+            self._context.log_text("refused", Message("touch-off: {why}", why=why))
             return False
         self._command, self._failed, self._latch = command, "", None
         self._until = self._context.now + min(command.lease, MAX_LEASE_S)
         self._start = self._here
-        self._seen = (self._context.sample.t, self._start)
+        self._seen = (self._context.axis_sample.t, self._start)
         self._jogger.clear_jog()
         assert self._model is not None
         if self._context.ports.touch is not None:
@@ -127,7 +127,7 @@ class TouchOff:
         reasons = (
             (state is not MachineState.IDLE, Message("not available in state {state}", state=state.value)),
             (
-                not self._context.sample.homed[self._index(axis)],
+                not self._context.axis_sample.homed[self._index(axis)],
                 Message("{axis} is not homed, so its position is not valid", axis=axis),
             ),
             (
@@ -155,14 +155,14 @@ class TouchOff:
                 bool(button) and not context.is_button_pressed(button),
                 Message("button {button} was released", button=button),
             ),
-            (context.signals.hold_requested, "feed hold is pressed"),
+            (context.signals.is_hold_requested, "feed hold is pressed"),
             (is_guard_open(context), "the guard is open: close it"),
             (
                 context.spindle.is_requested or not context.spindle.is_stopped,
                 ("the spindle is turning: stop it first"),
             ),
             (
-                PROBE_INPUT not in context.inputs or UnknownPart.INPUTS in context.unknown_items,
+                PROBE_INPUT not in context.inputs or UnknownPart.INPUTS in context.unknown_parts,
                 "the probe input is not being read; check its terminal",
             ),
         )
@@ -176,7 +176,7 @@ class TouchOff:
         assert self._model is not None
         axis = self._context.machine.find_axis(command.axis)
         low, high = axis.travel_with_margin
-        here = self._context.sample.actual[self._index(command.axis)]
+        here = self._context.axis_sample.actual[self._index(command.axis)]
         end = here + command.sign * (self._model.search + self._model.overtravel)
         if low <= end <= high:
             return ""
@@ -204,7 +204,7 @@ class TouchOff:
 
     @property
     def _here(self) -> float:
-        return self._context.sample.actual[self._index(self._command.axis)]
+        return self._context.axis_sample.actual[self._index(self._command.axis)]
 
     def _index(self, axis: str) -> int:
         return self._context.ports.axes.axes.index(axis)
@@ -220,24 +220,25 @@ class TouchOff:
         assert model is not None
         axis = context.machine.find_axis(command.axis)
         if (
-            abs(position - self._target) <= max(_TARGET_TOLERANCE, 2 * axis.count, axis.in_position)
+            abs(position - self._target)
+            <= max(_TARGET_TOLERANCE, 2 * axis.count_size, axis.in_position_tolerance)
             and self._jogger.finish_if_at_rest()
         ):
             self._rested = self._rested or context.now
             return context.now - self._rested >= _SETTLED_S
         if context.now - self._renewed >= _RENEWAL_INTERVAL_S:
             self._renewed = context.now
-            speed = model.slow if self.phase is TouchPhase.SLOW else model.speed
+            speed = model.slow if self.phase is TouchPhase.SLOW_TOUCH else model.speed
             self._jogger.jog_to_target(command.axis, self._target, speed, self._until - context.now)
         return False
 
     def _handle_touch(self, position: float) -> None:
         """Stop the axis because the input has turned on, and store the position."""
         context, port = self._context, self._context.ports.touch
-        if self.phase is TouchPhase.SLOW:
+        if self.phase is TouchPhase.SLOW_TOUCH:
             kept = port.read_latch() if port is not None else None
-            late = context.sample.t - self._seen[0]
-            self._latch = kept or TouchLatch(context.sample.t, context.sample.actual, late)
+            late = context.axis_sample.t - self._seen[0]
+            self._latch = kept or TouchLatch(context.axis_sample.t, context.axis_sample.actual, late)
         else:
             self._first = position
         self._jogger.stop()
@@ -254,7 +255,7 @@ class TouchOff:
         over = (here - place) * sign
         if over > model.overtravel:
             far = self._format_length(over)
-            self.cancel(
+            self.cancel_touch_off(
                 Message(
                     "the axis moved {distance} past the touch point, which is more than the "
                     "overtravel setting; check the tool setter",
@@ -276,7 +277,7 @@ class TouchOff:
             self._go(TouchPhase.RETURN, self._start)
         elif self.phase is TouchPhase.RETURN:
             self._over(self._failed)
-        elif self.phase is TouchPhase.SLOW:
+        elif self.phase is TouchPhase.SLOW_TOUCH:
             self._failed = "no second touch detected; check whether the tool or the tool setter is loose"
             self._go(TouchPhase.RETURN, self._first - sign * model.back_off)
         elif self._made:
@@ -291,7 +292,7 @@ class TouchOff:
         elif self.phase is TouchPhase.BACK_OFF:
             if port is not None:
                 port.arm_latch()
-            self._go(TouchPhase.SLOW, self._first + sign * model.overtravel)
+            self._go(TouchPhase.SLOW_TOUCH, self._first + sign * model.overtravel)
         else:
             self._finish_measurement()
 
@@ -304,7 +305,7 @@ class TouchOff:
         command, place = self._command, self._latch.axis_positions[self._index(self._command.axis)]
         assert self._model is not None
         half = self._model.slow * self._latch.max_delay_s / 2.0
-        count = self._context.machine.find_axis(command.axis).count
+        count = self._context.machine.find_axis(command.axis).count_size
         self._over("", place - command.sign * half, half + count / 2.0)
 
     def _over(self, why: str, place: float | None = None, error: float = 0.0) -> None:
@@ -312,7 +313,7 @@ class TouchOff:
         self.phase, self._ended, self._braking = None, command.press, False
         self.last_result = TouchResult(count + 1, command.axis, command.sign, place, error, why)
         if why:
-            self._context.log("refused", Message("touch-off: {why}", why=why))
+            self._context.log_text("refused", Message("touch-off: {why}", why=why))
 
 
 class Homing:
@@ -331,7 +332,7 @@ class Homing:
             return Message("this machine has no axis {name} to home", name=name)
         lost = [
             axis
-            for axis, homed in zip(axes, self._context.sample.homed, strict=True)
+            for axis, homed in zip(axes, self._context.axis_sample.homed, strict=True)
             if not homed and name in {"", axis.name}
         ]
         if not lost:
@@ -345,21 +346,21 @@ class Homing:
         self._left, self._now = [], ""
         self._context.ports.axes.stop(StopMode.RAMP_HOLD)
 
-    def advance(self) -> bool:
+    def home_next_axis(self) -> bool:
         """Start homing the next axis when one axis is homed; return whether all axes are homed.
 
         The function is called every tick. Raises DriverError if a drive rejects homing.
         """
         context = self._context
-        homed = dict(zip(context.ports.axes.axes, context.sample.homed, strict=True))
+        homed = dict(zip(context.ports.axes.axes, context.axis_sample.homed, strict=True))
         if self._now and not homed[self._now]:
             self._found_at = context.now
             return False
         if self._left:
-            if self._now and context.sample.moving and context.now < self._found_at + _SETTLING_TIME_S:
+            if self._now and context.axis_sample.moving and context.now < self._found_at + _SETTLING_TIME_S:
                 return False
             self._now = self._left.pop(0)
             context.ports.axes.home(self._now)
             return False
         self._now = ""
-        return not context.sample.moving
+        return not context.axis_sample.moving

@@ -21,12 +21,12 @@ from core.block_ports import (
     RapidOperation,
     ThreadOperation,
 )
-from core.executor.job import ReadAhead, nominal_duration_s
+from core.executor.job import BlockReadAhead, compute_nominal_duration_s
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import OverrideFactors, SectionProgress
 from core.executor.program_motion.standstill import StandstillWait, make_spindle_speed_wait
 from core.executor.raised_alarm import AlarmError
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.geometry.surface_speed import find_surface_rpm
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
@@ -35,7 +35,7 @@ from core.motion.axis_limits import CENTRIPETAL_SHARE, MotionLimits
 # --- elementary blocks in parts -------------------------------------------------------------------------
 
 
-MAX_PART_S = 0.2  # s, longest part at its programmed speed
+MAX_PART_DURATION_S = 0.2  # s, longest part at its programmed speed
 _SHORTEST_PART = 0.05  # mm, shortest part at a slow feed
 _MAX_ARC_SWEEP_RAD = 3.0  # radians
 _CUT_AHEAD_S = 1.0  # s of motion prepared in parts
@@ -71,7 +71,7 @@ def split_block(
     if block.travel is not None or block.plane is not None or block.c != block.c0:
         raise AlarmError("program", "this controller can move only X and Z", block.line)
     fastest = find_max_speed(block)
-    seconds = max(nominal_duration_s(block), block.length / fastest)
+    seconds = max(compute_nominal_duration_s(block), block.length / fastest)
     if block.kind is BlockKind.THREAD:
         start = block.x0 + block.offset_x, block.z0 + block.offset_z
         yield BlockPart(ThreadOperation(*start, block.mx, block.mz, block.feed), block, seconds)
@@ -101,7 +101,9 @@ def _count_parts(block: Block, seconds: float) -> int:
     center, which do not distinguish a full circle from a zero move.
     """
     least = math.ceil(abs(_sweep(block)[1]) / _MAX_ARC_SWEEP_RAD) if block.kind is BlockKind.ARC else 1
-    return max(least, min(math.ceil(seconds / MAX_PART_S - 1e-9), math.ceil(block.length / _SHORTEST_PART)))
+    return max(
+        least, min(math.ceil(seconds / MAX_PART_DURATION_S - 1e-9), math.ceil(block.length / _SHORTEST_PART))
+    )
 
 
 def _make_operation(
@@ -148,7 +150,7 @@ def _point_on_arc(block: Block, part: float) -> tuple[float, float]:
 
 
 def _sweep(block: Block) -> tuple[float, float]:
-    return arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
+    return compute_arc_sweep(block.x0, block.z0, block.x, block.z, block.cx, block.cz, block.clockwise)
 
 
 def _feed_rate(block: Block, x: float, spindle_speed: SpindleSpeed) -> float:
@@ -181,7 +183,7 @@ class _SurfaceSpeed(NamedTuple):
     highest: float | None
 
     @classmethod
-    def of(cls, block: Block) -> _SurfaceSpeed | None:
+    def from_block(cls, block: Block) -> _SurfaceSpeed | None:
         """Return the surface speed of a block, or None if the block has no surface speed or no rpm."""
         if block.css is None or not block.rpm:
             return None
@@ -278,15 +280,15 @@ class ControllerMotion:
             self._sink.resume()
         self._hand_over()
 
-    def update_progress(self, feed: ReadAhead) -> SectionProgress:
+    def update_progress(self, read_ahead: BlockReadAhead) -> SectionProgress:
         """Apply switches and overrides, send the permitted blocks and return the progress."""
         if not self._active:
             return SectionProgress.DONE
         self._apply_overrides()
         state = self._poll_controller()
         self._detect_absence()
-        if not self._thread and feed.pending_blocks and self._ready() < _CUT_AHEAD_S:
-            self._waiting.extend(feed.take())
+        if not self._thread and read_ahead.pending_blocks and self._ready() < _CUT_AHEAD_S:
+            self._waiting.extend(read_ahead.take())
         self._hand_over()
         if state.is_in_feed_hold and not self._still:
             return SectionProgress.IN_FEED_HOLD
@@ -305,12 +307,12 @@ class ControllerMotion:
         if not self._thread:
             self._sink.hold_on_path()
 
-    def brake(self) -> None:
+    def stop_at_once(self) -> None:
         """Stop at once and discard the blocks in the controller."""
         self._empty()
         self._sink.abort_blocks()
 
-    def run_to_stop(self) -> None:
+    def discard_remaining_plan(self) -> None:
         """Do nothing, because the controller stops automatically at the end of its blocks."""
 
     def cancel_waiting_pass(self) -> bool:
@@ -321,7 +323,7 @@ class ControllerMotion:
         """Stop a thread pass that has lost spindle synchronization; X is retracted afterwards."""
         left = [*(each.piece.block for each in self._sent), *(each.block for each in self._pieces)]
         self._lost = block, [block, *left, *self._waiting][-1].mx
-        self.brake()
+        self.stop_at_once()
 
     def continue_retract(self) -> None:
         """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread.
@@ -330,7 +332,7 @@ class ControllerMotion:
         """
         assert self._lost is not None
         block, out = self._lost
-        x, z = self._context.sample.actual[:2]
+        x, z = self._context.axis_sample.actual[:2]
         if abs(x - out) < _POSITION_TOLERANCE_MM or self._sink.state().start_refusal:
             raise AlarmError("thread-lost", line=block.line)
         self._pieces.append(BlockPart(RapidOperation(out, z, block.modal.rapid_rate), block, 0.0))
@@ -416,7 +418,7 @@ class ControllerMotion:
         If the speed steps of a spindle depend on its last S word, the spindle is set up at rest for each
         surface speed. The spindle must then be at speed before any axis moves.
         """
-        surface = _SurfaceSpeed.of(block)
+        surface = _SurfaceSpeed.from_block(block)
         if surface is None or surface == self._laid or math.isinf(self._sink.css_max_rpm):
             self._laid, self._speed = surface, None
             return True
@@ -434,7 +436,7 @@ class ControllerMotion:
 
     def _hand_over(self) -> None:
         while self._waiting and self._cut_ahead < _CUT_AHEAD_S and self._prepare_css(self._waiting[0]):
-            turning = SpindleSpeed(self._overrides.spindle, self._max_rpm())
+            turning = SpindleSpeed(self._overrides.spindle_factor, self._max_rpm())
             self._pieces.extend(split_block(self._waiting.popleft(), turning, self._max_block_speed))
         while self._pieces and self._may_send(self._pieces[0]):
             ticket = self._sink.submit_block(self._pieces[0].operation)
@@ -451,14 +453,16 @@ class ControllerMotion:
         the slower axis and of its acceleration.
         """
         if block.kind is not BlockKind.ARC:
-            return self._sink.max_line_speed(block.x - block.x0, block.z - block.z0)
+            return self._sink.get_max_line_speed(block.x - block.x0, block.z - block.z0)
         around = (
             CENTRIPETAL_SHARE
-            * self._limits.plane_acceleration
+            * self._limits.max_plane_acceleration
             * math.hypot(block.x - block.cx, block.z - block.cz)
         )
         return min(
-            self._sink.max_line_speed(1.0, 0.0), self._sink.max_line_speed(0.0, 1.0), math.sqrt(around)
+            self._sink.get_max_line_speed(1.0, 0.0),
+            self._sink.get_max_line_speed(0.0, 1.0),
+            math.sqrt(around),
         )
 
     def _may_send(self, piece: BlockPart) -> bool:
@@ -471,7 +475,7 @@ class ControllerMotion:
             return False
         if self._thread or not self._sent:
             return True
-        slow = max(min(self._overrides.feed, 1.0), _MIN_OVERRIDE)
+        slow = max(min(self._overrides.feed_factor, 1.0), _MIN_OVERRIDE)
         return (self._seconds - self._sent[0].piece.min_duration_s) / slow < self._sink.max_lead_s
 
     def _single(self, block: Block) -> bool:

@@ -10,15 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from core.alarms import CATALOGUE, AlarmCode
-from core.executor.job import ProgramPass, ReadAhead
+from core.alarms import CATALOG, AlarmCode
+from core.executor.job import BlockReadAhead, ProgramPass
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.controller_motion import ControllerMotion
 from core.executor.program_motion.path_section import SectionProgress
 from core.executor.program_motion.setpoint_motion import SetpointMotion
 from core.executor.program_motion.standstill import (
     NextAction,
-    Standstill,
+    StandstillSequencer,
     StandstillWait,
     make_spindle_speed_wait,
 )
@@ -49,7 +49,7 @@ _SPINDLE_WORDS = (SpindleStop, SpindleLock, SpindlePositioning, ProgramEnd)
 class HoldController:
     """Controller that stops and resumes the motion of a cycle. It is used on the executor's thread only."""
 
-    def __init__(self, context: MachineContext, motion: PathMotion, standstill: Standstill) -> None:
+    def __init__(self, context: MachineContext, motion: PathMotion, standstill: StandstillSequencer) -> None:
         self._context = context
         self._motion = motion
         self._still = standstill
@@ -60,7 +60,7 @@ class HoldController:
         self._retracting = False  # the tool retracts from a thread that has lost its spindle
 
     @property
-    def resumes_in_section(self) -> bool:
+    def will_resume_in_section(self) -> bool:
         """Return whether motion will resume within the present path section rather than in the next one."""
         return self._motion.has_section and not self._motion.is_complete
 
@@ -89,18 +89,18 @@ class HoldController:
         self._context.show_stop(*(find_hold_code(reason, source) if code is None else (code, reason.lower())))
         if self._motion.is_moving:
             self._motion.hold_on_path()
-            return MachineState.HOLDING
-        self._motion.run_to_stop()  # a plan whose queue has run out must not be continued
+            return MachineState.STOPPING
+        self._motion.discard_remaining_plan()  # a plan whose queue has run out must not be continued
         return MachineState.HOLD
 
     def hold_for_underrun(self, code: AlarmCode, detail: str) -> None:
         """Store and show that the axes stop because the queue was not refilled in time."""
-        self.hold_reason, self._since = CATALOGUE[code].text.upper(), self._context.now
+        self.hold_reason, self._since = CATALOG[code].text.upper(), self._context.now
         self._context.show_stop(code, detail)
 
     def start_retract(self, block: Block) -> None:
         """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
-        self._context.log("thread", "spindle speed lost during threading")
+        self._context.log_text("thread", "spindle speed lost during threading")
         self._motion.start_retract(block)
         self._retracting = True
 
@@ -123,7 +123,7 @@ class HoldController:
         ``last_executed_block`` is the last block that single block executed, or None.
         """
         self.hold_reason = ""
-        within = self.resumes_in_section
+        within = self.will_resume_in_section
         self._still.has_executed_block = within
         self._still.extend_wait_for_hold(self._context.now - self._since)
         self._behind = last_executed_block
@@ -149,7 +149,7 @@ class HoldController:
             return MachineState.WAIT
         self._spin_up = None
         self._still.extend_wait_for_hold(self._context.now - self._since)
-        if self.resumes_in_section:
+        if self.will_resume_in_section:
             self._motion.resume(self._behind)
         return MachineState.RUN
 
@@ -162,7 +162,7 @@ class HoldController:
 
 
 class Cycle:
-    """One cycle of a program, advanced by ``advance`` in every tick.
+    """One cycle of a program, advanced by ``advance_one_tick`` in every tick.
 
     ``change_state`` is called at each change of state, and ``handle_end`` at the end of the program.
     ``initial_modal`` is the modal state before the first block.
@@ -182,9 +182,9 @@ class Cycle:
         self._enter = change_state
         self._ended = handle_end
         self._needs_end = source.make_checkpoint is None
-        self._feed = ReadAhead(source, context.machine)
+        self._feed = BlockReadAhead(source, context.machine)
         self._state = MachineState.RUN
-        self._still = Standstill(context, self._feed, lambda: self._is_tapping)
+        self._still = StandstillSequencer(context, self._feed, lambda: self._is_tapping)
         self._hold = HoldController(context, motion, self._still)
         # a pending hold that starts when the tap has left its hole
         self._later: Callable[[], MachineState] | None = None
@@ -219,21 +219,26 @@ class Cycle:
     # --- requests of the operator -------------------------------------------------------------------------
 
     def start_feed_hold(
-        self, reason: str = "", source: str = "", code: AlarmCode | None = None, *, at_once: bool = False
+        self,
+        reason: str = "",
+        source: str = "",
+        code: AlarmCode | None = None,
+        *,
+        stops_at_once: bool = False,
     ) -> None:
         """Hold the cycle.
 
         The parameters ``reason``, ``source`` and ``code`` are described in ``HoldController.stop_motion``.
         A tap first leaves its hole while the spindle continues to turn. The axes stop at once if the
-        spindle is stopped or ``at_once`` is True.
+        spindle is stopped or ``stops_at_once`` is True.
         """
-        if self._state in {MachineState.HOLD, MachineState.HOLDING}:
+        if self._state in {MachineState.HOLD, MachineState.STOPPING}:
             self._hold.hold_reason = self._hold.hold_reason or reason
         if self._state not in _MOVING_STATES:
             return
         begin = partial(self._hold.stop_motion, reason, source, code)
         turns = not (self._context.spindle.is_speed_lost or self._context.spindle.waiting_reason)
-        if self._is_tapping and turns and not at_once:
+        if self._is_tapping and turns and not stops_at_once:
             self._later = self._later or begin
         else:
             self._later = None
@@ -255,10 +260,10 @@ class Cycle:
 
     def hold_for_underrun(self, code: AlarmCode = "low-queue", detail: str = "") -> None:
         """Enter feed hold because the queue was not refilled in time. Cycle Start resumes the program."""
-        self._motion.run_to_stop()
+        self._motion.discard_remaining_plan()
         if self._state in _MOVING_STATES:
             self._hold.hold_for_underrun(code, detail)
-            self._change(MachineState.HOLDING)
+            self._change(MachineState.STOPPING)
 
     def wait_for_next_cycle(self, label: str) -> None:
         """Wait after the end of the program until another cycle replaces this cycle."""
@@ -267,9 +272,9 @@ class Cycle:
     def stop_canceled_cycle(self) -> None:
         """Stop the motion of a canceled cycle. The caller waits for ``is_at_rest``."""
         if self._motion.is_moving:
-            self._motion.brake()
+            self._motion.stop_at_once()
         if self._state in _MOVING_STATES:
-            self._change(MachineState.HOLDING)
+            self._change(MachineState.STOPPING)
 
     def find_resume_refusal(self) -> str:
         """Return why a stopped cycle cannot resume now, or an empty string."""
@@ -288,7 +293,7 @@ class Cycle:
         if stopped is MachineState.PROGRAM_STOP:
             self._feed.release_stop()
         self._change(MachineState.RUN)
-        finished_block = self.current_block if stopped is MachineState.BLOCK_END else None
+        finished_block = self.current_block if stopped is MachineState.SINGLE_BLOCK_STOP else None
         self._hold.resume(finished_block, starts_spindle=starts_spindle)
 
     # --- actions in every tick ----------------------------------------------------------------------------
@@ -297,7 +302,7 @@ class Cycle:
         """Show the block at which the axes are, even if no tick occurred while the axes moved through it."""
         self._show_block_at_rest(self._motion.current_block)
 
-    def advance(self) -> None:
+    def advance_one_tick(self) -> None:
         """Refill the queue, then perform the next action. Raises AlarmError, MotionError or DriverError."""
         playing = self._motion.current_block if self._motion.is_moving else None
         if playing is not None:
@@ -305,7 +310,7 @@ class Cycle:
             self._check_spindle(playing)
         if self._state in _MOVING_STATES and self._start_pending_hold():
             return
-        if self._state is MachineState.HOLDING:
+        if self._state is MachineState.STOPPING:
             if self._hold.is_at_rest():
                 self.update_current_block()
                 self._change(MachineState.HOLD)
@@ -314,7 +319,9 @@ class Cycle:
             self._advance()
 
     def _read(self) -> None:
-        self._feed.read_blocks(_READ_AHEAD_BLOCKS, _READ_AHEAD_FRACTION * self._context.lateness.lookahead_s)
+        self._feed.read_blocks(
+            _READ_AHEAD_BLOCKS, _READ_AHEAD_FRACTION * self._context.tick_lateness.lookahead_s
+        )
 
     def _advance(self) -> None:
         if self._context.spindle.waiting_reason and self._needs_spindle():
@@ -326,7 +333,11 @@ class Cycle:
 
     def _needs_spindle(self) -> bool:
         """Return whether the present or the next block needs a turning spindle."""
-        if self._hold.resumes_in_section or self._still.wait_label is not None or self._feed.pending_blocks:
+        if (
+            self._hold.will_resume_in_section
+            or self._still.wait_label is not None
+            or self._feed.pending_blocks
+        ):
             return True
         stop = self._feed.stop
         return stop is not None and not isinstance(stop.action, _SPINDLE_WORDS)
@@ -339,9 +350,9 @@ class Cycle:
                 self._change(MachineState.WAIT)
             case SectionProgress.BLOCK_END:
                 self._show_block_at_rest(self._motion.current_block)
-                self._change(MachineState.BLOCK_END)
+                self._change(MachineState.SINGLE_BLOCK_STOP)
             case SectionProgress.IN_FEED_HOLD:
-                self.start_feed_hold("CONTROLLER IN FEED HOLD", at_once=True)
+                self.start_feed_hold("CONTROLLER IN FEED HOLD", stops_at_once=True)
             case SectionProgress.DONE:
                 self._show_block_at_rest(self._motion.last_block)
                 self._advance_at_rest()
@@ -353,7 +364,7 @@ class Cycle:
         """
         for _ in range(_MAX_ACTIONS_PER_TICK):
             match self._still.determine_next_action():
-                case NextAction.ASK_AGAIN:
+                case NextAction.DETERMINE_AGAIN:
                     self._change(MachineState.RUN)
                 case NextAction.ACTION if self._feed.stop is not None:
                     if not self._execute_block(self._feed.stop):
@@ -368,7 +379,7 @@ class Cycle:
             case NextAction.WAIT:
                 self._change(MachineState.WAIT if self._still.wait_label else MachineState.RUN)
             case NextAction.BLOCK_END:
-                self._change(MachineState.BLOCK_END)
+                self._change(MachineState.SINGLE_BLOCK_STOP)
             case NextAction.MOTION:
                 self._change(MachineState.RUN)
                 self._read()
@@ -409,7 +420,7 @@ class Cycle:
             return
         if block.kind is BlockKind.THREAD and not self._motion.cancel_waiting_pass():
             self._hold.start_retract(block)
-            self._change(MachineState.HOLDING)
+            self._change(MachineState.STOPPING)
         elif (
             block.kind is BlockKind.THREAD
             or (block.per_rev and not block.modal.c_locked)
@@ -425,7 +436,7 @@ class Cycle:
     def _show(self, block: Block) -> None:
         self.current_block = block
         self.modal = block.modal
-        self._context.line = block.line
+        self._context.line_number = block.line
         if block.moves:
             self._context.spindle.follow_block(block)
 

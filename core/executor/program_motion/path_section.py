@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.lateness import QUEUE_RESERVE_S, TickLateness
+from core.executor.tick_lateness import QUEUE_RESERVE_S, TickLateness
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 from core.motion.motion_path import MotionPath, PathBuilder
 from core.motion.motion_plan import plan_motion
 from core.motion.motion_profile import MotionProfile
-from core.ports import AxisSink, DriverError, Segments
+from core.ports import AxisSink, DriverError, MotionSegments
 
 _PLAN_END_MARGIN_S = 0.4  # s before the end of a plan within which a longer path would give another speed
 _MAX_ATTEMPTS = 3
@@ -39,12 +39,12 @@ class SectionProgress(Enum):
 class OverrideFactors(NamedTuple):
     """Overrides as fractions of the programmed speeds.
 
-    ``spindle`` is the ratio of the actual to the programmed spindle speed.
+    ``spindle_factor`` is the ratio of the actual to the programmed spindle speed.
     """
 
-    feed: float = 1.0
-    rapid: float = 1.0
-    spindle: float = 1.0
+    feed_factor: float = 1.0
+    rapid_factor: float = 1.0
+    spindle_factor: float = 1.0
 
 
 class PathSection:
@@ -70,7 +70,7 @@ class PathSection:
         """Return the block with this number, or None."""
         return self._blocks.get(number)
 
-    def following_blocks(self, block_number: int) -> list[Block]:
+    def list_following_blocks(self, block_number: int) -> list[Block]:
         """Return the blocks after block ``block_number``, in order."""
         return [block for number, block in sorted(self._blocks.items()) if number > block_number]
 
@@ -89,10 +89,10 @@ class PathSection:
         """Return the block with the highest number, or None."""
         return self._blocks[max(self._blocks)] if self._blocks else None
 
-    def block_end_distance(self, number: int) -> float:
+    def get_block_end_distance(self, number: int) -> float:
         """Return the distance at which block ``number`` ends, or inf if the block is not on the path."""
         path = self._builder.build_path()
-        return path.block_span(number)[1] if number in self._blocks else np.inf
+        return path.find_block_span(number)[1] if number in self._blocks else np.inf
 
     def drop_blocks_before(self, block_number: int | None) -> None:
         """Drop the blocks before block ``block_number``."""
@@ -140,11 +140,11 @@ class PathSection:
             return 0.0
         block = self._blocks[n]
         if block.rapid:
-            return overrides.rapid
+            return overrides.rapid_factor
         if block.follows_spindle:
-            return overrides.spindle
+            return overrides.spindle_factor
         turns = block.per_rev and not block.modal.c_locked
-        return overrides.feed * overrides.spindle if turns else overrides.feed
+        return overrides.feed_factor * overrides.spindle_factor if turns else overrides.feed_factor
 
 
 # --- contents of the setpoint queue ---------------------------------------------------------------------
@@ -158,16 +158,16 @@ class QueuedPlan(NamedTuple):
 
     start_time_s: float
     time_origin_s: float
-    profile: MotionProfile
+    motion_profile: MotionProfile
 
-    def distance_and_speed_at(self, time_s: float) -> tuple[float, float]:
+    def get_distance_and_speed(self, time_s: float) -> tuple[float, float]:
         """Return the distance along the path and the speed at ``time_s``."""
-        s, v = self.profile.distance_and_speed_at(time_s - self.time_origin_s)
+        s, v = self.motion_profile.distance_and_speed_at(time_s - self.time_origin_s)
         return float(s[0]), float(v[0])
 
-    def block_number_at(self, time_s: float) -> int:
+    def get_block_number(self, time_s: float) -> int:
         """Return the number of the block that is executed at ``time_s``."""
-        return self.profile.block_number_at(time_s - self.time_origin_s)
+        return self.motion_profile.block_number_at(time_s - self.time_origin_s)
 
 
 class QueuedPlans:
@@ -176,7 +176,7 @@ class QueuedPlans:
     def __init__(self) -> None:
         self._tracks: list[QueuedPlan] = []
 
-    def clear(self) -> None:
+    def clear_plans(self) -> None:
         """Remove all plans."""
         self._tracks = []
 
@@ -192,7 +192,7 @@ class QueuedPlans:
                 return track
         return self._tracks[0] if self._tracks else None
 
-    def replace_from(self, time_s: float, plans: Sequence[QueuedPlan], now: float) -> None:
+    def replace_plans(self, time_s: float, plans: Sequence[QueuedPlan], now: float) -> None:
         """Replace the plans from ``time_s`` on, and drop the plans that have ended at ``now``."""
         kept = [track for track in self._tracks if track.start_time_s < time_s]
         over = max((i for i, track in enumerate(kept) if track.start_time_s <= now), default=0)
@@ -229,21 +229,21 @@ class PlanQueue:
         """Return the last plan in the queue, or None."""
         return self._tracks.last_plan
 
-    def earliest_splice_time(self, now: float) -> float:
+    def get_earliest_splice_time(self, now: float) -> float:
         """Return the earliest time from which a plan that is started at ``now`` can change the queue."""
         return now + self._axes.commit + 1.5 * self._cost
 
-    def latest_splice_time(self, now: float) -> float:
+    def get_latest_splice_time(self, now: float) -> float:
         """Return the splice time of a plan that needs all its attempts."""
-        return self.earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
+        return self.get_earliest_splice_time(now) + _MAX_ATTEMPTS * _SPLICE_DELAY_S
 
     def find_plan(self, time_s: float) -> QueuedPlan | None:
         """Return the plan that is executed at ``time_s``, or None if the queue is empty."""
         return self._tracks.find_plan(time_s)
 
-    def clear(self) -> None:
+    def clear_queue(self) -> None:
         """Discard the present plan and the stored queue."""
-        self._tracks.clear()
+        self._tracks.clear_plans()
         self._profile, self._origin, self._queued_to = None, 0.0, 0.0
 
     def splice_plan(self, make_plan: Callable[[float], MotionProfile], *, as_soon_as_possible: bool) -> None:
@@ -254,7 +254,7 @@ class PlanQueue:
         """
         for attempt in range(_MAX_ATTEMPTS):
             began = self._axes.now()
-            t = self.earliest_splice_time(began) + attempt * _SPLICE_DELAY_S
+            t = self.get_earliest_splice_time(began) + attempt * _SPLICE_DELAY_S
             if not as_soon_as_possible:
                 t = max(t, min(self._queued_to, self.planned_end_s - _PLAN_END_MARGIN_S))
             profile = make_plan(t)
@@ -284,11 +284,11 @@ class PlanQueue:
         self._queue_plan(at, self._origin, self._profile)
         return True
 
-    def run_to_stop(self) -> None:
+    def discard_remaining_plan(self) -> None:
         """Discard the rest of the plan, but leave the braking tail in the queue."""
         track = self._tracks.last_plan
         if track is not None:
-            self._origin, self._profile = track.time_origin_s, track.profile
+            self._origin, self._profile = track.time_origin_s, track.motion_profile
             self._queued_to = self.planned_end_s
 
     def _queue_plan(self, t: float, origin: float, profile: MotionProfile) -> None:
@@ -302,12 +302,16 @@ class PlanQueue:
         tracks = [QueuedPlan(t, origin, profile)]
         if end < origin + profile.duration_s - 1e-9:
             s, v = profile.distance_and_speed_at(end - origin)
-            tail = plan_motion(profile.path, start_distance=float(s[0]), start_speed=float(v[0]), stop=True)
+            tail = plan_motion(
+                profile.path, start_distance=float(s[0]), start_speed=float(v[0]), stop_early=True
+            )
             parts.append(tail.make_segments(0.0, tail.duration_s, end))
             tracks.append(QueuedPlan(end, end, tail))
-        setpoints = Segments(*[np.concatenate(part) for part in zip(*parts, strict=True)])
-        if not len(setpoints.t):
-            setpoints = Segments.make_rest(t, profile.path.positions_at(np.array([profile.end_distance]))[0])
+        setpoints = MotionSegments(*[np.concatenate(part) for part in zip(*parts, strict=True)])
+        if not len(setpoints.start_times_s):
+            setpoints = MotionSegments.make_rest(
+                t, profile.path.positions_at(np.array([profile.end_distance]))[0]
+            )
         self._axes.splice(setpoints)
-        self._tracks.replace_from(t, tracks, self._axes.now())
+        self._tracks.replace_plans(t, tracks, self._axes.now())
         self._queued_to = end

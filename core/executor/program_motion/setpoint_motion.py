@@ -10,7 +10,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from core.executor.job import ReadAhead
+from core.executor.job import BlockReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.program_motion.path_section import (
     OverrideFactors,
@@ -42,7 +42,7 @@ class SetpointMotion:
         self._context = context
         self._axes = context.ports.axes
         self._limits = MotionLimits.of(machine.axes, machine.timing.setpoint, machine.limits.corner_tolerance)
-        self._queue = PlanQueue(self._axes, context.lateness)
+        self._queue = PlanQueue(self._axes, context.tick_lateness)
         self._section: PathSection | None = None
         # a thread pass, used instead of a path section
         self._pass: ThreadPass | GearedThreadPass | None = None
@@ -75,7 +75,7 @@ class SetpointMotion:
     def following_block(self) -> Block | None:
         """Return the block after the one being executed, or None if it is not in the path section."""
         if self._pass is not None:
-            following_blocks = self._following_blocks(self._pass.block_at(self._axes.now()))
+            following_blocks = self._following_blocks(self._pass.get_block(self._axes.now()))
             return following_blocks[0] if following_blocks else None
         return self._section.find_block(self._shown.n + 1) if self._section and self._shown else None
 
@@ -123,7 +123,7 @@ class SetpointMotion:
         self._single_from = last_executed_block.n + 1 if last_executed_block else None
         self._plan_motion()
 
-    def update_progress(self, feed: ReadAhead) -> SectionProgress:
+    def update_progress(self, read_ahead: BlockReadAhead) -> SectionProgress:
         """Apply switches and overrides, add blocks that were read ahead, and return the progress."""
         if not self.has_section:
             return SectionProgress.DONE
@@ -137,7 +137,7 @@ class SetpointMotion:
             self._plan_motion()
         if ran_dry or self.is_moving:
             if not ran_dry:
-                self._refill(feed)
+                self._refill(read_ahead)
             return SectionProgress.MOVING
         if self._last is not None and self._finish_step(self._last):
             return SectionProgress.BLOCK_END if self._has_steps_left() else SectionProgress.DONE
@@ -160,16 +160,16 @@ class SetpointMotion:
             overrides = self._present_overrides()
             self._queue.splice_plan(lambda t: self._plan_stop(t, overrides), as_soon_as_possible=True)
 
-    def brake(self) -> None:
+    def stop_at_once(self) -> None:
         """Stop at once on the path, even in a thread."""
         if self._pass is not None:
             self._pass.stop_in_thread()
         else:
             self._queue.splice_plan(lambda t: self._plan_stop(t, OverrideFactors()), as_soon_as_possible=True)
 
-    def run_to_stop(self) -> None:
+    def discard_remaining_plan(self) -> None:
         """Discard the rest of the plan, but leave the braking tail in the queue."""
-        self._queue.run_to_stop()
+        self._queue.discard_remaining_plan()
 
     def cancel_waiting_pass(self) -> bool:
         """Cancel a thread pass that is waiting for the index pulse.
@@ -183,7 +183,7 @@ class SetpointMotion:
     def start_retract(self, block: Block) -> None:
         """Stop along a thread that has lost spindle synchronization; X is retracted afterwards."""
         self._retract = ThreadRetract.from_block(block, self._following_blocks(block), self._context.spindle)
-        self.brake()
+        self.stop_at_once()
 
     def continue_retract(self) -> None:
         """Retract X from rest, and raise AlarmError("thread-lost") when the tool is clear of the thread."""
@@ -222,7 +222,7 @@ class SetpointMotion:
 
     def _clear(self) -> None:
         self._section = self._shown = self._pass = self._stepped = None
-        self._queue.clear()
+        self._queue.clear_queue()
 
     def _present_overrides(self) -> OverrideFactors:
         """Return the present overrides.
@@ -261,21 +261,21 @@ class SetpointMotion:
         assert self._section is not None
         return _make_plan(self._section.scale_path(overrides, None), self._queue.find_plan(t), t, stop=True)
 
-    def _refill(self, feed: ReadAhead) -> None:
+    def _refill(self, feed: BlockReadAhead) -> None:
         """Append blocks that were read ahead.
 
         The blocks are appended before the axes come near the braking end of the path section.
         """
         now = self._context.now
         left = (self._pass.end_time_s if self._pass is not None else self._queue.planned_end_s) - now
-        ahead = self._context.lateness.lookahead_s
+        ahead = self._context.tick_lateness.lookahead_s
         wanted = feed.pending_motion_s > 0.25 * ahead or feed.is_exhausted or left < 0.75 * ahead
         if feed.pending_blocks and wanted and left < 1.5 * ahead:
             self._add(feed.take())
             self._plan_motion(as_soon_as_possible=False)
         self._extend(now)
         if self._pass is not None and self._pass.detect_lost_step():
-            self._context.log(
+            self._context.log_text(
                 "thread",
                 "the spindle speed changed faster than the axes could follow; check the thread",
             )
@@ -293,12 +293,12 @@ class SetpointMotion:
 
     def _stop_distance(self) -> float:
         """Return the shortest distance along the path at which the present motion can still stop."""
-        t = self._queue.latest_splice_time(self._axes.now())
+        t = self._queue.get_latest_splice_time(self._axes.now())
         track = self._queue.find_plan(t)
         if track is None:
             return -np.inf
-        s, v = track.distance_and_speed_at(t)
-        return s + v * v / (2.0 * _LEAST * self._limits.plane_acceleration)
+        s, v = track.get_distance_and_speed(t)
+        return s + v * v / (2.0 * _LEAST * self._limits.max_plane_acceleration)
 
     # --- single block and the present block ---------------------------------------------------------------
 
@@ -325,7 +325,7 @@ class SetpointMotion:
         if self._queue.last_plan is None:
             return self._section.find_stop_block(first, -np.inf)
         return self._section.find_stop_block(
-            first, self._plan_stop(self._queue.earliest_splice_time(now), OverrideFactors()).end_distance
+            first, self._plan_stop(self._queue.get_earliest_splice_time(now), OverrideFactors()).end_distance
         )
 
     def _finish_step(self, last: int) -> bool:
@@ -334,7 +334,10 @@ class SetpointMotion:
             return self._pass.is_fully_queued
         assert self._section is not None
         track = self._queue.last_plan
-        if track is None or track.profile.end_distance < self._section.block_end_distance(last) - 1e-9:
+        if (
+            track is None
+            or track.motion_profile.end_distance < self._section.get_block_end_distance(last) - 1e-9
+        ):
             return False
         self._stepped = last
         return True
@@ -347,7 +350,7 @@ class SetpointMotion:
         if self._section is None:
             return False
         at = self._block_at(self._axes.now())
-        return at is None or bool(self._section.following_blocks(at.n))
+        return at is None or bool(self._section.list_following_blocks(at.n))
 
     def _is_fully_queued(self) -> bool:
         """Return whether the queue ends where the path section ends."""
@@ -356,7 +359,7 @@ class SetpointMotion:
         track = self._queue.last_plan
         if self._section is None or not self._section.length_mm:
             return True
-        return track is not None and track.profile.end_distance >= self._section.end_distance - 1e-9
+        return track is not None and track.motion_profile.end_distance >= self._section.end_distance - 1e-9
 
     def _is_at_rest(self) -> bool:
         """Return whether the queue has ended.
@@ -368,11 +371,11 @@ class SetpointMotion:
 
     def _block_at(self, now: float) -> Block | None:
         if self._pass is not None:
-            return self._pass.block_at(now)
+            return self._pass.get_block(now)
         if self._section is None:
             return None
         track = self._queue.find_plan(now)
-        playing = self._section.find_block(track.block_number_at(now)) if track else None
+        playing = self._section.find_block(track.get_block_number(now)) if track else None
         if self._stepped is not None and (playing is None or playing.n < self._stepped):
             playing = self._section.find_block(self._stepped)
         self._shown = playing or self._shown or self._section.first_block
@@ -382,7 +385,7 @@ class SetpointMotion:
         """Return the blocks of the path section or thread pass after ``block``."""
         if self._pass is not None:
             return [each for each in self._pass.blocks if each.n > block.n]
-        return self._section.following_blocks(block.n) if self._section else []
+        return self._section.list_following_blocks(block.n) if self._section else []
 
 
 def _make_plan(
@@ -393,6 +396,6 @@ def _make_plan(
     Without a present plan, the new plan starts from rest.
     """
     if present is None:
-        return plan_motion(path, stop=stop)
-    s, v = present.distance_and_speed_at(t)
-    return plan_motion(path, start_distance=s, start_speed=v, stop=stop)
+        return plan_motion(path, stop_early=stop)
+    s, v = present.get_distance_and_speed(t)
+    return plan_motion(path, start_distance=s, start_speed=v, stop_early=stop)

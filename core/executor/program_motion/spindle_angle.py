@@ -55,7 +55,7 @@ class SpindleAnglePredictor:
         """
         return len(self._reads) >= _MIN_READINGS
 
-    def predict(self, time_s: float) -> tuple[float, float] | None:
+    def predict_angle(self, time_s: float) -> tuple[float, float] | None:
         """Return (revolutions, revolutions per second) at ``time_s``.
 
         The result is None if there are not enough readings.
@@ -72,12 +72,12 @@ class SpindleAnglePredictor:
             turns, speed = turns * near + factor, speed * near + turns
         return base + turns + speed * (u - near), speed
 
-    def predict_turning(self, time_s: float) -> tuple[float, float]:
-        """Return the result of ``predict`` for a turning spindle.
+    def predict_turning_angle(self, time_s: float) -> tuple[float, float]:
+        """Return the result of ``predict_angle`` for a turning spindle.
 
         Raises AlarmError if the spindle is stopped or not measured.
         """
-        state = self.predict(time_s)
+        state = self.predict_angle(time_s)
         if state is None:
             raise AlarmError("thread-no-encoder", "the spindle encoder does not count")
         if state[1] == 0.0:

@@ -12,7 +12,7 @@ from enum import Enum, auto
 
 from core.alarms import AlarmCode
 from core.executor import start_conditions
-from core.executor.job import ReadAhead
+from core.executor.job import BlockReadAhead
 from core.executor.machine_context import MachineContext
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleRequest
@@ -73,7 +73,7 @@ def make_position_wait(context: MachineContext) -> StandstillWait:
     )
 
 
-def make_spindle_speed_wait(context: MachineContext, *, thread: bool = False) -> StandstillWait:
+def make_spindle_speed_wait(context: MachineContext, *, is_for_thread: bool = False) -> StandstillWait:
     """Return a wait until the spindle is at speed and, for a thread, until its encoder can be read.
 
     The wait has no time limit while the operator prevents the spindle from turning.
@@ -93,7 +93,7 @@ def make_spindle_speed_wait(context: MachineContext, *, thread: bool = False) ->
         read = spindle.angle.is_predictable or context.ports.spindle.read_angle() is None
         turns = spindle.is_at_speed(context.now)
         wait.timeout_alarm = "late" if turns else "at-speed"  # the encoder is not read often enough
-        return turns and (read or not thread)
+        return turns and (read or not is_for_thread)
 
     wait.is_condition_met = done
     return wait
@@ -118,7 +118,7 @@ def execute_block_action(block: Block, context: MachineContext) -> StandstillWai
             return _move_collet(closed, context)
         case CycleRepeatCancel():
             context.switches.cycle_repeat = False
-            context.log("switch", "Cycle Repeat switched off by M31")
+            context.log_text("switch", "Cycle Repeat switched off by M31")
         case Dwell(seconds=seconds):
             return StandstillWait(lambda: "DWELL", lambda passed: passed >= seconds - 1e-9, context.now)
         case InputWait(terminal=terminal, closed=closed):
@@ -170,7 +170,7 @@ def _lock_spindle(context: MachineContext, *, orient: bool) -> StandstillWait:
     limit = context.machine.spindle.timeout + change
     return StandstillWait(
         lambda: "C AXIS" if spindle.is_stopped else "SPINDLE STOP",
-        lambda _: spindle.is_stopped and spindle.engage_c_axis(orient=orient),
+        lambda _: spindle.is_stopped and spindle.engage_c_axis(should_orient=orient),
         context.now,
         limit,
         "ignores-stop",
@@ -247,7 +247,7 @@ class NextAction(Enum):
     """The next action of a cycle at rest."""
 
     WAIT = auto()  # nothing, because a wait is active
-    ASK_AGAIN = auto()  # ask again, because a wait has started or ended
+    DETERMINE_AGAIN = auto()  # ask again, because a wait has started or ended
     BLOCK_END = auto()  # =
     MOTION = auto()  # start the pending blocks
     ACTION = auto()  # execute the block that needs the standstill
@@ -255,14 +255,14 @@ class NextAction(Enum):
     NOTHING = auto()  # nothing in this tick
 
 
-class Standstill:
+class StandstillSequencer:
     """Sequencer that determines the next action of a cycle at rest.
 
     ``has_executed_block`` is True if a block was executed since the last stop. ``in_hole`` returns whether
     a tap is in its hole, where single block does not stop.
     """
 
-    def __init__(self, context: MachineContext, feed: ReadAhead, in_hole: Callable[[], bool]) -> None:
+    def __init__(self, context: MachineContext, feed: BlockReadAhead, in_hole: Callable[[], bool]) -> None:
         self._context, self._feed, self._in_hole = context, feed, in_hole
         self._wait: StandstillWait | None = None
         self._settled = True  # the axes are in position after the last motion
@@ -286,7 +286,7 @@ class Standstill:
             return self._look(self._wait)
         if not self._settled:
             self._wait = make_position_wait(self._context)
-            return NextAction.ASK_AGAIN
+            return NextAction.DETERMINE_AGAIN
         if self.has_executed_block and self._context.switches.single_block and not self._in_hole():
             return NextAction.BLOCK_END
         if feed.pending_blocks:
@@ -306,7 +306,7 @@ class Standstill:
         if block.action is not None:
             self._wait = execute_block_action(block, self._context)
         elif needs_spindle_at_speed(block):
-            self._wait = make_spindle_speed_wait(self._context, thread=block.kind is BlockKind.THREAD)
+            self._wait = make_spindle_speed_wait(self._context, is_for_thread=block.kind is BlockKind.THREAD)
         if self._wait is None:
             self._waited()
 
@@ -315,17 +315,17 @@ class Standstill:
         if self._wait is None:
             self._wait = StandstillWait(lambda: label, lambda _: False, self._context.now)
 
-    def extend_wait_for_hold(self, seconds: float) -> None:
+    def extend_wait_for_hold(self, hold_duration_s: float) -> None:
         """Exclude the duration of a feed hold, in seconds, from the present wait."""
         if self._wait is not None:
-            self._wait.extend_for_hold(seconds)
+            self._wait.extend_for_hold(hold_duration_s)
 
     def _look(self, wait: StandstillWait) -> NextAction:
         if not wait.is_over(self._context.now):
             return NextAction.WAIT
         self._wait = None
         self._waited()
-        return NextAction.ASK_AGAIN
+        return NextAction.DETERMINE_AGAIN
 
     def _waited(self) -> None:
         if not self._settled:

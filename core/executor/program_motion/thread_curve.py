@@ -18,7 +18,7 @@ import numpy.typing as npt
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
 
-Floats = npt.NDArray[np.float64]
+FloatArray = npt.NDArray[np.float64]
 
 _CHORDS_PER_REVOLUTION = (
     16  # chords per revolution; a lead that grows by 0.1 mm per revolution deviates by 5e-5 mm
@@ -34,39 +34,49 @@ class ThreadCurve(NamedTuple):
     The curve is linear between the knots and continues linearly after the last one.
     """
 
-    s: Floats
-    x: Floats
-    z: Floats
+    s_mm: FloatArray
+    x_mm: FloatArray
+    z_mm: FloatArray
 
     @property
-    def length(self) -> float:
+    def length_mm(self) -> float:
         """Return the value of s at the end of the curve."""
-        return float(self.s[-1])
+        return float(self.s_mm[-1])
 
     def evaluate(self, s: float) -> tuple[float, float, float, float]:
         """Return X and Z at ``s``, and their derivatives with respect to s."""
-        i = int(np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.s) - 2))
-        step = float(self.s[i + 1] - self.s[i])
-        dx, dz = float(self.x[i + 1] - self.x[i]) / step, float(self.z[i + 1] - self.z[i]) / step
-        ahead = s - float(self.s[i])
-        return float(self.x[i]) + dx * ahead, float(self.z[i]) + dz * ahead, dx, dz
+        i = int(np.clip(np.searchsorted(self.s_mm, s, side="right") - 1, 0, len(self.s_mm) - 2))
+        step = float(self.s_mm[i + 1] - self.s_mm[i])
+        dx, dz = float(self.x_mm[i + 1] - self.x_mm[i]) / step, float(self.z_mm[i + 1] - self.z_mm[i]) / step
+        ahead = s - float(self.s_mm[i])
+        return float(self.x_mm[i]) + dx * ahead, float(self.z_mm[i]) + dz * ahead, dx, dz
 
     def find_s(self, z: float) -> float:
         """Return the s at which Z equals ``z``.
 
         The curve is extrapolated before its start and after its end.
         """
-        sign = math.copysign(1.0, float(self.z[-1] - self.z[0]))
-        i = int(np.clip(np.searchsorted(sign * self.z, sign * z, side="right") - 1, 0, len(self.s) - 2))
-        return float(self.s[i] + (z - self.z[i]) * (self.s[i + 1] - self.s[i]) / (self.z[i + 1] - self.z[i]))
+        sign = math.copysign(1.0, float(self.z_mm[-1] - self.z_mm[0]))
+        i = int(np.clip(np.searchsorted(sign * self.z_mm, sign * z, side="right") - 1, 0, len(self.s_mm) - 2))
+        return float(
+            self.s_mm[i]
+            + (z - self.z_mm[i]) * (self.s_mm[i + 1] - self.s_mm[i]) / (self.z_mm[i + 1] - self.z_mm[i])
+        )
 
-    def max_acceleration(self, ax: float, az: float) -> float:
-        """Return the highest acceleration along s in mm/s² at which X and Z stay within ``ax`` and ``az``."""
-        dx, dz = np.abs(np.diff(self.x) / np.diff(self.s)), np.abs(np.diff(self.z) / np.diff(self.s))
-        return float(min(az / dz.max(), ax / dx.max() if dx.max() else math.inf))
+    def compute_max_acceleration(self, x_max_acceleration: float, z_max_acceleration: float) -> float:
+        """Return the highest acceleration along s in mm/s² at which X and Z stay within
+        ``x_max_acceleration`` and ``z_max_acceleration``.
+        """
+        dx, dz = (
+            np.abs(np.diff(self.x_mm) / np.diff(self.s_mm)),
+            np.abs(np.diff(self.z_mm) / np.diff(self.s_mm)),
+        )
+        return float(
+            min(z_max_acceleration / dz.max(), x_max_acceleration / dx.max() if dx.max() else math.inf)
+        )
 
 
-def spindle_revolutions(block: Block) -> float:
+def count_spindle_revolutions(block: Block) -> float:
     """Return the number of spindle revolutions of a thread block, whose feed is its mean lead."""
     return abs(block.z - block.z0) / block.feed
 
@@ -74,7 +84,7 @@ def spindle_revolutions(block: Block) -> float:
 def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadCurve:
     """Return the curve of a chain of threads; the lead of the first block defines the scale of s."""
     first = blocks[0]
-    unit = first.feed - 0.5 * first.growth * spindle_revolutions(first)
+    unit = first.feed - 0.5 * first.growth * count_spindle_revolutions(first)
     s, x, z = [0.0], [first.x0 + first.offset_x], [first.z0 + first.offset_z]
     joints: list[float] = []
     for block in blocks:
@@ -90,7 +100,7 @@ def build_thread_curve(blocks: Sequence[Block], limits: MotionLimits) -> ThreadC
 
 def _chord_points(block: Block) -> list[tuple[float, float]]:
     """Return points along a block as (fraction of its length, revolutions since the previous point)."""
-    whole = spindle_revolutions(block)
+    whole = count_spindle_revolutions(block)
     if not block.growth:
         return [(1.0, whole)]
     count = max(math.ceil(whole * _CHORDS_PER_REVOLUTION), 2)
@@ -107,7 +117,7 @@ def _round_joints(
 
     ``speed`` is the speed along s, in mm/s.
     """
-    s, points = list(raw.s), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
+    s, points = list(raw.s_mm), {float(k): (float(a), float(b)) for k, a, b in zip(*raw, strict=True)}
     for joint in joints:
         x0, z0, dx1, dz1 = raw.evaluate(joint)
         _, _, dx0, dz0 = raw.evaluate(joint - 1e-6)

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from core.executor.program_motion.spindle_angle import SpindleAnglePredictor
-from core.executor.program_motion.thread_curve import spindle_revolutions
+from core.executor.program_motion.thread_curve import count_spindle_revolutions
 from core.executor.program_motion.thread_path import Phases, ThreadPath
 from core.interpreter.shared.elementary_blocks import Block
 from core.motion.axis_limits import MotionLimits
-from core.ports import AxisSink, Cam, DriverError, GearState, Segments, SpindleGear, StopMode
+from core.ports import AxisSink, Cam, DriverError, GearState, MotionSegments, SpindleGear, StopMode
 
 _BLEND = 0.01  # s for the correction of a deviation
 _MAX_CORRECTION_S = 0.16  # s, the longest correction
@@ -62,11 +62,11 @@ class SpindlePass:
         self._reported = False
         self.max_deviation = 0.0  # largest deviation in revolutions between axis and spindle while in step
 
-    def block_at_revolution(self, revolutions: float) -> Block:
+    def get_block_at_revolution(self, revolutions: float) -> Block:
         """Return the thread block that is cut ``revolutions`` revolutions after the start of the pass."""
         cut = [self.blocks[0], *(block for block in self.blocks[1:] if block.continues)]
         for block in cut:
-            revolutions -= spindle_revolutions(block)
+            revolutions -= count_spindle_revolutions(block)
             if revolutions < 0.0:
                 return block
         return cut[-1]
@@ -114,12 +114,12 @@ class ThreadPass(SpindlePass):
         """Return the planned time at which the pass comes to rest, in seconds."""
         return self._ends
 
-    def block_at(self, now: float) -> Block:
+    def get_block(self, now: float) -> Block:
         """Return the block that is executed at time ``now``."""
         if now >= self._leaves:
             return self.blocks[-1]
         return (
-            self.block_at_revolution(self._demand(now)[0] / self._lead)
+            self.get_block_at_revolution(self._demand(now)[0] / self._lead)
             if len(self.blocks) > 1
             else self.blocks[0]
         )
@@ -145,7 +145,7 @@ class ThreadPass(SpindlePass):
         The function is called once per tick.
         """
         now = self._axes.now()
-        if self._stopped or now >= self._leaves or self._turns.predict(now) is None:
+        if self._stopped or now >= self._leaves or self._turns.predict_angle(now) is None:
             return  # without encoder data the queued pass is the best choice
         self._measure(now)
         if self._free:
@@ -173,7 +173,7 @@ class ThreadPass(SpindlePass):
         if self._stopped or t >= self._begins[0]:
             return
         place, _ = self._axes.demand_at(t)
-        self._axes.splice(Segments.make_rest(t, place))
+        self._axes.splice(MotionSegments.make_rest(t, place))
         self._stopped, self._ends, self._leaves = True, t, math.inf
 
     def restart_pass(self) -> None:
@@ -189,7 +189,7 @@ class ThreadPass(SpindlePass):
         if (
             self._stopped
             or t >= self._leaves
-            or s + 0.5 * v * v / self._path.acceleration >= self._path.length
+            or s + 0.5 * v * v / self._path.acceleration >= self._path.length_mm
         ):
             return
         self._axes.splice(self._path.make_stop(t, s, v))
@@ -203,7 +203,7 @@ class ThreadPass(SpindlePass):
         if lead_in is None:
             return
         segments, leaves = self._path.plan_remaining_pass(t, s, v, lead_in)
-        if np.abs(segments.v[:, 1]).max() > self._top * _CORRECTION_SPEED_FACTOR:
+        if np.abs(segments.velocities[:, 1]).max() > self._top * _CORRECTION_SPEED_FACTOR:
             return  # The pass is faster than the axis, so the axis lags and the deviation is reported.
         self._axes.splice(segments)
         self._leaves, self._ends = leaves, _end(segments)
@@ -223,7 +223,7 @@ class ThreadPass(SpindlePass):
         path, time = self._path, _BLEND
         while time <= _MAX_CORRECTION_S:
             goal, speed, rest = self._target(t + time)
-            if goal >= path.full_depth_end(speed):
+            if goal >= path.find_full_depth_end(speed):
                 self._free = True
                 return None
             half = 0.5 * time
@@ -261,7 +261,7 @@ class ThreadPass(SpindlePass):
 
     def _spindle_state(self, t: float) -> tuple[float, float]:
         """Return revolutions and revolutions per second at ``t``, positive in the direction of rotation."""
-        state = self._turns.predict_turning(t)
+        state = self._turns.predict_turning_angle(t)
         if self._index == 0.0:
             self._sign = math.copysign(1.0, state[1])
         return self._sign * state[0], self._sign * state[1]
@@ -282,8 +282,8 @@ class ThreadPass(SpindlePass):
         return self._path.find_s_and_speed(z, v)
 
 
-def _end(segments: Segments) -> float:
-    return float(segments.t[-1] + segments.dt[-1])
+def _end(segments: MotionSegments) -> float:
+    return float(segments.start_times_s[-1] + segments.durations_s[-1])
 
 
 class GearedThreadPass(SpindlePass):
@@ -314,7 +314,7 @@ class GearedThreadPass(SpindlePass):
         """Return the time at which the pass will come to rest at the present spindle speed, in seconds."""
         return self._axes.horizon()
 
-    def block_at(self, _now: float) -> Block:
+    def get_block(self, _now: float) -> Block:
         """Return the block being executed, regardless of the time."""
         geared = self._gear.geared()
         if geared is None:
@@ -322,7 +322,7 @@ class GearedThreadPass(SpindlePass):
         return (
             self.blocks[-1]
             if geared.revolutions >= self._leaves
-            else self.block_at_revolution(geared.revolutions)
+            else self.get_block_at_revolution(geared.revolutions)
         )
 
     def start_pass(self) -> None:
@@ -340,7 +340,7 @@ class GearedThreadPass(SpindlePass):
         The function is called once per tick.
         """
         geared = self._gear.geared()
-        state = self._turns.predict(self._axes.now())
+        state = self._turns.predict_angle(self._axes.now())
         if self._stopped or geared is None or state is None:
             return
         if self._ramp < geared.revolutions < self._leaves:
@@ -357,7 +357,7 @@ class GearedThreadPass(SpindlePass):
             return
         place, _ = self._axes.demand_at(t)
         try:
-            self._axes.splice(Segments.make_rest(t, place))
+            self._axes.splice(MotionSegments.make_rest(t, place))
         except DriverError as error:
             if error.code not in _START_ERROR_CODES:
                 raise
@@ -379,7 +379,7 @@ class GearedThreadPass(SpindlePass):
 
     def _engage_from_rest(self, early: float) -> bool:
         """Plan the complete pass from rest; return False if this was too late."""
-        state = self._turns.predict_turning(self._axes.now())
+        state = self._turns.predict_turning_angle(self._axes.now())
         self._sign, self._speed = math.copysign(1.0, state[1]), abs(state[1])
         self._ramp = self._run_up_revolutions(self._speed)
         first = self._sign * state[0] + self._speed * (self._axes.commit + early)
@@ -414,7 +414,7 @@ class GearedThreadPass(SpindlePass):
                     self._send_from_rest(speed, ramp)
                 elif turns > self._ramp and path.lead * turns < self._path_per_revolution(
                     speed
-                ).full_depth_end(path.lead):
+                ).find_full_depth_end(path.lead):
                     self._send_path(turns, path.lead * turns, path.lead, speed, [])
             except DriverError as error:
                 if error.code == "late":
@@ -446,7 +446,7 @@ class GearedThreadPass(SpindlePass):
         The path ends where it no longer follows the spindle.
         """
         path, share = self._path, _GEARED_SHARE / speed**2
-        out = path.retract_x_mm if path.exit_length_mm else path.x_end
+        out = path.retract_x_mm if path.exit_length_mm else path.end_x_mm
         return path._replace(
             acceleration=path.acceleration * share,
             x_acceleration=path.x_acceleration * share,

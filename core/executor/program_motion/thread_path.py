@@ -14,16 +14,20 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from core.executor.program_motion.thread_curve import ThreadCurve, build_thread_curve, spindle_revolutions
+from core.executor.program_motion.thread_curve import (
+    ThreadCurve,
+    build_thread_curve,
+    count_spindle_revolutions,
+)
 from core.executor.raised_alarm import AlarmError
 from core.executor.spindle_control import SpindleControl
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.message import Message
 from core.motion.axis_limits import MotionLimits
-from core.ports import Segments
+from core.ports import MotionSegments
 
 Phases = list[tuple[float, float]]
-Floats = npt.NDArray[np.float64]
+FloatArray = npt.NDArray[np.float64]
 _SHORT_TIME_S = 1e-9  # s
 _RETRACTED_TOLERANCE_MM = 1e-6  # mm
 _INCH = 25.4  # mm
@@ -45,7 +49,7 @@ class ThreadPath(NamedTuple):
     z: float
     c: float
     z_direction: float
-    length: float
+    length_mm: float
     x_slope: float
     retract_x_mm: float
     exit_length_mm: float
@@ -74,7 +78,7 @@ class ThreadPath(NamedTuple):
             z=first.z0 + first.offset_z,
             c=first.c0 + first.modal.offset_c,
             z_direction=math.copysign(1.0, first.z - first.z0),
-            length=length,
+            length_mm=length,
             x_slope=slope,
             retract_x_mm=out.mx,
             exit_length_mm=abs(out.z - out.z0) if out is not first and out.kind is BlockKind.THREAD else 0.0,
@@ -90,20 +94,20 @@ class ThreadPath(NamedTuple):
         """Return the path of a chain of threads. ``last`` is its pull-out, or the last block of the chain."""
         first = cut[0]
         curve, (ax, az) = build_thread_curve(cut, limits), limits.amax[:2]
-        _, _, slope, along = curve.evaluate(curve.length)
+        _, _, slope, along = curve.evaluate(curve.length_mm)
         in_step = last is not cut[-1] and last.kind is BlockKind.THREAD
         return cls(
-            x=float(curve.x[0]),
-            z=float(curve.z[0]),
+            x=float(curve.x_mm[0]),
+            z=float(curve.z_mm[0]),
             c=first.c0 + first.modal.offset_c,
             z_direction=math.copysign(1.0, along),
-            length=curve.length,
+            length_mm=curve.length_mm,
             x_slope=slope,
             retract_x_mm=last.mx,
             exit_length_mm=abs(last.z - last.z0) / abs(along) if in_step else 0.0,
             rapid_speed=min(last.feed, limits.vmax[0]) if last.kind is BlockKind.RAPID else limits.vmax[0],
-            lead=first.feed - 0.5 * first.growth * spindle_revolutions(first),
-            acceleration=curve.max_acceleration(ax, az),
+            lead=first.feed - 0.5 * first.growth * count_spindle_revolutions(first),
+            acceleration=curve.compute_max_acceleration(ax, az),
             x_acceleration=ax,
             z_acceleration=az / abs(along),
             curve=curve,
@@ -111,37 +115,39 @@ class ThreadPath(NamedTuple):
         )
 
     @property
-    def x_end(self) -> float:
+    def end_x_mm(self) -> float:
         """Return X at the end of the thread, in machine coordinates."""
-        return self.x + self.x_slope * self.length if self.curve is None else float(self.curve.x[-1])
+        return self.x + self.x_slope * self.length_mm if self.curve is None else float(self.curve.x_mm[-1])
 
-    def find_s_and_speed(self, z: float, vz: float) -> tuple[float, float]:
-        """Return s and the speed along s for the position ``z`` and the velocity ``vz`` of Z."""
+    def find_s_and_speed(self, z: float, z_velocity: float) -> tuple[float, float]:
+        """Return s and the speed along s for the position ``z`` and the velocity ``z_velocity`` of Z."""
         if self.curve is not None:
             s = self.curve.find_s(z)
-            return s, vz / self.curve.evaluate(s)[3]
-        return (z - self.z) * self.z_direction, vz * self.z_direction
+            return s, z_velocity / self.curve.evaluate(s)[3]
+        return (z - self.z) * self.z_direction, z_velocity * self.z_direction
 
-    def full_depth_end(self, speed: float) -> float:
+    def find_full_depth_end(self, speed: float) -> float:
         """Return the value of s up to which a pass at ``speed`` cuts only the thread itself."""
-        return min(self.length, self.length + self.exit_length_mm - 0.5 * speed * speed / self.z_acceleration)
+        return min(
+            self.length_mm, self.length_mm + self.exit_length_mm - 0.5 * speed * speed / self.z_acceleration
+        )
 
     def plan_remaining_pass(
         self, start_time_s: float, s: float, entry_speed: float, lead_in_phases: Phases
-    ) -> tuple[Segments, float]:
+    ) -> tuple[MotionSegments, float]:
         """Plan the rest of the pass from ``s`` at the time ``start_time_s`` and the speed ``entry_speed``.
 
         The plan starts with the phases ``lead_in_phases``. The pass then continues to its end at the speed
         that these phases reach. Returns the setpoints and the time at which the tool leaves the thread.
         """
         at, speed = _after(s, entry_speed, lead_in_phases)
-        end = self.length + self.exit_length_mm
+        end = self.length_mm + self.exit_length_mm
         brake = min(0.5 * speed * speed / self.z_acceleration, end - at)
         cruise = (end - at - brake) / speed if speed > 0.0 else 0.0
         ramp = [(2.0 * brake / speed, -0.5 * speed * speed / brake)] if brake > 0.0 else []
         z_phases = [each for each in (*lead_in_phases, (cruise, 0.0), *ramp) if each[0] > _SHORT_TIME_S]
-        left, v_left = _target_time(z_phases, s, entry_speed, self.length)
-        x_from = self.x_end
+        left, v_left = _target_time(z_phases, s, entry_speed, self.length_mm)
+        x_from = self.end_x_mm
         top = v_left * self.end_lead if self.exit_length_mm else self.rapid_speed
         sign = math.copysign(1.0, self.retract_x_mm - x_from)
         x_out = _plan_trapezoid(
@@ -156,23 +162,23 @@ class ThreadPath(NamedTuple):
         x = _axis_motion(self.x + self.x_slope * s, self.x_slope * entry_speed, [*x_thread, *out])
         return self._join_axes(start_time_s, x, self._z(s, entry_speed, z_phases)), start_time_s + left
 
-    def make_retract(self) -> Segments | None:
+    def make_retract(self) -> MotionSegments | None:
         """Return the straight retract of X after a thread without pull-out.
 
         The result is None if the thread has a pull-out. The time of the retract starts at 0.
         """
-        x = self.x_end
+        x = self.end_x_mm
         phases = _plan_trapezoid(abs(self.retract_x_mm - x), 0.0, self.rapid_speed, self.x_acceleration)
         if self.exit_length_mm or not phases:
             return None
         sign = math.copysign(1.0, self.retract_x_mm - x)
         still = [(sum(dt for dt, _ in phases), 0.0)]
-        end = self.z + self.z_direction * self.length if self.curve is None else float(self.curve.z[-1])
+        end = self.z + self.z_direction * self.length_mm if self.curve is None else float(self.curve.z_mm[-1])
         return self._join_axes(
             0.0, _axis_motion(x, 0.0, [(dt, sign * a) for dt, a in phases]), _axis_motion(end, 0.0, still)
         )
 
-    def make_stop(self, start_time_s: float, s: float, speed: float) -> Segments:
+    def make_stop(self, start_time_s: float, s: float, speed: float) -> MotionSegments:
         """Return the setpoints of an immediate stop along the thread."""
         phases = [(speed / self.acceleration, -self.acceleration)] if speed > 0.0 else [(_SHORT_TIME_S, 0.0)]
         if self.curve is not None:
@@ -186,7 +192,7 @@ class ThreadPath(NamedTuple):
         along = self.z_direction
         return _axis_motion(self.z + along * s, along * v, [(dt, along * acc) for dt, acc in phases])
 
-    def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> Segments:
+    def _join_axes(self, t: float, x: _AxisMotion, z: _AxisMotion) -> MotionSegments:
         """Return the motion of both axes as common phases of constant acceleration."""
         joints = np.unique(np.concatenate([x.t, z.t]).round(12))
         joints = joints[np.concatenate([[True], np.diff(joints) > _SHORT_TIME_S])]
@@ -200,10 +206,10 @@ class ThreadPath(NamedTuple):
             v[:, column] = track.v[i] + accel * u
             a[:, column] = accel
         p[:, 2] = self.c
-        return Segments(t + starts, dt, p, v, a)
+        return MotionSegments(t + starts, dt, p, v, a)
 
 
-def _joints(phases: Phases) -> Floats:
+def _joints(phases: Phases) -> FloatArray:
     return np.concatenate([[0.0], np.cumsum([dt for dt, _ in phases])])
 
 
@@ -214,10 +220,10 @@ class _AxisMotion(NamedTuple):
     accelerations between the joints.
     """
 
-    t: Floats
-    p: Floats
-    v: Floats
-    a: Floats
+    t: FloatArray
+    p: FloatArray
+    v: FloatArray
+    a: FloatArray
 
     def then(self, p: float, v: float, phases: Phases) -> _AxisMotion:
         """Return the motion followed by phases that start from this position and speed."""
@@ -260,7 +266,7 @@ def _map_to_curve(curve: ThreadCurve, s: float, v: float, phases: Phases) -> tup
 def _knot_durations(curve: ThreadCurve, s: float, v: float, duration: float, acc: float) -> list[float]:
     """Return the durations of the parts into which the knots of the curve divide a phase."""
     end = s + (v + 0.5 * acc * duration) * duration
-    gone = curve.s[(curve.s > s + 1e-9) & (curve.s < end - 1e-9)] - s
+    gone = curve.s_mm[(curve.s_mm > s + 1e-9) & (curve.s_mm < end - 1e-9)] - s
     root = np.sqrt(np.maximum(v * v + 2.0 * acc * gone, 0.0))
     times = np.concatenate([[0.0], 2.0 * gone / np.maximum(v + root, 1e-12), [duration]])
     return [float(dt) for dt in np.diff(times) if dt > 0.0]

@@ -12,7 +12,7 @@ from functools import partial
 
 from core.alarms import Reaction
 from core.executor.machine_context import MachineContext
-from core.executor.raised_alarm import Attempt
+from core.executor.raised_alarm import CaughtAttempt
 from core.message import Message
 from core.ports import DriverError, StopMode
 
@@ -54,7 +54,7 @@ class SafeStop:
 
     def _functions(self, *, coast: bool) -> list[StopStep]:
         return [
-            *self._context.spindle.prepare_safe_stop(coast=coast),
+            *self._context.spindle.prepare_safe_stop(should_coast=coast),
             ("the outputs", self._switch_outputs_safe),
         ]
 
@@ -87,13 +87,13 @@ class SafeStop:
 
     def _run_step(self, name: str, step: Callable[[], None]) -> bool:
         """Run one step and return whether it succeeded. An error does not prevent the next step."""
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             step()
         error = trial.error
         if error is not None and self._tries == 1:
             if not isinstance(error, DriverError):
                 _log.error("while stopping %s", name, exc_info=error)
-            self._context.log(
+            self._context.log_text(
                 "alarm",
                 Message(
                     "fault while stopping {name}: {error}",
@@ -106,7 +106,7 @@ class SafeStop:
     def _brake(self, mode: StopMode) -> None:
         """Brake the axes, or switch the drives off if braking fails unexpectedly."""
         axes = self._context.ports.axes
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             axes.stop(mode)
         if trial.error is not None:
             if not isinstance(trial.error, DriverError):
@@ -116,7 +116,7 @@ class SafeStop:
     def _switch_outputs_safe(self) -> None:
         """Switch all outputs to their safe states together, or one by one if that fails."""
         io = self._context.ports.io
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             io.switch_to_safe_state()
         if trial.error is not None:
             for output in self._context.machine.outputs.values():

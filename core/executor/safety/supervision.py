@@ -36,7 +36,7 @@ _FROZEN, _CLOSE = 3.0, 2.5  # s and counts; a drive that pushes moves its encode
 _WINDOW_FRACTION = 0.125  # fraction of the standstill window; a free axis moves at this error
 _MIN_COUNTS = 20.0  # counts that the axis must be commanded to move if the encoder is coarse
 _NOTHING = 1e-9
-_POWERED = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOME}
+_POWERED = CYCLE_STATES | {MachineState.IDLE, MachineState.JOG, MachineState.HOMING}
 _NO_DATA_TIMEOUT_S = 0.25  # s without axis data before a driver must report a fault
 
 
@@ -57,7 +57,7 @@ class FollowingErrorWatch:
         """
         if sample.enabled is not self._enabled:
             self._enabled = sample.enabled
-            self.reset()
+            self.reset_supervision()
         each = zip(self._axes, sample.demand, sample.actual, sample.homed, strict=True)
         for one, demand, actual, homed in each:
             if sample.moving:
@@ -70,7 +70,7 @@ class FollowingErrorWatch:
             else:
                 one.unasked(actual, at_rest=not sample.moving and is_unpowered and homed)
 
-    def reset(self) -> None:
+    def reset_supervision(self) -> None:
         """Reset the supervision because the power has changed or an alarm was acknowledged."""
         for one in self._axes:
             one.forget()
@@ -109,13 +109,13 @@ class _AxisWatch:
         self._demand = demand
         self._encoder(demand, actual)
         rest = self._t - self._sent_at
-        limit = axis.max_following_error(self._speed)
-        if self._lasts("off", error > limit) > axis.following_time + _HOST_DELAY_S:
-            code: AlarmCode = "standstill" if rest > axis.still_time else "following"
+        limit = axis.compute_max_following_error(self._speed)
+        if self._lasts("off", error > limit) > axis.following_time_s + _HOST_DELAY_S:
+            code: AlarmCode = "standstill" if rest > axis.standstill_time_s else "following"
             raise AlarmError(
                 code, Message("{axis} is {error} off its setpoint", axis=axis.name, error=self._words(error))
             )
-        if rest > axis.still_time:
+        if rest > axis.standstill_time_s:
             self._at_standstill(error, rest)
 
     def _at_standstill(self, error: float, rest: float) -> None:
@@ -124,16 +124,20 @@ class _AxisWatch:
         A small error is permitted for a longer time than a large error.
         """
         axis, unmoved = self._axis, self._t - self._counted_at
-        pushed = max(_WINDOW_FRACTION * axis.still_window, 4.0 * axis.in_position)
-        if self._lasts("pushed", error > pushed) > axis.still_time and unmoved > axis.still_time:
+        pushed = max(_WINDOW_FRACTION * axis.standstill_tolerance, 4.0 * axis.in_position_tolerance)
+        if (
+            self._lasts("pushed", error > pushed) > axis.standstill_time_s
+            and unmoved > axis.standstill_time_s
+        ):
             raise AlarmError(
                 "standstill",
                 Message("{axis} remains {error} off its setpoint", axis=axis.name, error=self._words(error)),
             )
         is_off_target = (
-            self._lasts("beside", error > axis.in_position) > _ARRIVAL_TIMEOUT_S and rest > _ARRIVAL_TIMEOUT_S
+            self._lasts("beside", error > axis.in_position_tolerance) > _ARRIVAL_TIMEOUT_S
+            and rest > _ARRIVAL_TIMEOUT_S
         )
-        frozen = self._lasts("frozen", error > _CLOSE * axis.count) > _FROZEN and unmoved > _FROZEN
+        frozen = self._lasts("frozen", error > _CLOSE * axis.count_size) > _FROZEN and unmoved > _FROZEN
         if is_off_target or frozen:
             raise AlarmError(
                 "standstill",
@@ -151,11 +155,11 @@ class _AxisWatch:
         if not at_rest:
             self.sent()
             return
-        if self._lasts("rest", True) < axis.still_time:
+        if self._lasts("rest", True) < axis.standstill_time_s:
             return
         self._stood = actual if self._stood is None else self._stood
         off = abs(actual - self._stood)
-        if self._lasts("moved", off > axis.still_window) > axis.still_time:
+        if self._lasts("moved", off > axis.standstill_tolerance) > axis.standstill_time_s:
             raise AlarmError(
                 "moved-unasked",
                 Message("{axis} has moved by {off} without a command", axis=axis.name, off=self._words(off)),
@@ -173,12 +177,12 @@ class _AxisWatch:
         In this case the axis is jammed, or its position is unknown.
         """
         axis, (since, sent_from, read) = self._axis, self._counted
-        if abs(actual - read) > 1.5 * axis.count:
+        if abs(actual - read) > 1.5 * axis.count_size:
             self._counted, self._counted_at = (self._t, demand, actual), self._t
             return
-        least = max(0.25 * axis.still_window, _MIN_COUNTS * axis.count)
+        least = max(0.25 * axis.standstill_tolerance, _MIN_COUNTS * axis.count_size)
         sent = abs(demand - sent_from)
-        if sent <= axis.count:
+        if sent <= axis.count_size:
             self._counted = (self._t, sent_from, read)
         elif self._t - since > _ENCODER_TIMEOUT_S and sent > least and abs(demand - actual) > least:
             raise AlarmError(
@@ -200,7 +204,7 @@ class _AxisWatch:
     def _words(self, deviation: float) -> str:
         return (
             Message("{angle} degrees", angle=f"{deviation:.2f}")
-            if self._axis.rotary
+            if self._axis.is_rotary
             else Message("{unit} mm", unit=f"{deviation:.3f}")
         )
 
@@ -215,15 +219,15 @@ class Supervisor:
 
     def accept_positions(self) -> None:
         """Accept the present positions of the axes because the operator has acknowledged an alarm."""
-        self._axes.reset()
+        self._axes.reset_supervision()
 
-    def check(self, state: MachineState) -> None:
+    def check_machine(self, state: MachineState) -> None:
         """Raise AlarmError for the first condition that must stop the machine."""
-        sample, context = self._context.sample, self._context
+        sample, context = self._context.axis_sample, self._context
         if sample.fault:
             raise AlarmError(get_fault_code(sample.fault, "axis"), sample.fault)
-        if UnknownPart.AXES in context.unknown_items:
-            self._axes.reset()  # the axes may be at other positions when data arrives again
+        if UnknownPart.AXES in context.unknown_parts:
+            self._axes.reset_supervision()  # the axes may be at other positions when data arrives again
             self._check_data(is_powered=state in _POWERED)
             return
         self._unheard_since = None
@@ -231,7 +235,7 @@ class Supervisor:
         self.max_following_error = max(self.max_following_error, *map(abs, sample.following_error[:2]))
         self._axes.check_sample(sample, is_unpowered=state is MachineState.DISABLED)
         turning = not context.spindle.is_stopped and context.spindle.is_requested
-        gripped = context.inputs.get("collet_closed", True) or not context.ports.io.outputs().get(
+        gripped = context.inputs.get("collet_closed", True) or not context.ports.io.get_outputs().get(
             "collet", True
         )
         if turning and not gripped and not context.machine.interlocks.spindle_with_collet_open:
@@ -272,7 +276,7 @@ class Supervisor:
 # --- outputs and the driver host ----------------------------------------------------------------------
 
 
-class OutputsWatch:
+class OutputWatch:
     """Supervision of the outputs and the driver host in every tick.
 
     It is used on the executor's thread only.
@@ -283,35 +287,37 @@ class OutputsWatch:
         self._program_run = program_run
         self._known_off: frozenset[str] = frozenset()  # outputs known to differ from their commanded states
 
-    def check(self) -> None:
+    def check_outputs(self) -> None:
         """Hold the cycle if an output has changed without a command. Raises DriverError or AlarmError."""
         trips = self._context.ports.trip_monitor
         trip = trips.get_active_trip() if trips is not None else None
         if trips is not None and trip is not None:
             trips.acknowledge(trip)  # acknowledged first, because the hold also needs setpoints
             self._handle_trip(trip)
-        if UnknownPart.OUTPUTS in self._context.unknown_items or self._context.sample.fault:
+        if UnknownPart.OUTPUTS in self._context.unknown_parts or self._context.axis_sample.fault:
             return  # The fault that switched outputs off is reported in this tick.
         if self._program_run.status.state not in CYCLE_STATES:
             known_off, self._known_off = self._known_off, frozenset()
-            for each in self._context.outputs.accept_actual_states():
-                if each.name not in known_off:  # already reported by the device that switched the output off
-                    self._context.log(
+            for each in self._context.commanded_outputs.accept_actual_states():
+                if (
+                    each.output_name not in known_off
+                ):  # already reported by the device that switched the output off
+                    self._context.log_text(
                         "disturbed", Message("{item} MOVED WITHOUT A COMMAND", item=each.description)
                     )
             return
-        differing = self._context.outputs.find_mismatches()
-        new = [each for each in differing if each.name not in self._known_off]
-        self._known_off = frozenset(each.name for each in differing)
+        differing = self._context.commanded_outputs.find_mismatches()
+        new = [each for each in differing if each.output_name not in self._known_off]
+        self._known_off = frozenset(each.output_name for each in differing)
         if new:
             self._disturbed("switched-off", " AND ".join(each.description for each in new))
 
     def list_restart_outputs(self) -> Iterator[AnnouncedStart]:
         """Yield announcements of the outputs that a resume switches back to their commanded states."""
         if self._program_run.status.state in STOPPED_STATES:
-            for name, wanted in self._context.outputs.find_mismatches():
+            for name, wanted in self._context.commanded_outputs.find_mismatches():
                 words = Message("{output} TURNS ON" if wanted else "{output} TURNS OFF", output=name.upper())
-                begin = partial(self._context.outputs.write, name, wanted)
+                begin = partial(self._context.commanded_outputs.write, name, wanted)
                 yield AnnouncedStart(Message("output {name}", name=name), words, begin)
 
     def _handle_trip(self, trip: DriverHostTrip) -> None:
@@ -326,7 +332,7 @@ class OutputsWatch:
             return
         if trip.spindle:
             context.spindle.record_external_stop("DRIVER HOST STOPPED SPINDLE/OUTPUTS")
-        context.outputs.mark_switched_off(outputs)
+        context.commanded_outputs.mark_switched_off(outputs)
         self._known_off |= set(outputs)
         template = (
             "NO SIGNAL FROM MACHINE FOR {away} S, OUTPUTS FOUND ON AND SWITCHED OFF: {off}"
@@ -344,7 +350,7 @@ class OutputsWatch:
 
     def _disturbed(self, code: AlarmCode, words: str) -> None:
         program_run, state = self._program_run, self._program_run.status.state
-        self._context.log("disturbed", words)
+        self._context.log_text("disturbed", words)
         if program_run.cycle is None or state not in CYCLE_STATES:
             return
         program_run.mark_part_disturbed(words.lower())

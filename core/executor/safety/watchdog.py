@@ -14,16 +14,16 @@ import threading
 from collections.abc import Callable, Iterable
 
 from core.executor.executor import TICK_PAUSE_S, Executor
-from core.executor.raised_alarm import Attempt, ReportedAttempt
+from core.executor.raised_alarm import CaughtAttempt, ReportedAttempt
 from core.ports import Clock
 
 _log = logging.getLogger(__name__)
 CHECK_INTERVAL_S = 0.1  # s between two checks
-CHECKS_PER_THREAD_CHECK = 10  # checks of the executor per check of the other threads
-STUCK_CHECKS = 10  # checks without a tick, 1 s in total
-PATIENT_STUCK_CHECKS = 70  # the same while the executor waits for a drive to switch on, which may take 5 s
+EXECUTOR_CHECKS_PER_THREAD_CHECK = 10  # checks of the executor per check of the other threads
+STUCK_CHECK_COUNT = 10  # checks without a tick, 1 s in total
+BUSY_STUCK_CHECK_COUNT = 70  # the same while the executor waits for a drive to switch on, which may take 5 s
 CHECKS_BETWEEN_HALTS = 5  # checks after which the machine is halted again; a controller in hold is then reset
-MAX_HALTS = 10
+MAX_HALT_COUNT = 10
 WATCHDOG_TIMEOUT_S = 3.0  # s of ticks without a check of the watchdog
 CLOSE_TIMEOUT_S = 1.0  # s that closing waits for the watchdog's thread
 HALT_TIMEOUT_S = 2.0  # s that closing waits for the drivers to halt
@@ -71,7 +71,7 @@ class ExecutorThread:
         halted instead.
         """
         self._closing.set()
-        self.executor.wake()
+        self.executor.start_next_tick()
         if self._thread.is_alive():
             self._thread.join(timeout_s)
         if self._thread.is_alive():
@@ -120,7 +120,7 @@ class MachineHalter:
 
     def _run(self) -> None:
         assert self._halt is not None
-        with Attempt() as halting:
+        with CaughtAttempt() as halting:
             self._halt()
         if halting.error is not None:
             _log.error("the drivers cannot be halted", exc_info=halting.error)
@@ -166,7 +166,7 @@ class ThreadWatch:
         self._closing.set()
 
     def _look_again(self) -> None:
-        while not self._closing.wait(CHECK_INTERVAL_S * CHECKS_PER_THREAD_CHECK):
+        while not self._closing.wait(CHECK_INTERVAL_S * EXECUTOR_CHECKS_PER_THREAD_CHECK):
             with ReportedAttempt(_report):
                 self.check_threads()
 
@@ -213,7 +213,7 @@ class Watchdog:
 
     def start(self) -> None:
         """Start the watchdog, and register it with the executor's thread for supervision."""
-        self._executor.check_watchdog = WatchdogSupervisor(self, self._tell).check
+        self._executor.check_watchdog = WatchdogSupervisor(self, self._tell).check_watchdog
         self._thread.start()
 
     def watch_thread(self, name: str) -> None:
@@ -231,11 +231,11 @@ class Watchdog:
         if self._thread.is_alive():
             self._thread.join(timeout_s)
 
-    def check(self) -> None:
+    def check_threads(self) -> None:
         """Check the executor and the other threads once. This function raises no exceptions."""
-        with Attempt() as trial:
+        with CaughtAttempt() as trial:
             self._mind_executor()
-            if self.check_count % CHECKS_PER_THREAD_CHECK == 0:
+            if self.check_count % EXECUTOR_CHECKS_PER_THREAD_CHECK == 0:
                 self._others.check_threads()
         self.check_count += 1
         if trial.error is not None:
@@ -243,7 +243,7 @@ class Watchdog:
 
     def _watch(self) -> None:
         while not self._closing.wait(CHECK_INTERVAL_S):
-            self.check()
+            self.check_threads()
 
     def _mind_executor(self) -> None:
         thread = self._executor
@@ -254,13 +254,13 @@ class Watchdog:
         dead = not thread.is_alive
         if self.is_closing or (
             not dead
-            and self._still < (PATIENT_STUCK_CHECKS if executor.is_waiting_for_drive else STUCK_CHECKS)
+            and self._still < (BUSY_STUCK_CHECK_COUNT if executor.is_waiting_for_drive else STUCK_CHECK_COUNT)
         ):
             self._halted = 0
             return
         first, again = (
             self._halted == 0,
-            self._halted % CHECKS_BETWEEN_HALTS == 0 and self._halted < CHECKS_BETWEEN_HALTS * MAX_HALTS,
+            self._halted % CHECKS_BETWEEN_HALTS == 0 and self._halted < CHECKS_BETWEEN_HALTS * MAX_HALT_COUNT,
         )
         self._halted += 1
         if again:
@@ -285,7 +285,7 @@ class WatchdogSupervisor:
         self._last: float | None = None
         self._overdue = 0.0  # s of ticks without a check
 
-    def check(self, now: float) -> None:
+    def check_watchdog(self, now: float) -> None:
         """Check the watchdog once after a tick.
 
         A long gap between two ticks counts as a short gap, because both threads were late.

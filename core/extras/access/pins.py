@@ -23,8 +23,8 @@ class ScryptCost(NamedTuple):
     """Cost parameters of scrypt (log2 of N, r and p), each stored as one byte in front of the hash."""
 
     log2_n: int
-    r: int
-    p: int
+    block_size: int
+    parallelism: int
 
 
 DEFAULT_COST = ScryptCost(16, 8, 8)  # parameters of new hashes
@@ -72,7 +72,7 @@ def matches_hash(pin: str, stored_hash: PinHash) -> bool:
     return cost is not None and hmac.compare_digest(_scrypt(pin, stored_hash.salt, cost), digest)
 
 
-def is_outdated(stored_hash: PinHash) -> bool:
+def is_hash_outdated(stored_hash: PinHash) -> bool:
     """Return whether the hash was made with other parameters than new hashes."""
     return _cost_of(stored_hash) != DEFAULT_COST
 
@@ -86,19 +86,25 @@ def _cost_of(kept: PinHash) -> ScryptCost | None:
 
 def _scrypt(pin: str, salt: bytes, cost: ScryptCost) -> bytes:
     return hashlib.scrypt(
-        pin.encode(), salt=salt, n=1 << cost.log2_n, r=cost.r, p=cost.p, dklen=_LENGTH, maxmem=_MOST_MEMORY
+        pin.encode(),
+        salt=salt,
+        n=1 << cost.log2_n,
+        r=cost.block_size,
+        p=cost.parallelism,
+        dklen=_LENGTH,
+        maxmem=_MOST_MEMORY,
     )
 
 
-FREE_ATTEMPTS = 2  # wrong PINs that cause no delay
+FREE_ATTEMPT_COUNT = 2  # wrong PINs that cause no delay
 _FIRST, _MOST = 5.0, 300.0  # s
 
 
 def calculate_delay(wrong_attempts: int) -> float:
     """Return the delay in seconds after this number of consecutive wrong PINs: 0, 0, 5, 10, 20 … 300."""
     return (
-        min(_MOST, _FIRST * 2.0 ** (wrong_attempts - FREE_ATTEMPTS - 1))
-        if wrong_attempts > FREE_ATTEMPTS
+        min(_MOST, _FIRST * 2.0 ** (wrong_attempts - FREE_ATTEMPT_COUNT - 1))
+        if wrong_attempts > FREE_ATTEMPT_COUNT
         else 0.0
     )
 
@@ -122,6 +128,6 @@ class WrongPinCounter:
         """Increment the count and record ``now`` as the time of the last wrong PIN."""
         self.count, self.last_attempt_s = self.count + 1, now
 
-    def reset(self) -> None:
+    def reset_count(self) -> None:
         """Reset the count after a correct PIN."""
         self.count = 0

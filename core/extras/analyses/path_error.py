@@ -232,7 +232,11 @@ class WorstDeviation:
 
 
 def calculate_path_error(
-    programmed: FloatArray, lines: IntArray, measured: FloatArray, due: IntArray, search_point_count: int
+    programmed: FloatArray,
+    lines: IntArray,
+    measured: FloatArray,
+    expected_point_indices: IntArray,
+    search_point_count: int,
 ) -> PathError:
     """Return the deviations of measured positions (m, k) from a polyline (n, k) of 2 or 3 axes.
 
@@ -241,14 +245,14 @@ def calculate_path_error(
     points of this index, so that a sample is not assigned to the wrong branch where the path crosses
     itself. Raises AnalysisError.
     """
-    _check(programmed, lines, measured, due)
+    _check(programmed, lines, measured, expected_point_indices)
     n = len(programmed)
     lengths = np.linalg.norm(np.diff(programmed, axis=0), axis=1)
     come = np.concatenate([[0.0], np.cumsum(lengths)])
     best = np.full(len(measured), np.inf)
     segment, share = np.zeros(len(measured), dtype=np.int64), np.zeros(len(measured))
     for step in range(-search_point_count, search_point_count):
-        at = np.clip(due + step, 0, n - 2)
+        at = np.clip(expected_point_indices + step, 0, n - 2)
         start, segments = programmed[at], programmed[at + 1] - programmed[at]
         square = (segments**2).sum(axis=1)
         dot = ((measured - start) * segments).sum(axis=1)
@@ -285,8 +289,8 @@ def _check(programmed: FloatArray, lines: IntArray, measured: FloatArray, due: I
         raise AnalysisError(NO_MOTION_MESSAGE, "at-rest")
 
 
-def calculate_from_samples(
-    setpoints: FloatArray, actual: FloatArray, lines: FloatArray, rate: float, delay_s: float = 0.1
+def calculate_path_error_from_samples(
+    setpoints: FloatArray, actual: FloatArray, lines: FloatArray, sample_rate_hz: float, delay_s: float = 0.1
 ) -> PathError:
     """Return the deviations in a record, with ``setpoints`` (m, 2 or 3) as the programmed path.
 
@@ -309,7 +313,7 @@ def calculate_from_samples(
     due = np.cumsum(moved) - 1
     known = np.where(np.isfinite(lines), lines, 0.0).astype(np.int64)
     path = setpoints[moved]
-    reach = max(2, round(delay_s * rate))
+    reach = max(2, round(delay_s * sample_rate_hz))
     return calculate_path_error(path, known[moved], actual, due.astype(np.int64), reach)
 
 

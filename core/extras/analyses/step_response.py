@@ -24,19 +24,19 @@ MIN_SAMPLES = 20  # samples
 class StepResponse:
     """Response to a step, with times in seconds and lengths in mm.
 
-    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot`` is the overshoot as a fraction of the step,
-    or 0. ``settling_time_s`` is the time from the end of the commanded step until the axis remains within
-    ``settling_band``, or NaN if it does not settle in the record. ``delay_s`` is the delay at half of the
-    step. ``final_error`` is the error at the end of the record.
+    ``rise_time_s`` is the time from 10 to 90 %. ``overshoot_fraction`` is the overshoot as a fraction of the
+    step, or 0. ``settling_time_s`` is the time from the end of the commanded step until the axis remains
+    within ``settling_band_mm``, or NaN if it does not settle in the record. ``delay_s`` is the delay at half
+    of the step. ``final_error_mm`` is the error at the end of the record.
     """
 
-    step_size: float
+    step_size_mm: float
     rise_time_s: float
-    overshoot: float
+    overshoot_fraction: float
     settling_time_s: float
     delay_s: float
-    final_error: float
-    settling_band: float
+    final_error_mm: float
+    settling_band_mm: float
 
 
 def analyze_step(times: FloatArray, request: FloatArray, response: FloatArray, band: float) -> StepResponse:
@@ -136,7 +136,7 @@ class RampResponse:
 
     speed_mm_s: float
     lag_mm: float
-    overshoot: float  # mm beyond the end
+    overshoot_fraction: float  # mm beyond the end
 
     @property
     def lag_s(self) -> float:
@@ -249,16 +249,18 @@ def find_narrowest_limit(times: FloatArray, error: FloatArray, duration_s: float
     return high
 
 
-def find_speed_at_limit(lag_s: float, still: float, window: float, vmax: float) -> float | None:
+def find_speed_at_limit(
+    lag_s: float, limit_at_rest_mm: float, limit_at_max_speed_mm: float, max_speed: float
+) -> float | None:
     """Return the speed in mm/s at which the lag of an axis reaches an error limit that grows with speed.
 
-    ``lag_s`` is the lag of the axis in seconds. The limit is ``still`` mm at rest and ``window`` mm at
-    ``vmax``: lag_s · v = still + (window - still) · v / vmax. The result is None if the axis does not reach
-    the limit at any speed.
+    ``lag_s`` is the lag of the axis in seconds. The limit is ``limit_at_rest_mm`` mm at rest and
+    ``limit_at_max_speed_mm`` mm at ``max_speed``: lag_s · v = still + (window - still) · v / vmax. The
+    result is None if the axis does not reach the limit at any speed.
     """
-    steeper = lag_s - (window - still) / vmax
-    speed = still / steeper if steeper > 0.0 else math.inf
-    return speed if speed <= vmax else None
+    steeper = lag_s - (limit_at_max_speed_mm - limit_at_rest_mm) / max_speed
+    speed = limit_at_rest_mm / steeper if steeper > 0.0 else math.inf
+    return speed if speed <= max_speed else None
 
 
 def fit_lag(velocity: FloatArray, error: FloatArray) -> float:

@@ -73,12 +73,12 @@ class ThreadAnalysis:
         return max((each.lead_mm - self.reference_lead_mm for each in self.passes), key=abs)
 
 
-def calculate_max_rpm(lead: float, vmax: float) -> float:
+def calculate_max_rpm(lead: float, max_axis_speed: float) -> float:
     """Return the highest spindle speed in rpm at which an axis can follow the lead.
 
-    ``lead`` is in mm per revolution, and ``vmax`` is the speed limit of the axis in mm/s.
+    ``lead`` is in mm per revolution, and ``max_axis_speed`` is the speed limit of the axis in mm/s.
     """
-    return 60.0 * vmax / abs(lead) if lead else math.inf
+    return 60.0 * max_axis_speed / abs(lead) if lead else math.inf
 
 
 def analyze_thread(

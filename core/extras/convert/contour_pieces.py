@@ -12,7 +12,7 @@ Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
-class Piece:
+class ContourPiece:
     """A line or arc of a contour.
 
     The first coordinate of a point is in the direction of depth, and the second is along the passes.
@@ -21,20 +21,20 @@ class Piece:
     start: Point
     end: Point
     center: Point | None = None
-    clockwise: bool = False
+    is_clockwise: bool = False
 
-    def at(self, share: float) -> Point:
+    def get_point(self, fraction: float) -> Point:
         """Return the point at a fraction of the length of the piece, from 0 to 1."""
         if self.center is None:
             return (
-                self.start[0] + (self.end[0] - self.start[0]) * share,
-                self.start[1] + (self.end[1] - self.start[1]) * share,
+                self.start[0] + (self.end[0] - self.start[0]) * fraction,
+                self.start[1] + (self.end[1] - self.start[1]) * fraction,
             )
-        angle = self._angle(self.start) + self._sweep(self.end) * self._sense * share
+        angle = self._angle(self.start) + self._sweep(self.end) * self._sense * fraction
         radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
         return self.center[0] + radius * sin(angle), self.center[1] + radius * cos(angle)
 
-    def shares(self, level: float, axis: int = 0) -> list[float]:
+    def find_crossing_fractions(self, level: float, axis: int = 0) -> list[float]:
         """Return the fractions of the length at which the piece crosses a coordinate.
 
         ``level`` is a depth if ``axis`` is 0, or a coordinate along the passes if ``axis`` is 1.
@@ -54,7 +54,7 @@ class Piece:
         found = [self._sweep(each) / whole for each in points] if whole else []
         return sorted(share for share in found if 0.0 < share < 1.0)
 
-    def extremes(self, axis: int) -> list[float]:
+    def find_extremes(self, axis: int) -> list[float]:
         """Return the extreme coordinates of an arc that are between its ends.
 
         The coordinates are depths if ``axis`` is 0, or coordinates along the passes if ``axis`` is 1.
@@ -63,11 +63,11 @@ class Piece:
             return []
         radius = hypot(self.start[0] - self.center[0], self.start[1] - self.center[1])
         tops = [self.center[axis] + sign * radius * (1.0 - 1e-12) for sign in (1.0, -1.0)]
-        return [each for each in tops if self.shares(each, axis)]
+        return [each for each in tops if self.find_crossing_fractions(each, axis)]
 
     @property
     def _sense(self) -> float:
-        return 1.0 if self.clockwise else -1.0
+        return 1.0 if self.is_clockwise else -1.0
 
     def _angle(self, point: Point) -> float:
         assert self.center is not None
@@ -78,7 +78,9 @@ class Piece:
         return (self._sense * (self._angle(point) - self._angle(self.start))) % (2 * pi)
 
 
-def deeper_sections(pieces: Sequence[Piece], level: float, toward: float) -> list[tuple[float | None, float]]:
+def find_deeper_sections(
+    pieces: Sequence[ContourPiece], level: float, depth_sign: float
+) -> list[tuple[float | None, float]]:
     """Return the start and end coordinates of each section that is deeper than ``level``.
 
     The coordinates are along the passes. The start is None if the contour begins deeper than ``level``, so
@@ -87,25 +89,25 @@ def deeper_sections(pieces: Sequence[Piece], level: float, toward: float) -> lis
     found: list[tuple[float | None, float]] = []
     inside = False
     for number, piece in enumerate(pieces):
-        for low, high in pairwise([0.0, *piece.shares(level), 1.0]):
-            if toward * (piece.at((low + high) / 2)[0] - level) <= _SAME:
+        for low, high in pairwise([0.0, *piece.find_crossing_fractions(level), 1.0]):
+            if depth_sign * (piece.get_point((low + high) / 2)[0] - level) <= _SAME:
                 inside = False
                 continue
-            end = piece.at(high)[1]
+            end = piece.get_point(high)[1]
             if inside:
                 found[-1] = found[-1][0], end
             else:
-                found.append((None if number == 0 and low == 0.0 else piece.at(low)[1], end))
+                found.append((None if number == 0 and low == 0.0 else piece.get_point(low)[1], end))
             inside = True
     return found
 
 
-def turns_back(pieces: Sequence[Piece], along: float) -> bool:
+def has_reversal(pieces: Sequence[ContourPiece], travel_sign: float) -> bool:
     """Return whether a contour reverses toward the start of the passes, as in an undercut."""
-    farthest = along * pieces[0].start[1]
+    farthest = travel_sign * pieces[0].start[1]
     for piece in pieces:
-        for each in (*piece.extremes(1), piece.end[1]):
-            if along * each < farthest - 0.001:
+        for each in (*piece.find_extremes(1), piece.end[1]):
+            if travel_sign * each < farthest - 0.001:
                 return True
-            farthest = max(farthest, along * each)
+            farthest = max(farthest, travel_sign * each)
     return False

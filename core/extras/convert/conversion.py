@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from core.extras.convert.conversion_messages import make_error
 from core.extras.convert.conversion_proof import Proof, prove
-from core.extras.convert.omniturn_writer import Writer, WrittenLine
-from core.extras.convert.path_steps import MOVES
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_options import Options
+from core.extras.convert.omniturn_writer import OmniTurnWriter, WrittenLine
+from core.extras.convert.path_steps import MOVE_KINDS
+from core.extras.convert.source_options import ConversionOptions
 from core.extras.convert.source_reader import read_source
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Diagnostic, ProgramError, Severity
@@ -37,7 +37,7 @@ class Conversion:
         return "".join(f"{each.text}\n" for each in self.lines)
 
 
-def convert(texts: Sequence[str], options: Options, limits: ControlLimits) -> Conversion:
+def convert_program(texts: Sequence[str], options: ConversionOptions, limits: ControlLimits) -> Conversion:
     """Convert the lines of a source program to OmniTurn, and prove the result.
 
     ``limits`` are the limits of the control for which the result is proved.
@@ -45,20 +45,20 @@ def convert(texts: Sequence[str], options: Options, limits: ControlLimits) -> Co
     state, findings = read_source(texts, options)
     if any(each.severity is Severity.ERROR for each in findings):
         return Conversion((), tuple(findings), Proof())
-    if not any(step.kind in MOVES for step in state.steps):
-        return Conversion((), (*findings, refuse(0, 0, "file-empty").diagnostic), Proof())
-    metric = bool(state.metric)
-    writer = Writer(metric, options)
+    if not any(step.kind in MOVE_KINDS for step in state.steps):
+        return Conversion((), (*findings, make_error(0, 0, "file-empty").diagnostic), Proof())
+    metric = bool(state.is_metric)
+    writer = OmniTurnWriter(metric, options)
     try:
-        writer.write(state.steps)
+        writer.write_steps(state.steps)
     except ProgramError as error:
         return Conversion((), (*findings, *writer.warnings, error.diagnostic), Proof())
     lines = tuple(writer.lines)
     proof = prove(
         "".join(f"{each.text}\n" for each in lines),
-        [each.line for each in lines],
+        [each.source_line_number for each in lines],
         state.steps,
         limits,
-        metric=metric,
+        is_metric=metric,
     )
     return Conversion(lines, (*findings, *writer.warnings, *proof.errors), proof)

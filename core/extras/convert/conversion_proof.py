@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from core.extras.convert.path_steps import MOVES, Kind, Spindle, Step, is_same_run
-from core.extras.convert.reasons import refuse
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.path_steps import MOVE_KINDS, PathStep, SpindleState, StepKind, has_same_speed
 from core.interpreter.dialects import interpret_program
 from core.interpreter.shared import actions
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -15,16 +15,16 @@ from core.interpreter.shared.units import MM_S_PER_FT_MIN, MM_S_PER_M_MIN
 from core.language.diagnostics import Diagnostic, Severity
 from core.language.source import Dialect, ProgramSource
 
-EQUAL = 1e-6 * 25.4  # mm
+EQUAL_TOLERANCE_MM = 1e-6 * 25.4  # mm
 _HALF_STEP = 0.000025 * 25.4  # mm; half of the resolution of OmniTurn in inches, of the radius and of Z
 _HALF_STEP_METRIC = 0.00005  # mm
 _CLEARANCE = 0.0002 * 25.4  # mm; retract of a thread pass
 _OFFSET = ToolOffset(12.7, -76.2)
 _KINDS = {
-    Kind.RAPID: BlockKind.RAPID,
-    Kind.FEED: BlockKind.FEED,
-    Kind.ARC: BlockKind.ARC,
-    Kind.THREAD: BlockKind.THREAD,
+    StepKind.RAPID: BlockKind.RAPID,
+    StepKind.FEED: BlockKind.FEED,
+    StepKind.ARC: BlockKind.ARC,
+    StepKind.THREAD: BlockKind.THREAD,
 }
 
 
@@ -32,23 +32,23 @@ _KINDS = {
 class Proof:
     """Result of a proof: the differences, and the number of compared steps.
 
-    ``rounded`` is the number of moves whose end point changes because of the resolution of the control, and
-    ``most`` is the largest such change in mm.
+    ``rounded_move_count`` is the number of moves whose end point changes because of the resolution of the
+    control, and ``max_rounding_mm`` is the largest such change in mm.
     """
 
     errors: tuple[Diagnostic, ...] = ()
-    compared: int = 0
-    rounded: int = 0
-    most: float = 0.0
+    compared_step_count: int = 0
+    rounded_move_count: int = 0
+    max_rounding_mm: float = 0.0
 
 
 def prove(
     text: str,
-    sources: Sequence[int],
-    steps: Sequence[Step],
+    source_line_numbers: Sequence[int],
+    steps: Sequence[PathStep],
     limits: ControlLimits,
     *,
-    metric: bool,
+    is_metric: bool,
 ) -> Proof:
     """Interpret the converted program and compare it with the steps of the source.
 
@@ -62,15 +62,15 @@ def prove(
     blocks = list(done.generate_blocks())
     errors = [each for each in done.diagnostics if each.severity is Severity.ERROR]
     if errors:
-        return Proof(tuple(_of_target(each, text, sources) for each in errors))
-    return _Comparison(blocks, steps, metric=metric).run()
+        return Proof(tuple(_of_target(each, text, source_line_numbers) for each in errors))
+    return _Comparison(blocks, steps, metric=is_metric).run()
 
 
 def _of_target(found: Diagnostic, text: str, sources: Sequence[int]) -> Diagnostic:
     """Convert a finding about the converted program to a finding about the corresponding source line."""
     line = sources[found.line - 1] if found.line else 0
     made = text.splitlines()[found.line - 1] if found.line else ""
-    error = refuse(line, 0, "target", made=made, message=found.message, hint=found.hint)
+    error = make_error(line, 0, "target", made=made, message=found.message, hint=found.hint)
     return replace(error.diagnostic, hint=found.hint)
 
 
@@ -88,7 +88,7 @@ class _Comparison:
     def __init__(
         self,
         blocks: Sequence[Block],
-        steps: Sequence[Step],
+        steps: Sequence[PathStep],
         *,
         metric: bool,
     ) -> None:
@@ -99,7 +99,7 @@ class _Comparison:
         self._tool = 0
         self._rounded = 0
         self._most = 0.0
-        self._near = EQUAL + (_HALF_STEP_METRIC if metric else _HALF_STEP)
+        self._near = EQUAL_TOLERANCE_MM + (_HALF_STEP_METRIC if metric else _HALF_STEP)
 
     def run(self) -> Proof:
         try:
@@ -114,7 +114,7 @@ class _Comparison:
         at = 0
         while at < len(steps):
             step = steps[at]
-            if step.kind is Kind.TOOL:
+            if step.kind is StepKind.TOOL:
                 self._tool = round(step.number)
                 at += 1
                 continue
@@ -130,37 +130,37 @@ class _Comparison:
             self._differs(steps[-1].line if steps else 0, "proof-length", len(self._blocks), self._at)
         return compared
 
-    def _next(self, step: Step) -> Block:
+    def _next(self, step: PathStep) -> Block:
         if self._at >= len(self._blocks):
             self._differs(step.line, "proof-length", len(self._blocks), len(self._steps))
         self._at += 1
         return self._blocks[self._at - 1]
 
     def _differs(self, line: int, code: str, made: object, wanted: object, what: str = "") -> None:
-        raise _DifferenceError(refuse(line, 0, code, made=made, wanted=wanted, what=what).diagnostic)
+        raise _DifferenceError(make_error(line, 0, code, made=made, wanted=wanted, what=what).diagnostic)
 
-    def _same(self, step: Step, what: str, made: float, wanted: float, near: float) -> None:
+    def _same(self, step: PathStep, what: str, made: float, wanted: float, near: float) -> None:
         if abs(made - wanted) > near:
             self._differs(step.line, "proof-differs", f"{made:.6f}", f"{wanted:.6f}", what)
-        if what in {"X", "Z"} and abs(made - wanted) > EQUAL:
+        if what in {"X", "Z"} and abs(made - wanted) > EQUAL_TOLERANCE_MM:
             self._rounded += 1
             self._most = max(self._most, abs(made - wanted))
 
     # --- one step
 
-    def _one(self, step: Step) -> None:
-        if step.kind is Kind.HOME:
+    def _one(self, step: PathStep) -> None:
+        if step.kind is StepKind.HOME:
             self._home(step)
             return
         block = self._next(step)
-        if step.kind in MOVES:
+        if step.kind in MOVE_KINDS:
             self._move(step, block)
         elif block.action is None:
             self._differs(step.line, "proof-differs", block.kind, step.kind, "the step")
         else:
             self._action(step, block.action)
 
-    def _home(self, step: Step) -> None:
+    def _home(self, step: PathStep) -> None:
         """Compare a move to machine home. There is no block for it if the axes are already there."""
         at = self._at
         if (
@@ -170,11 +170,11 @@ class _Comparison:
         ):
             block = self._next(step)
             if step.x is not None:
-                self._same(step, "machine X", block.mx, 0.0, EQUAL)
+                self._same(step, "machine X", block.mx, 0.0, EQUAL_TOLERANCE_MM)
             if step.z is not None:
-                self._same(step, "machine Z", block.mz, 0.0, EQUAL)
+                self._same(step, "machine Z", block.mz, 0.0, EQUAL_TOLERANCE_MM)
 
-    def _move(self, step: Step, block: Block) -> None:
+    def _move(self, step: PathStep, block: Block) -> None:
         if block.kind is not _KINDS[step.kind]:
             self._differs(step.line, "proof-differs", block.kind, step.kind, "the kind of move")
         if block.modal.tool != self._tool:
@@ -183,14 +183,14 @@ class _Comparison:
         assert step.z is not None
         self._same(step, "X", block.x, step.x, self._near)
         self._same(step, "Z", block.z, step.z, self._near)
-        if step.kind is Kind.RAPID:
+        if step.kind is StepKind.RAPID:
             return
-        if step.kind is Kind.ARC:
+        if step.kind is StepKind.ARC:
             self._same(step, "the center in X", block.cx, step.cx, 3 * self._near)
             self._same(step, "the center in Z", block.cz, step.cz, 3 * self._near)
             if block.clockwise != step.clockwise:
                 self._differs(step.line, "proof-differs", block.clockwise, step.clockwise, "clockwise")
-        if step.kind is Kind.THREAD:
+        if step.kind is StepKind.THREAD:
             self._same(step, "the lead", block.feed, step.feed, 1e-6)
             return
         if block.per_rev != step.per_rev:
@@ -198,7 +198,7 @@ class _Comparison:
         made = block.feed * (1 if step.per_rev else 60)
         self._same(step, "the feed", made, step.feed, 1e-6 * step.feed + 1e-6)
 
-    def _action(self, step: Step, action: actions.Action) -> None:
+    def _action(self, step: PathStep, action: actions.Action) -> None:
         wanted = _action_of(step, metric=self._metric)
         if isinstance(action, actions.SpindleRun) and isinstance(wanted, actions.SpindleRun):
             self._spindle(step, action, wanted)
@@ -206,10 +206,10 @@ class _Comparison:
         if isinstance(action, actions.ProgramStop):
             action = actions.ProgramStop(action.optional)
         # The machine file defines the outputs of other M codes, and the interpreter applies it.
-        if action != wanted and not (isinstance(action, actions.OutputSwitch) and step.kind is Kind.M):
+        if action != wanted and not (isinstance(action, actions.OutputSwitch) and step.kind is StepKind.M):
             self._differs(step.line, "proof-differs", action, wanted, "the step")
 
-    def _spindle(self, step: Step, made: actions.SpindleRun, wanted: actions.SpindleRun) -> None:
+    def _spindle(self, step: PathStep, made: actions.SpindleRun, wanted: actions.SpindleRun) -> None:
         """Compare the spindle speeds.
 
         With constant surface speed, the rpm of a block depends on its position, so the surface speeds are
@@ -230,12 +230,12 @@ class _Comparison:
         """
         steps, blocks = self._steps, self._blocks
         infeed = at
-        while infeed < len(steps) and steps[infeed].kind is Kind.RAPID:
+        while infeed < len(steps) and steps[infeed].kind is StepKind.RAPID:
             infeed += 1
-        if infeed == len(steps) or steps[infeed].kind is not Kind.THREAD:
+        if infeed == len(steps) or steps[infeed].kind is not StepKind.THREAD:
             return 0
         end = infeed
-        while end < len(steps) and steps[end].kind in {Kind.RAPID, Kind.THREAD}:
+        while end < len(steps) and steps[end].kind in {StepKind.RAPID, StepKind.THREAD}:
             end += 1
         last = self._at
         while (
@@ -248,22 +248,26 @@ class _Comparison:
         self._at = last
         return end - at
 
-    def _zone(self, steps: Sequence[Step], blocks: Sequence[Block]) -> None:
+    def _zone(self, steps: Sequence[PathStep], blocks: Sequence[Block]) -> None:
         """Compare threads exactly, and compare rapids only as far as the retract of the cycle permits."""
         made = iter(blocks)
         for step in steps:
             for block in made:
-                if step.kind is Kind.THREAD and block.kind is BlockKind.THREAD:
+                if step.kind is StepKind.THREAD and block.kind is BlockKind.THREAD:
                     self._move(step, block)
                     break
-                if step.kind is Kind.RAPID and block.kind is BlockKind.RAPID and self._is_near(step, block):
+                if (
+                    step.kind is StepKind.RAPID
+                    and block.kind is BlockKind.RAPID
+                    and self._is_near(step, block)
+                ):
                     break
                 if block.kind is BlockKind.THREAD:
                     self._differs(step.line, "proof-differs", "thread", step.kind, "the kind of move")
             else:
                 self._differs(step.line, "proof-length", len(blocks), len(steps))
 
-    def _is_near(self, step: Step, block: Block) -> bool:
+    def _is_near(self, step: PathStep, block: Block) -> bool:
         assert step.x is not None
         assert step.z is not None
         return abs(block.x - step.x) <= _CLEARANCE and abs(block.z - step.z) <= self._near
@@ -279,40 +283,40 @@ def _is_idle(block: Block) -> bool:
     return block.kind is not BlockKind.ARC and block.x == block.x0 and block.z == block.z0
 
 
-def _known(steps: Sequence[Step]) -> Iterator[Step]:
+def _known(steps: Sequence[PathStep]) -> Iterator[PathStep]:
     """Yield the steps that blocks must match.
 
     Nose codes, presets and moves whose end point is unknown are omitted.
     """
-    spindle = Spindle()
+    spindle = SpindleState()
     for step in steps:
-        if step.kind in MOVES and (step.x is None or step.z is None):
+        if step.kind in MOVE_KINDS and (step.x is None or step.z is None):
             continue
-        if step.kind in {Kind.NOSE, Kind.PRESET}:
+        if step.kind in {StepKind.NOSE, StepKind.PRESET}:
             continue
-        if step.kind is Kind.SPINDLE:
-            same, spindle = is_same_run(step.spindle, spindle), step.spindle
+        if step.kind is StepKind.SPINDLE:
+            same, spindle = has_same_speed(step.spindle, spindle), step.spindle
             if same or (spindle.direction and not spindle.speed):
                 continue
         yield step
 
 
-def _action_of(step: Step, *, metric: bool) -> actions.Action | None:
+def _action_of(step: PathStep, *, metric: bool) -> actions.Action | None:
     """Return the block action that corresponds to a step, or None if there is no such action."""
-    if step.kind is Kind.SPINDLE:
+    if step.kind is StepKind.SPINDLE:
         return _spindle_of(step, metric=metric)
-    if step.kind is Kind.DWELL:
+    if step.kind is StepKind.DWELL:
         return actions.Dwell(step.number)
-    if step.kind is Kind.END:
+    if step.kind is StepKind.END:
         return actions.ProgramEnd(reset=step.number == 30)
-    return _M_ACTIONS.get(round(step.number)) if step.kind is Kind.M else None
+    return _M_ACTIONS.get(round(step.number)) if step.kind is StepKind.M else None
 
 
-def _spindle_of(step: Step, *, metric: bool) -> actions.Action:
+def _spindle_of(step: PathStep, *, metric: bool) -> actions.Action:
     spindle = step.spindle
     if not spindle.direction:
         return actions.SpindleStop()
-    if spindle.css:
+    if spindle.is_css:
         unit = MM_S_PER_M_MIN if metric else MM_S_PER_FT_MIN
         return actions.SpindleRun(float(spindle.direction), spindle.speed * unit)
     return actions.SpindleRun(spindle.direction * spindle.speed)

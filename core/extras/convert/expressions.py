@@ -7,7 +7,7 @@ import operator
 import re
 from collections.abc import Callable, Mapping, MutableMapping
 
-from core.extras.convert.reasons import refuse
+from core.extras.convert.conversion_messages import make_error
 from core.language.diagnostics import ProgramError
 
 _NUMBER = re.compile(r"\d+\.?\d*|\.\d+")
@@ -53,7 +53,7 @@ _FUNCTIONS: Mapping[str, Callable[[float], float]] = {
 Variables = MutableMapping[str, float]
 
 
-class Expression:
+class ExpressionReader:
     """A reader of the expressions in one line.
 
     ``at`` is the index of the next character.
@@ -62,75 +62,75 @@ class Expression:
     def __init__(self, line: int, text: str, variables: Variables, at: int = 0) -> None:
         self.line, self.text, self.variables, self.at = line, text, variables, at
 
-    def blank(self) -> None:
+    def skip_blanks(self) -> None:
         """Skip blanks."""
         while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1
 
-    def peek(self) -> str:
+    def peek_character(self) -> str:
         """Return the next character that is not a blank, or an empty text at the end."""
-        self.blank()
+        self.skip_blanks()
         return self.text[self.at : self.at + 1]
 
-    def take(self, sign: str) -> bool:
+    def accept_text(self, sign: str) -> bool:
         """Skip ``sign`` if it is next; return whether it was."""
-        self.blank()
+        self.skip_blanks()
         found = self.text[self.at : self.at + len(sign)].upper() == sign
         self.at += len(sign) * found
         return found
 
-    def value(self) -> tuple[float, bool]:
+    def read_value(self) -> tuple[float, bool]:
         """Return the value of a word and whether the decimal point rule does not apply to it.
 
         The second result is False only for a plain number without a decimal point. Raises ProgramError.
         """
         begin = self.at
         negative = False
-        while self.peek() in {"+", "-"}:
-            negative ^= self.peek() == "-"
+        while self.peek_character() in {"+", "-"}:
+            negative ^= self.peek_character() == "-"
             self.at += 1
         number = _NUMBER.match(self.text, self.at)
         if number:
             self.at = number.end()
             return (-1 if negative else 1) * float(number[0]), "." in number[0]
-        if self.peek() not in {"#", "["} and not _NAME.match(self.text, self.at):
+        if self.peek_character() not in {"#", "["} and not _NAME.match(self.text, self.at):
             raise self._error(begin)
         try:
             return (-1 if negative else 1) * self._atom(), True
         except (ZeroDivisionError, ValueError, OverflowError) as error:
-            raise refuse(self.line, begin + 1, "division") from error
+            raise make_error(self.line, begin + 1, "division") from error
 
-    def bracket(self) -> float:
+    def read_bracket(self) -> float:
         """Return the value of the expression in ``[ ]``. Raises ProgramError."""
         begin = self.at
-        if not self.take("["):
+        if not self.accept_text("["):
             raise self._error(begin)
         try:
             found = self._binary(0)
         except (ZeroDivisionError, ValueError, OverflowError) as error:
-            raise refuse(self.line, begin + 1, "division") from error
-        if not self.take("]"):
+            raise make_error(self.line, begin + 1, "division") from error
+        if not self.accept_text("]"):
             raise self._error(begin)
         return found
 
-    def whole(self) -> float:
+    def read_expression(self) -> float:
         """Return the value of the expression to the right of ``=``. Raises ProgramError."""
         begin = self.at
         try:
             return self._binary(0)
         except (ZeroDivisionError, ValueError, OverflowError) as error:
-            raise refuse(self.line, begin + 1, "division") from error
+            raise make_error(self.line, begin + 1, "division") from error
 
-    def variable(self) -> str:
+    def read_variable_key(self) -> str:
         """Return the key of the variable that starts with ``#``. Raises ProgramError."""
         self.at += 1
-        if self.take("<"):
+        if self.accept_text("<"):
             end = self.text.find(">", self.at)
             if end < 0:
                 raise self._error(self.at)
             name, self.at = self.text[self.at : end], end + 1
             return "<" + name.replace(" ", "").lower()
-        value, _ = self.value()
+        value, _ = self.read_value()
         return str(round(value))
 
     def _binary(self, level: int) -> float:
@@ -141,37 +141,37 @@ class Expression:
             sign = next((each for each in _LEVELS[level] if self._is_operator(each)), None)
             if sign is None:
                 return found
-            self.take(sign)
+            self.accept_text(sign)
             found = _CALCULATE[sign](found, self._binary(level + 1))
 
     def _is_operator(self, sign: str) -> bool:
-        self.blank()
+        self.skip_blanks()
         if sign == "*" and self.text.startswith("**", self.at):
             return False
         return self.text[self.at : self.at + len(sign)].upper() == sign
 
     def _power(self) -> float:
         found = self._signed()
-        while self.take("**"):
+        while self.accept_text("**"):
             found = found ** self._signed()
         return found
 
     def _signed(self) -> float:
-        if self.take("-"):
+        if self.accept_text("-"):
             return -self._signed()
-        if self.take("+"):
+        if self.accept_text("+"):
             return self._signed()
         return self._atom()
 
     def _atom(self) -> float:
-        sign = self.peek()
+        sign = self.peek_character()
         if sign == "[":
-            return self.bracket()
+            return self.read_bracket()
         if sign == "#":
             begin = self.at
-            key = self.variable()
+            key = self.read_variable_key()
             if key not in self.variables:
-                raise refuse(self.line, begin + 1, "variable", word=self.text[begin : self.at])
+                raise make_error(self.line, begin + 1, "variable", word=self.text[begin : self.at])
             return self.variables[key]
         number = _NUMBER.match(self.text, self.at)
         if number:
@@ -187,17 +187,19 @@ class Expression:
         word = name[0].upper()
         self.at = name.end()
         if word == "ATAN":
-            first = self.bracket()
-            if self.take("/"):
-                return math.degrees(math.atan2(first, self.bracket())) % 360.0
+            first = self.read_bracket()
+            if self.accept_text("/"):
+                return math.degrees(math.atan2(first, self.read_bracket())) % 360.0
             return math.degrees(math.atan(first))
-        if word == "EXISTS" and self.take("["):
-            known = self.variable() in self.variables
-            self.take("]")
+        if word == "EXISTS" and self.accept_text("["):
+            known = self.read_variable_key() in self.variables
+            self.accept_text("]")
             return float(known)
         if word not in _FUNCTIONS:
             raise self._error(begin)
-        return float(_FUNCTIONS[word](self.bracket()))
+        return float(_FUNCTIONS[word](self.read_bracket()))
 
     def _error(self, begin: int) -> ProgramError:
-        return refuse(self.line, begin + 1, "expression", text=self.text[begin : begin + 24].strip() or "?")
+        return make_error(
+            self.line, begin + 1, "expression", text=self.text[begin : begin + 24].strip() or "?"
+        )

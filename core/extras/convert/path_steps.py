@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Kind(StrEnum):
+class StepKind(StrEnum):
     """Kind of a step."""
 
     RAPID = "rapid"
@@ -23,30 +23,30 @@ class Kind(StrEnum):
     END = "end"
 
 
-MOVES = frozenset({Kind.RAPID, Kind.FEED, Kind.ARC, Kind.THREAD})
+MOVE_KINDS = frozenset({StepKind.RAPID, StepKind.FEED, StepKind.ARC, StepKind.THREAD})
 
 
 @dataclass(frozen=True, slots=True)
-class Spindle:
+class SpindleState:
     """State of the spindle. ``direction`` is 1 for M03, -1 for M04 and 0 for a stopped spindle.
 
-    ``speed`` is in rpm or, with ``css``, in units of the program per minute (ft/min or m/min). ``most`` is
-    the maximum rpm with ``css``, or 0.
+    ``speed`` is in rpm or, with ``is_css``, in units of the program per minute (ft/min or m/min).
+    ``max_rpm`` is the maximum rpm with ``is_css``, or 0.
     """
 
     direction: int = 0
     speed: float = 0.0
-    css: bool = False
-    most: float = 0.0
+    is_css: bool = False
+    max_rpm: float = 0.0
 
 
-def is_same_run(one: Spindle, other: Spindle) -> bool:
+def has_same_speed(one: SpindleState, other: SpindleState) -> bool:
     """Return whether two spindle states are equal or differ only in the maximum speed."""
-    return (one.direction, one.speed, one.css) == (other.direction, other.speed, other.css)
+    return (one.direction, one.speed, one.is_css) == (other.direction, other.speed, other.is_css)
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PathStep:
     """One step of a turning program. Lengths are in mm, X is a radius, and an unknown coordinate is None.
 
     ``x z`` is the end point, and ``cx cz`` the center of an arc. ``clockwise`` is seen with X+ toward the
@@ -56,7 +56,7 @@ class Step:
     comment of the source.
     """
 
-    kind: Kind
+    kind: StepKind
     line: int
     x: float | None = None
     z: float | None = None
@@ -66,5 +66,5 @@ class Step:
     feed: float = 0.0
     per_rev: bool = False
     number: float = 0.0
-    spindle: Spindle = Spindle()
+    spindle: SpindleState = SpindleState()
     comment: str = ""

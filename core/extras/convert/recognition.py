@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from core.extras.convert.source_options import Control
+from core.extras.convert.source_options import SourceControl
 
 _COMMENT = re.compile(r"\([^)]*\)?|;.*")
 _LINUXCNC = re.compile(
@@ -26,13 +26,13 @@ _HAAS = re.compile(
 )
 
 
-def recognized(lines: Sequence[str]) -> Control | None:
+def recognize_control(lines: Sequence[str]) -> SourceControl | None:
     """Return the control for which a program was probably written, or None if its words do not show this."""
     text = "\n".join(_COMMENT.sub(" ", each) for each in lines)
     if _LINUXCNC.search(text):
-        return Control.LINUXCNC
+        return SourceControl.LINUXCNC
     if not _FANUC.search(text):
-        return Control.LINUXCNC if _PLANE.search(text) else None
+        return SourceControl.LINUXCNC if _PLANE.search(text) else None
     if _HAAS.search("\n".join(lines)):
-        return Control.HAAS
-    return Control.FANUC_B if _SYSTEM_B.search(text) else Control.FANUC_A
+        return SourceControl.HAAS
+    return SourceControl.FANUC_B if _SYSTEM_B.search(text) else SourceControl.FANUC_A

@@ -4,83 +4,87 @@ from __future__ import annotations
 
 from math import copysign
 
-from core.extras.convert.path_steps import Kind
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_lines import Statement, Word
-from core.extras.convert.source_options import Control
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.path_steps import StepKind
+from core.extras.convert.source_lines import SourceStatement, SourceWord
+from core.extras.convert.source_options import SourceControl
 from core.extras.convert.source_state import SourceState
 
 _CLEARANCE = 0.25  # mm
 _SAME = 1e-6  # mm
 
 
-def cycle_target(state: SourceState, statement: Statement, code: Word) -> tuple[float, float]:
+def read_cycle_target(
+    state: SourceState, statement: SourceStatement, code: SourceWord
+) -> tuple[float, float]:
     """Return X and Z of a single cycle; a missing word has its value from the previous line.
 
     Raises ProgramError.
     """
-    x0, z0 = state.here(code)
-    x, z = state.target(statement)
-    before = state.cycle_end if state.cycle_code == state.motion else None
+    x0, z0 = state.get_position(code)
+    x, z = state.find_target(statement)
+    before = state.cycle_end if state.cycle_code == state.motion_code else None
     given = {each.letter for each in statement.words}
     if before is not None and not given & {"X", "U"}:
         x = before[0]
     if before is not None and not given & {"Z", "W"}:
         z = before[1]
-    state.cycle_code = state.motion
+    state.cycle_code = state.motion_code
     state.cycle_end = (x if x is not None else x0, z if z is not None else z0)
     return state.cycle_end
 
 
-def taper_of(state: SourceState, statement: Statement, letters: str = "RI") -> float:
+def read_taper(state: SourceState, statement: SourceStatement, letters: str = "RI") -> float:
     """Return the taper of a single cycle in mm. The taper remains active on further lines of the cycle."""
-    word = next((each for letter in letters if (each := statement.word(letter))), None)
+    word = next((each for letter in letters if (each := statement.find_word(letter))), None)
     if word is not None:
-        state.cycle_taper = state.length(word)
-    elif state.cycle_code != state.motion:
+        state.cycle_taper = state.convert_length(word)
+    elif state.cycle_code != state.motion_code:
         state.cycle_taper = 0.0
     return state.cycle_taper
 
 
-def turning_box(state: SourceState, statement: Statement, code: Word) -> None:
+def append_turning_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the four moves of a turning cycle. Raises ProgramError."""
-    x0, z0 = state.here(code)
-    taper = taper_of(state, statement)
-    x, z = cycle_target(state, statement, code)
-    state.rapid(statement.line, x + taper, z0)
-    state.cut(code, x, z)
-    state.cut(code, x0, z)
-    state.rapid(statement.line, x0, z0)
+    x0, z0 = state.get_position(code)
+    taper = read_taper(state, statement)
+    x, z = read_cycle_target(state, statement, code)
+    state.append_rapid(statement.line_number, x + taper, z0)
+    state.append_cut(code, x, z)
+    state.append_cut(code, x0, z)
+    state.append_rapid(statement.line_number, x0, z0)
 
 
-def facing_box(state: SourceState, statement: Statement, code: Word) -> None:
+def append_facing_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the four moves of a facing cycle. Raises ProgramError."""
-    x0, z0 = state.here(code)
-    taper = taper_of(state, statement, "RK")
-    x, z = cycle_target(state, statement, code)
-    state.rapid(statement.line, x0, z + taper)
-    state.cut(code, x, z)
-    state.cut(code, x, z0)
-    state.rapid(statement.line, x0, z0)
+    x0, z0 = state.get_position(code)
+    taper = read_taper(state, statement, "RK")
+    x, z = read_cycle_target(state, statement, code)
+    state.append_rapid(statement.line_number, x0, z + taper)
+    state.append_cut(code, x, z)
+    state.append_cut(code, x, z0)
+    state.append_rapid(statement.line_number, x0, z0)
 
 
-class Peck:
+class PeckValues:
     """Value of the first line of a two-line G74 or G75: the retract of a peck in mm."""
 
     def __init__(self) -> None:
         self.retract: float | None = None
 
 
-def peck_cycle(state: SourceState, statement: Statement, code: Word, peck: Peck) -> None:
+def append_peck_cycle(
+    state: SourceState, statement: SourceStatement, code: SourceWord, peck: PeckValues
+) -> None:
     """Append the moves of G74 (pecks along Z) or G75 (pecks along X). Raises ProgramError."""
     if not any(each.letter in "XZUW" for each in statement.words):
-        r = statement.word("R")
+        r = statement.find_word("R")
         if r is not None:
-            peck.retract = state.length(r)
+            peck.retract = state.convert_length(r)
         return
     along_z = code.value == 74
-    start = state.here(code)
-    x, z = state.target(statement)
+    start = state.get_position(code)
+    x, z = state.find_target(statement)
     assert x is not None
     assert z is not None
     depth, shift, relief = _sizes(state, statement, along_z=along_z)
@@ -88,40 +92,40 @@ def peck_cycle(state: SourceState, statement: Statement, code: Word, peck: Peck)
     if back is None:
         back = _CLEARANCE
         if depth:
-            state.warn(code, "peck-clearance", value=back)
+            state.add_warning(code, "peck-clearance", value=back)
     main, cross = (start[1], start[0]) if along_z else (start[0], start[1])
     end, last = (z, x) if along_z else (x, z)
     at = cross
     while True:
         _plunge(state, code, at, (main, end), depth, back, along_z=along_z)
         if relief and abs(last - cross) > _SAME:
-            _go(state, code, Kind.RAPID, end, at - copysign(relief, last - cross), along_z=along_z)
-        _go(state, code, Kind.RAPID, main, _cross(state, along_z=along_z), along_z=along_z)
+            _go(state, code, StepKind.RAPID, end, at - copysign(relief, last - cross), along_z=along_z)
+        _go(state, code, StepKind.RAPID, main, _cross(state, along_z=along_z), along_z=along_z)
         if abs(last - at) < _SAME or not shift:
             break
         at = last if abs(last - at) <= shift + _SAME else at + copysign(shift, last - cross)
-        _go(state, code, Kind.RAPID, main, at, along_z=along_z)
-    _go(state, code, Kind.RAPID, main, cross, along_z=along_z)
+        _go(state, code, StepKind.RAPID, main, at, along_z=along_z)
+    _go(state, code, StepKind.RAPID, main, cross, along_z=along_z)
 
 
-def _sizes(state: SourceState, statement: Statement, *, along_z: bool) -> tuple[float, float, float]:
+def _sizes(state: SourceState, statement: SourceStatement, *, along_z: bool) -> tuple[float, float, float]:
     """Return the depth of a peck, the shift between plunges, and the relief at the bottom, in mm."""
-    p, q, r, i, k, d = (statement.word(letter) for letter in "PQRIKD")
-    if state.control is Control.HAAS or (p is None and q is None):
+    p, q, r, i, k, d = (statement.find_word(letter) for letter in "PQRIKD")
+    if state.control is SourceControl.HAAS or (p is None and q is None):
         deep, side, off = (k, i, d) if along_z else (i, k, d)
-        sizes = [abs(state.length(each)) if each else 0.0 for each in (deep, side, off)]
+        sizes = [abs(state.convert_length(each)) if each else 0.0 for each in (deep, side, off)]
         return sizes[0], sizes[1], sizes[2]
     deep, side = (q, p) if along_z else (p, q)
     return (
-        abs(state.increment(deep)) if deep else 0.0,
-        abs(state.increment(side)) if side else 0.0,
-        abs(state.length(r)) if r else 0.0,
+        abs(state.convert_increment(deep)) if deep else 0.0,
+        abs(state.convert_increment(side)) if side else 0.0,
+        abs(state.convert_length(r)) if r else 0.0,
     )
 
 
 def _plunge(
     state: SourceState,
-    code: Word,
+    code: SourceWord,
     at: float,
     depths: tuple[float, float],
     step: float,
@@ -135,17 +139,19 @@ def _plunge(
     reached = begin
     while step and abs(end - reached) > step + _SAME:
         reached += toward * step
-        _go(state, code, Kind.FEED, reached, at, along_z=along_z)
-        _go(state, code, Kind.RAPID, reached - toward * back, at, along_z=along_z)
-    _go(state, code, Kind.FEED, end, at, along_z=along_z)
+        _go(state, code, StepKind.FEED, reached, at, along_z=along_z)
+        _go(state, code, StepKind.RAPID, reached - toward * back, at, along_z=along_z)
+    _go(state, code, StepKind.FEED, end, at, along_z=along_z)
 
 
-def _go(state: SourceState, code: Word, kind: Kind, main: float, cross: float, *, along_z: bool) -> None:
+def _go(
+    state: SourceState, code: SourceWord, kind: StepKind, main: float, cross: float, *, along_z: bool
+) -> None:
     x, z = (cross, main) if along_z else (main, cross)
-    if kind is Kind.RAPID:
-        state.rapid(code.line, x, z)
+    if kind is StepKind.RAPID:
+        state.append_rapid(code.line_number, x, z)
     else:
-        state.cut(code, x, z)
+        state.append_cut(code, x, z)
 
 
 def _cross(state: SourceState, *, along_z: bool) -> float:
@@ -154,7 +160,7 @@ def _cross(state: SourceState, *, along_z: bool) -> float:
     return found
 
 
-def no_axes(statement: Statement, code: Word, letters: str = "XZUW") -> None:
+def require_end_point(statement: SourceStatement, code: SourceWord, letters: str = "XZUW") -> None:
     """Raise ProgramError if a cycle line has no end point."""
     if not any(each.letter in letters for each in statement.words):
-        raise refuse(code.line, code.column, "cycle-word", word="X Z")
+        raise make_error(code.line_number, code.column, "cycle-word", word="X Z")

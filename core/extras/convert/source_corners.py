@@ -6,9 +6,9 @@ from dataclasses import replace
 from math import acos, hypot, tan
 from typing import NamedTuple
 
-from core.extras.convert.path_steps import Kind, Step
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_lines import Word
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.path_steps import PathStep, StepKind
+from core.extras.convert.source_lines import SourceWord
 from core.extras.convert.source_state import SourceState
 
 _SLACK = 1e-6  # mm
@@ -17,8 +17,8 @@ _SLACK = 1e-6  # mm
 class Corner(NamedTuple):
     """A corner after the last move: the word, its size in mm, and the start point of this move."""
 
-    word: Word
-    size: float
+    word: SourceWord
+    size_mm: float
     start: tuple[float, float]
 
 
@@ -35,31 +35,31 @@ def add_corner(state: SourceState, corner: Corner, x: float, z: float) -> None:
     first, second = hypot(x1, z1), hypot(x2, z2)
     turns = z1 * x2 - x1 * z2
     rounds = corner.word.letter.endswith("R")
-    if last.kind is not Kind.FEED or not first or not second or abs(turns) < _SLACK * first * second:
-        raise refuse(corner.word.line, corner.word.column, "corner", word=corner.word.text)
-    back = corner.size
+    if last.kind is not StepKind.FEED or not first or not second or abs(turns) < _SLACK * first * second:
+        raise make_error(corner.word.line_number, corner.word.column, "corner", word=corner.word.text)
+    back = corner.size_mm
     if rounds:
-        back = corner.size * tan(acos(max(-1.0, min(1.0, (x1 * x2 + z1 * z2) / (first * second)))) / 2)
+        back = corner.size_mm * tan(acos(max(-1.0, min(1.0, (x1 * x2 + z1 * z2) / (first * second)))) / 2)
     if back > first + _SLACK or back > second + _SLACK:
-        raise refuse(corner.word.line, corner.word.column, "corner", word=corner.word.text)
+        raise make_error(corner.word.line_number, corner.word.column, "corner", word=corner.word.text)
     a = last.x - x1 / first * back, last.z - z1 / first * back
     b = last.x + x2 / second * back, last.z + z2 / second * back
     if hypot(a[0] - corner.start[0], a[1] - corner.start[1]) < _SLACK:
         state.steps.pop()
     else:
         state.steps[-1] = replace(last, x=a[0], z=a[1])
-    state.steps.append(_piece(last, a, b, (x1 / first, z1 / first), turns, corner.size if rounds else 0.0))
+    state.steps.append(_piece(last, a, b, (x1 / first, z1 / first), turns, corner.size_mm if rounds else 0.0))
     state.x, state.z = b
 
 
 def _piece(
-    last: Step,
+    last: PathStep,
     a: tuple[float, float],
     b: tuple[float, float],
     travel: tuple[float, float],
     turns: float,
     radius: float,
-) -> Step:
+) -> PathStep:
     if not radius:
         return replace(last, x=b[0], z=b[1], comment="")
     # With Z to the right and X upward, a positive turn is to the left.
@@ -67,5 +67,5 @@ def _piece(
     center = a[0] + travel[1] * radius * left, a[1] - travel[0] * radius * left
     # OmniTurn sees X+ downward, so that a left turn is clockwise.
     return replace(
-        last, kind=Kind.ARC, x=b[0], z=b[1], cx=center[0], cz=center[1], clockwise=left > 0, comment=""
+        last, kind=StepKind.ARC, x=b[0], z=b[1], cx=center[0], cz=center[1], clockwise=left > 0, comment=""
     )

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from core.extras.convert.expressions import Expression, Variables
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_lines import SourceLine, Statement, Word, read_words, split_lines
-from core.extras.convert.source_options import Control
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.expressions import ExpressionReader, Variables
+from core.extras.convert.source_lines import SourceLine, SourceStatement, SourceWord, read_words, split_lines
+from core.extras.convert.source_options import SourceControl
 
-MOST_LINES = 300_000
+MAX_EXECUTED_LINES = 300_000
 _DEEPEST = 16
 _MACRO = re.compile(r"\s*(IF|WHILE|GOTO|END|DO|THEN)\s*(?=[\[#\d])", re.IGNORECASE)
 _ARGUMENTS = {letter: str(n) for n, letter in enumerate("ABCIJK", start=1)} | {
@@ -42,13 +42,13 @@ class _Return(NamedTuple):
     locals: dict[str, float]
 
 
-class Flow:
+class ProgramFlow:
     """The statements of a source program in execution order.
 
     ``at`` is the index of the next line.
     """
 
-    def __init__(self, texts: Sequence[str], control: Control) -> None:
+    def __init__(self, texts: Sequence[str], control: SourceControl) -> None:
         self.lines: list[SourceLine] = split_lines(texts, control)
         self.variables: Variables = {}
         self.at = 0
@@ -56,36 +56,36 @@ class Flow:
         self.repeats = 0  # line of the M99 that repeats the main program
         self._control = control
         self._calls: list[_Return] = []
-        self._left = MOST_LINES
+        self._left = MAX_EXECUTED_LINES
         self._loops: dict[int, int] = {}  # repeat loops: line index and passes left
 
-    def statements(self) -> Iterator[Statement]:
+    def iter_statements(self) -> Iterator[SourceStatement]:
         """Yield the statements in execution order. Raises ProgramError."""
         while self.at < len(self.lines) and not self.ended:
             line = self.lines[self.at]
             self.at += 1
             self._left -= 1
             if self._left < 0:
-                raise refuse(line.number, 1, "endless", most=MOST_LINES)
-            if line.key:
+                raise make_error(line.line_number, 1, "endless", most=MAX_EXECUTED_LINES)
+            if line.o_keyword:
                 self._o_word(line)
-            elif _MACRO.match(line.code, line.start):
+            elif _MACRO.match(line.code, line.start_index):
                 yield from self._macro(line)
             else:
                 yield from self._statement(line)
 
-    def _statement(self, line: SourceLine) -> Iterator[Statement]:
+    def _statement(self, line: SourceLine) -> Iterator[SourceStatement]:
         statement = read_words(line, self.variables)
         if statement.has_g(65):
             self._call_macro(statement)
             return
-        m = next((each for each in statement.codes("M") if each.value in {97, 98, 99}), None)
+        m = next((each for each in statement.find_words("M") if each.value in {97, 98, 99}), None)
         if m is None:
             yield statement
             return
         rest = tuple(each for each in statement.words if each is not m and each.letter not in "PLQ")
         if rest:
-            yield Statement(statement.line, rest, statement.comment)
+            yield SourceStatement(statement.line_number, rest, statement.comment)
         if m.value == 99:
             self._return(statement, line)
         else:
@@ -93,28 +93,28 @@ class Flow:
 
     # --- subprograms
 
-    def _call_program(self, statement: Statement, m: Word) -> None:
-        p, loops = statement.word("P"), statement.word("L")
+    def _call_program(self, statement: SourceStatement, m: SourceWord) -> None:
+        p, loops = statement.find_word("P"), statement.find_word("L")
         if p is None:
-            raise refuse(m.line, m.column, "subprogram", word=m.text)
+            raise make_error(m.line_number, m.column, "subprogram", word=m.text)
         number, count = round(p.value), 1 if loops is None else round(loops.value)
         if loops is None and number > 9999 and self._control.is_fanuc:
             count, number = divmod(number, 10000)
         self._enter(p, self._program(number) if m.value == 98 else self._block(number, p) - 1, count, {})
 
-    def _call_macro(self, statement: Statement) -> None:
-        p = statement.word("P")
+    def _call_macro(self, statement: SourceStatement) -> None:
+        p = statement.find_word("P")
         if p is None:
-            raise refuse(statement.line, 1, "subprogram", word="G65")
+            raise make_error(statement.line_number, 1, "subprogram", word="G65")
         passed = {
             _ARGUMENTS[word.letter]: word.value for word in statement.words if word.letter in _ARGUMENTS
         }
-        loops = statement.word("L")
+        loops = statement.find_word("L")
         self._enter(p, self._program(round(p.value)), 1 if loops is None else round(loops.value), passed)
 
-    def _enter(self, p: Word, begin: int | None, count: int, passed: dict[str, float]) -> None:
+    def _enter(self, p: SourceWord, begin: int | None, count: int, passed: dict[str, float]) -> None:
         if begin is None or len(self._calls) >= _DEEPEST:
-            raise refuse(p.line, p.column, "subprogram", word=p.text)
+            raise make_error(p.line_number, p.column, "subprogram", word=p.text)
         if count < 1:
             return
         saved = {key: value for key, value in self.variables.items() if _is_local(key)} if passed else {}
@@ -130,14 +130,14 @@ class Flow:
             (
                 index
                 for index, each in enumerate(self.lines)
-                if each.o.isdecimal() and int(each.o) == number and not each.key
+                if each.o_word.isdecimal() and int(each.o_word) == number and not each.o_keyword
             ),
             None,
         )
 
-    def _return(self, statement: Statement, line: SourceLine) -> None:
+    def _return(self, statement: SourceStatement, line: SourceLine) -> None:
         if not self._calls:
-            self.ended, self.repeats = True, line.number
+            self.ended, self.repeats = True, line.line_number
             return
         call = self._calls.pop()
         if call.left:
@@ -148,128 +148,142 @@ class Flow:
         for key in [key for key in self.variables if _is_local(key) and call.locals]:
             del self.variables[key]
         self.variables.update(call.locals)
-        p = statement.word("P")
+        p = statement.find_word("P")
         if p is not None:
             self.at = self._block(round(p.value), p)
 
-    def _block(self, number: float, word: Word) -> int:
+    def _block(self, number: float, word: SourceWord) -> int:
         after = range(self.at, len(self.lines))
         for index in (*after, *range(self.at)):
             if self.lines[index].n == number:
                 return int(index)
-        raise refuse(word.line, word.column, "label", word=word.text)
+        raise make_error(word.line_number, word.column, "label", word=word.text)
 
-    def contour(self, first: float, last: float, near: int) -> tuple[list[Statement], int]:
+    def contour(self, first: float, last: float, start_index: int) -> tuple[list[SourceStatement], int]:
         """Return the statements of the blocks N``first`` to N``last``, and the index after them.
 
-        The search for the blocks starts at line ``near`` and continues from the start of the file. Raises
-        ProgramError.
+        The search for the blocks starts at line ``start_index`` and continues from the start of the file.
+        Raises ProgramError.
         """
-        order = (*range(near, len(self.lines)), *range(near))
+        order = (*range(start_index, len(self.lines)), *range(start_index))
         begin = next((index for index in order if self.lines[index].n == first), None)
         end = None
         if begin is not None:
             end = next((k for k in range(begin, len(self.lines)) if self.lines[k].n == last), None)
         if begin is None or end is None:
-            raise refuse(near, 1, "cycle-contour", first=f"{first:g}", last=f"{last:g}")
+            raise make_error(start_index, 1, "cycle-contour", first=f"{first:g}", last=f"{last:g}")
         found = [read_words(line, self.variables) for line in self.lines[begin : end + 1]]
         return found, end + 1
 
     # --- macros of Fanuc
 
-    def _macro(self, line: SourceLine) -> Iterator[Statement]:
-        reader = Expression(line.number, line.code, self.variables, line.start)
-        if reader.take("IF"):
-            if not reader.bracket():
+    def _macro(self, line: SourceLine) -> Iterator[SourceStatement]:
+        reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
+        if reader.accept_text("IF"):
+            if not reader.read_bracket():
                 return
-            if reader.take("THEN"):
-                yield from self._statement(line._replace(start=reader.at))
+            if reader.accept_text("THEN"):
+                yield from self._statement(line._replace(start_index=reader.at))
                 return
-        if reader.take("WHILE"):
-            if not reader.bracket():
+        if reader.accept_text("WHILE"):
+            if not reader.read_bracket():
                 self.at = self._end_of(line, reader) + 1
             return
-        if reader.take("GOTO"):
+        if reader.accept_text("GOTO"):
             begin = reader.at
-            value, _ = reader.value()
+            value, _ = reader.read_value()
             text = line.code[begin : reader.at].strip()
-            self.at = self._block(value, Word("N", value, False, line.number, begin + 1, text))
+            self.at = self._block(value, SourceWord("N", value, False, line.line_number, begin + 1, text))
             return
-        if reader.take("END"):
+        if reader.accept_text("END"):
             self.at = self._begin_of(line)
             return
-        if reader.take("DO"):
+        if reader.accept_text("DO"):
             return
-        raise refuse(line.number, line.start + 1, "bad-word", text=line.code[line.start :].strip())
+        raise make_error(
+            line.line_number, line.start_index + 1, "bad-word", text=line.code[line.start_index :].strip()
+        )
 
-    def _end_of(self, line: SourceLine, reader: Expression) -> int:
-        if not reader.take("DO"):
-            raise refuse(line.number, reader.at + 1, "bad-word", text=line.code.strip())
+    def _end_of(self, line: SourceLine, reader: ExpressionReader) -> int:
+        if not reader.accept_text("DO"):
+            raise make_error(line.line_number, reader.at + 1, "bad-word", text=line.code.strip())
         number = line.code[reader.at :].strip()
         for index in range(self.at, len(self.lines)):
             if re.fullmatch(
-                rf"END\s*{number}", self.lines[index].code[self.lines[index].start :].strip(), re.IGNORECASE
+                rf"END\s*{number}",
+                self.lines[index].code[self.lines[index].start_index :].strip(),
+                re.IGNORECASE,
             ):
                 return index
-        raise refuse(line.number, reader.at + 1, "label", word=f"END{number}")
+        raise make_error(line.line_number, reader.at + 1, "label", word=f"END{number}")
 
     def _begin_of(self, line: SourceLine) -> int:
-        number = line.code[line.start :].strip()[3:].strip()
+        number = line.code[line.start_index :].strip()[3:].strip()
         for index in range(self.at - 1, -1, -1):
             if re.search(rf"DO\s*{number}\s*$", self.lines[index].code, re.IGNORECASE):
                 return index
-        raise refuse(line.number, 1, "label", word=f"DO{number}")
+        raise make_error(line.line_number, 1, "label", word=f"DO{number}")
 
     # --- O words of LinuxCNC
 
     def _o_word(self, line: SourceLine) -> None:
-        reader = Expression(line.number, line.code, self.variables, line.start)
-        jump = _JUMPS.get(line.key)
+        reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
+        jump = _JUMPS.get(line.o_keyword)
         if jump is not None:
             back, keys, beyond = jump
             self.at = (self._find_back if back else self._find)(line, keys) + beyond
-        elif line.key in {"endsub", "return"}:
+        elif line.o_keyword in {"endsub", "return"}:
             self._leave()
-        elif line.key in _KEYWORDS:
-            getattr(self, f"_{line.key}")(line, reader)
-        elif line.key not in {"endif", "do"}:
-            raise refuse(line.number, line.start + 1, "bad-word", text=line.code.strip())
+        elif line.o_keyword in _KEYWORDS:
+            getattr(self, f"_{line.o_keyword}")(line, reader)
+        elif line.o_keyword not in {"endif", "do"}:
+            raise make_error(line.line_number, line.start_index + 1, "bad-word", text=line.code.strip())
 
-    def _while(self, line: SourceLine, reader: Expression) -> None:
-        is_true = reader.bracket()
+    def _while(self, line: SourceLine, reader: ExpressionReader) -> None:
+        is_true = reader.read_bracket()
         if self._is_do_end(line):
             self.at = self._find_back(line, ("do",)) + 1 if is_true else self.at
         elif not is_true:
             self.at = self._find(line, ("endwhile",)) + 1
 
-    def _if(self, line: SourceLine, reader: Expression) -> None:
+    def _if(self, line: SourceLine, reader: ExpressionReader) -> None:
         """Continue after the first true IF or ELSEIF, or after ELSE or ENDIF if no condition is true."""
-        while not reader.bracket():
+        while not reader.read_bracket():
             index = self._find(line, ("elseif", "else", "endif"))
             self.at = index + 1
             line = self.lines[index]
-            if line.key != "elseif":
+            if line.o_keyword != "elseif":
                 return
-            reader = Expression(line.number, line.code, self.variables, line.start)
+            reader = ExpressionReader(line.line_number, line.code, self.variables, line.start_index)
 
     def _is_do_end(self, line: SourceLine) -> bool:
-        return any(each.o == line.o and each.key == "do" for each in self.lines[: line.number - 1])
+        return any(
+            each.o_word == line.o_word and each.o_keyword == "do"
+            for each in self.lines[: line.line_number - 1]
+        )
 
-    def _repeat(self, line: SourceLine, reader: Expression) -> None:
-        index = line.number - 1
+    def _repeat(self, line: SourceLine, reader: ExpressionReader) -> None:
+        index = line.line_number - 1
         left = self._loops.pop(index, None)
-        left = round(reader.bracket()) if left is None else left
+        left = round(reader.read_bracket()) if left is None else left
         if left <= 0:
             self.at = self._find(line, ("endrepeat",)) + 1
         else:
             self._loops[index] = left - 1
 
-    def _call(self, line: SourceLine, reader: Expression) -> None:
-        begin = next((k for k, each in enumerate(self.lines) if each.o == line.o and each.key == "sub"), None)
+    def _call(self, line: SourceLine, reader: ExpressionReader) -> None:
+        begin = next(
+            (
+                k
+                for k, each in enumerate(self.lines)
+                if each.o_word == line.o_word and each.o_keyword == "sub"
+            ),
+            None,
+        )
         passed: dict[str, float] = {}
-        while reader.peek() == "[":
-            passed[str(len(passed) + 1)] = reader.bracket()
-        name = Word("O", 0, True, line.number, line.start, f"O{line.o}")
+        while reader.peek_character() == "[":
+            passed[str(len(passed) + 1)] = reader.read_bracket()
+        name = SourceWord("O", 0, True, line.line_number, line.start_index, f"O{line.o_word}")
         passed |= {str(n): 0.0 for n in range(len(passed) + 1, 31)}
         self._enter(name, begin, 1, passed)
 
@@ -284,16 +298,16 @@ class Flow:
         self.variables.update(call.locals)
 
     def _find(self, line: SourceLine, keys: Sequence[str]) -> int:
-        for index in range(line.number, len(self.lines)):
-            if self.lines[index].o == line.o and self.lines[index].key in keys:
+        for index in range(line.line_number, len(self.lines)):
+            if self.lines[index].o_word == line.o_word and self.lines[index].o_keyword in keys:
                 return index
-        raise refuse(line.number, 1, "label", word=f"O{line.o} {keys[0].upper()}")
+        raise make_error(line.line_number, 1, "label", word=f"O{line.o_word} {keys[0].upper()}")
 
     def _find_back(self, line: SourceLine, keys: Sequence[str]) -> int:
-        for index in range(line.number - 2, -1, -1):
-            if self.lines[index].o == line.o and self.lines[index].key in keys:
+        for index in range(line.line_number - 2, -1, -1):
+            if self.lines[index].o_word == line.o_word and self.lines[index].o_keyword in keys:
                 return index
-        raise refuse(line.number, 1, "label", word=f"O{line.o} {keys[0].upper()}")
+        raise make_error(line.line_number, 1, "label", word=f"O{line.o_word} {keys[0].upper()}")
 
 
 def _is_local(key: str) -> bool:

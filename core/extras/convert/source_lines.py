@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from core.extras.convert.expressions import Expression, Variables
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_options import Control
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.expressions import ExpressionReader, Variables
+from core.extras.convert.source_options import SourceControl
 
 _BLOCK = re.compile(r"\s*(?P<delete>/\d?)?\s*(?:N\s*(?P<n>\d+(?:\.\d+)?))?\s*", re.IGNORECASE)
 _PROGRAM = re.compile(r"\s*[O:]\s*(?P<o>\d+)(?!\d)\s*(?P<rest>.*)", re.IGNORECASE)
@@ -19,22 +19,23 @@ _O_WORD = re.compile(r"\s*O\s*(?P<o>\d+|<[^>]+>)\s*(?P<key>[A-Za-z]+)(?P<rest>.*
 class SourceLine(NamedTuple):
     """One line of the source program.
 
-    ``code`` is the text in which blanks replace the comments. ``n`` is the block number, or 0. ``o`` is the
-    number or name of an O word, ``key`` is its keyword, and ``start`` is the index after them.
+    ``code`` is the text in which blanks replace the comments. ``n`` is the block number, or 0. ``o_word`` is
+    the number or name of an O word, ``o_keyword`` is its keyword, and ``start_index`` is the index after
+    them.
     """
 
-    number: int
+    line_number: int
     code: str
     comment: str
     text: str
     n: float = 0
-    o: str = ""
-    key: str = ""
-    start: int = 0
-    deleted: bool = False
+    o_word: str = ""
+    o_keyword: str = ""
+    start_index: int = 0
+    is_block_delete: bool = False
 
 
-class Word(NamedTuple):
+class SourceWord(NamedTuple):
     """A word of a line.
 
     ``has_point`` is False only for a number without a decimal point.
@@ -43,24 +44,24 @@ class Word(NamedTuple):
     letter: str
     value: float
     has_point: bool
-    line: int
+    line_number: int
     column: int
     text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Statement:
+class SourceStatement:
     """The words of a line with their values, in order."""
 
-    line: int
-    words: tuple[Word, ...]
+    line_number: int
+    words: tuple[SourceWord, ...]
     comment: str = ""
 
-    def word(self, letter: str) -> Word | None:
+    def find_word(self, letter: str) -> SourceWord | None:
         """Return the last word of the line with this letter, or None."""
         return next((each for each in reversed(self.words) if each.letter == letter), None)
 
-    def codes(self, letter: str) -> Sequence[Word]:
+    def find_words(self, letter: str) -> Sequence[SourceWord]:
         """Return all words with this letter."""
         return [each for each in self.words if each.letter == letter]
 
@@ -69,7 +70,7 @@ class Statement:
         return any(each.letter == "G" and each.value in codes for each in self.words)
 
 
-def split_lines(texts: Sequence[str], control: Control) -> list[SourceLine]:
+def split_lines(texts: Sequence[str], control: SourceControl) -> list[SourceLine]:
     """Return the lines of a source program.
 
     Raises ProgramError for a comment without an end.
@@ -77,7 +78,7 @@ def split_lines(texts: Sequence[str], control: Control) -> list[SourceLine]:
     return [_line(number, text, control) for number, text in enumerate(texts, start=1)]
 
 
-def _line(number: int, text: str, control: Control) -> SourceLine:
+def _line(number: int, text: str, control: SourceControl) -> SourceLine:
     code, comment = _without_comments(number, text)
     if code.lstrip().startswith("%"):
         return SourceLine(number, "", comment, text)
@@ -85,7 +86,7 @@ def _line(number: int, text: str, control: Control) -> SourceLine:
     assert head is not None
     n, deleted, start = float(head["n"] or 0), head["delete"] is not None, head.end()
     o_word = _O_WORD.match(code, start)
-    if control is Control.LINUXCNC and o_word is not None:
+    if control is SourceControl.LINUXCNC and o_word is not None:
         return SourceLine(
             number,
             code,
@@ -100,7 +101,7 @@ def _line(number: int, text: str, control: Control) -> SourceLine:
     program = _PROGRAM.match(code, start)
     if program is not None:
         return SourceLine(number, code, comment, text, n, program["o"], "", program.start("rest"), deleted)
-    return SourceLine(number, code, comment, text, n, start=start, deleted=deleted)
+    return SourceLine(number, code, comment, text, n, start_index=start, is_block_delete=deleted)
 
 
 def _without_comments(number: int, text: str) -> tuple[str, str]:
@@ -111,7 +112,7 @@ def _without_comments(number: int, text: str) -> tuple[str, str]:
         if text[at] == "(":
             end = text.find(")", at)
             if end < 0:
-                raise refuse(number, at + 1, "parentheses")
+                raise make_error(number, at + 1, "parentheses")
             comments.append(text[at + 1 : end].strip())
             code.append(" " * (end + 1 - at))
             at = end + 1
@@ -124,29 +125,29 @@ def _without_comments(number: int, text: str) -> tuple[str, str]:
     return "".join(code).rstrip(), " ".join(filter(None, comments))
 
 
-def read_words(line: SourceLine, variables: Variables) -> Statement:
+def read_words(line: SourceLine, variables: Variables) -> SourceStatement:
     """Return the words of a line, and assign the variables that the line sets. Raises ProgramError."""
-    reader = Expression(line.number, line.code, variables, line.start)
+    reader = ExpressionReader(line.line_number, line.code, variables, line.start_index)
     assigned: dict[str, float] = {}
     words = tuple(_words(reader, assigned))
     variables.update(assigned)
-    return Statement(line.number, words, line.comment)
+    return SourceStatement(line.line_number, words, line.comment)
 
 
-def _words(reader: Expression, assigned: dict[str, float]) -> Iterator[Word]:
-    while reader.peek():
+def _words(reader: ExpressionReader, assigned: dict[str, float]) -> Iterator[SourceWord]:
+    while reader.peek_character():
         begin = reader.at
-        if reader.peek() == "#":
-            key = reader.variable()
-            if not reader.take("="):
-                raise refuse(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
-            assigned[key] = reader.whole()
+        if reader.peek_character() == "#":
+            key = reader.read_variable_key()
+            if not reader.accept_text("="):
+                raise make_error(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
+            assigned[key] = reader.read_expression()
             continue
-        corner = reader.take(",")
-        letter = reader.peek().upper()
+        corner = reader.accept_text(",")
+        letter = reader.peek_character().upper()
         if not letter.isalpha():
-            raise refuse(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
+            raise make_error(reader.line, begin + 1, "bad-word", text=reader.text[begin : begin + 24])
         reader.at += 1
-        value, has_point = reader.value()
+        value, has_point = reader.read_value()
         text = reader.text[begin : reader.at].strip()
-        yield Word(("," if corner else "") + letter, value, has_point, reader.line, begin + 1, text)
+        yield SourceWord(("," if corner else "") + letter, value, has_point, reader.line, begin + 1, text)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 
-class Control(StrEnum):
+class SourceControl(StrEnum):
     """Control for which a program was written. The values are the choices of the option ``--from``."""
 
     FANUC_A = "fanuc-a"
@@ -21,33 +21,33 @@ class Control(StrEnum):
 
         In system A, U and W are increments and G90 is a cycle.
         """
-        return self in {Control.FANUC_A, Control.HAAS}
+        return self in {SourceControl.FANUC_A, SourceControl.HAAS}
 
     @property
     def is_fanuc(self) -> bool:
         """Return whether the words, cycles and macros are those of Fanuc controls."""
-        return self not in {Control.LINUXCNC, Control.MACH}
+        return self not in {SourceControl.LINUXCNC, SourceControl.MACH}
 
 
 @dataclass(frozen=True, slots=True)
-class Options:
+class ConversionOptions:
     """Options of a conversion, mainly facts that the text of the source program does not contain.
 
     ``no_point`` is the value of 1 in a length without a decimal point: 0 means not specified, 1 means a
     whole unit, and 0.001 means the least increment (0.001 mm or 0.0001 in). ``metric`` is the unit of a
     program that selects no unit, and ``diameter`` is the meaning of X in a program that does not select
     one; None means not specified. ``front`` is True if G02 and G03 are seen with X+ toward the operator.
-    ``skipped_m`` are M codes to omit.
+    ``skipped_m_codes`` are M codes to omit.
     """
 
-    control: Control
+    control: SourceControl
     no_point: float = 0.0
     metric: bool | None = None
     diameter: bool | None = None
     front: bool = False
-    skipped_m: frozenset[int] = frozenset()
-    comments: bool = True
+    skipped_m_codes: frozenset[int] = frozenset()
+    has_comments: bool = True
     rapid: float = 7620.0  # mm/min
-    most_rpm: float = 3500.0
-    most_feed: float = 7620.0  # mm/min
+    max_rpm: float = 3500.0
+    max_feed_mm_min: float = 7620.0  # mm/min
     m_codes: frozenset[int] = frozenset()  # M codes that the machine file of the target defines

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from core.extras.convert.path_steps import Kind, Step
-from core.extras.convert.reasons import refuse
-from core.extras.convert.source_arcs import arc
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.path_steps import PathStep, StepKind
+from core.extras.convert.source_arcs import append_arc
 from core.extras.convert.source_corners import Corner, add_corner
-from core.extras.convert.source_cycles import Cycles
-from core.extras.convert.source_flow import Flow
-from core.extras.convert.source_lines import Statement, Word
-from core.extras.convert.source_options import Control, Options
+from core.extras.convert.source_cycles import SourceCycles
+from core.extras.convert.source_flow import ProgramFlow
+from core.extras.convert.source_lines import SourceStatement, SourceWord
+from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.extras.convert.source_state import SourceState
-from core.extras.convert.thread_cycles import single_pass
+from core.extras.convert.thread_cycles import append_thread_pass
 from core.language.diagnostics import Diagnostic, ProgramError
 
 _IDLE = frozenset(
@@ -56,35 +56,35 @@ _C_AXIS = frozenset({7.1, 12.1, 107, 112, 12, 16, 12.2})
 _C_WORDS = "CHABYV"
 
 
-class Reader:
+class SourceReader:
     """One pass through a source program. ``state.steps`` and ``state.warnings`` are the results."""
 
-    def __init__(self, texts: Sequence[str], options: Options) -> None:
-        self.flow = Flow(texts, options.control)
-        self.state = SourceState(options, metric=options.metric)
-        self._cycles = Cycles(self.state, self.flow, self.execute)
+    def __init__(self, texts: Sequence[str], options: ConversionOptions) -> None:
+        self.flow = ProgramFlow(texts, options.control)
+        self.state = SourceState(options, is_metric=options.metric)
+        self._cycles = SourceCycles(self.state, self.flow, self.execute_statement)
         self._corner: Corner | None = None
         self._nose_ends = False
         control = options.control
-        self.state.per_rev = control.is_fanuc
-        self.state.diameter = (
-            options.diameter if options.diameter is not None else control is not Control.LINUXCNC
+        self.state.is_feed_per_rev = control.is_fanuc
+        self.state.is_x_diameter = (
+            options.diameter if options.diameter is not None else control is not SourceControl.LINUXCNC
         )
 
-    def read(self) -> None:
+    def read_program(self) -> None:
         """Read the whole program. Raises ProgramError at the first line that cannot be converted."""
-        for statement in self.flow.statements():
-            self.execute(statement)
+        for statement in self.flow.iter_statements():
+            self.execute_statement(statement)
         if self.flow.repeats:
-            word = Word("M", 99, False, self.flow.repeats, 1, "M99")
-            self.state.warn(word, "repeat")
-        if not any(each.kind is Kind.END for each in self.state.steps):
+            word = SourceWord("M", 99, False, self.flow.repeats, 1, "M99")
+            self.state.add_warning(word, "repeat")
+        if not any(each.kind is StepKind.END for each in self.state.steps):
             line = self.state.steps[-1].line if self.state.steps else 1
-            self.state.add(Step(Kind.END, line, number=30))
+            self.state.append_step(PathStep(StepKind.END, line, number=30))
 
     # --- one statement
 
-    def execute(self, statement: Statement) -> None:
+    def execute_statement(self, statement: SourceStatement) -> None:
         """Execute the words of one line. Raises ProgramError."""
         state = self.state
         if statement.comment:
@@ -100,191 +100,200 @@ class Reader:
         self._motion(statement)
         self._stop_codes(statement)
 
-    def _modes(self, statement: Statement) -> None:
-        for word in statement.codes("G"):
+    def _modes(self, statement: SourceStatement) -> None:
+        for word in statement.find_words("G"):
             if not self._numbers_mode(word) and not self._feed_mode(word):
                 self._other_mode(word)
 
-    def _without_y(self, statement: Statement) -> Statement:
+    def _without_y(self, statement: SourceStatement) -> SourceStatement:
         """Return the statement without Y0 and V0, which a lathe without a Y axis does not need."""
         idle = [each for each in statement.words if each.letter in "YV" and not each.value]
         for each in idle:
-            self.state.warn(each, "left-out", word=each.text)
+            self.state.add_warning(each, "left-out", word=each.text)
         return replace(statement, words=tuple(each for each in statement.words if each not in idle))
 
-    def _numbers_mode(self, word: Word) -> bool:
+    def _numbers_mode(self, word: SourceWord) -> bool:
         """Execute a code for units, X diameter or increments; return whether the word is such a code."""
         state, fanuc, code = self.state, self.state.control.is_fanuc, word.value
         if code in {20, 21} or (code in {70, 71} and not fanuc):
-            state.metric = code in {21, 71}
+            state.is_metric = code in {21, 71}
         elif code in {7, 8} and not fanuc:
-            state.diameter = code == 7
+            state.is_x_diameter = code == 7
         elif code in {90, 91} and not state.control.has_system_a:
-            state.absolute = code == 90
+            state.is_absolute = code == 90
         else:
             return False
         return True
 
-    def _feed_mode(self, word: Word) -> bool:
+    def _feed_mode(self, word: SourceWord) -> bool:
         """Execute a code that selects the feed mode; return whether the word is such a code."""
         state, code = self.state, word.value
         if code in self._feed_codes():
             per_rev = code in {99, 95}
-            state.feed = None if per_rev != state.per_rev else state.feed
-            state.per_rev = per_rev
+            state.feed = None if per_rev != state.is_feed_per_rev else state.feed
+            state.is_feed_per_rev = per_rev
         elif code == 93 and not state.control.is_fanuc:
-            raise refuse(word.line, word.column, "inverse-time")
+            raise make_error(word.line_number, word.column, "inverse-time")
         elif code in {98, 99} and not state.control.has_system_a:
             state.returns_to_r = code == 99
         else:
             return False
         return True
 
-    def _other_mode(self, word: Word) -> None:
+    def _other_mode(self, word: SourceWord) -> None:
         state, code = self.state, word.value
         if 54 <= code < 60:
             if state.work_offset not in {0, code} or code != int(code):
-                raise refuse(word.line, word.column, "work-offset", word=word.text)
+                raise make_error(word.line_number, word.column, "work-offset", word=word.text)
             state.work_offset = code
         elif code in {17, 18, 19}:
-            state.plane = code
+            state.plane_code = code
         elif code in _C_AXIS:
-            raise refuse(word.line, word.column, "c-axis", word=word.text)
+            raise make_error(word.line_number, word.column, "c-axis", word=word.text)
         elif code in _IDLE and code not in _SILENT:
-            state.warn(word, "left-out", word=word.text)
+            state.add_warning(word, "left-out", word=word.text)
 
     def _feed_codes(self) -> frozenset[int]:
         return frozenset({98, 99}) if self.state.control.has_system_a else frozenset({94, 95})
 
-    def _feed(self, statement: Statement) -> None:
+    def _feed(self, statement: SourceStatement) -> None:
         state = self.state
-        word = statement.word("F")
+        word = statement.find_word("F")
         if (
             word is None
             or statement.has_g(4, 32, 33, 76, 34)
-            or (state.motion in {32, 33} and not statement.codes("G"))
+            or (state.motion_code in {32, 33} and not statement.find_words("G"))
         ):
             return
         if self._is_thread_cycle(statement):
             return
-        if state.per_rev and not word.has_point and state.control.is_fanuc and state.options.no_point != 1:
-            raise refuse(word.line, word.column, "feed-no-point", word=word.text)
-        state.feed = word.value * state.unit(word)
-        most = state.options.most_feed
-        if not state.per_rev and state.feed > most:
-            state.warn(word, "feed-limited", word=word.text)
+        if (
+            state.is_feed_per_rev
+            and not word.has_point
+            and state.control.is_fanuc
+            and state.options.no_point != 1
+        ):
+            raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
+        state.feed = word.value * state.get_unit_mm(word)
+        most = state.options.max_feed_mm_min
+        if not state.is_feed_per_rev and state.feed > most:
+            state.add_warning(word, "feed-limited", word=word.text)
             state.feed = most
 
-    def _is_thread_cycle(self, statement: Statement) -> bool:
+    def _is_thread_cycle(self, statement: SourceStatement) -> bool:
         code = 92 if self.state.control.has_system_a else 78
         if not self.state.control.is_fanuc:
             return False
-        return statement.has_g(code) or (self.state.motion == code and not statement.codes("G"))
+        return statement.has_g(code) or (self.state.motion_code == code and not statement.find_words("G"))
 
-    def _tool(self, statement: Statement) -> None:
-        state, word = self.state, statement.word("T")
+    def _tool(self, statement: SourceStatement) -> None:
+        state, word = self.state, statement.find_word("T")
         if word is None:
             return
         number = offset = round(word.value)
         if number > 99:
             number, offset = divmod(number, 100)
         if not number or not offset:
-            state.warn(word, "offset-cancelled", word=word.text)
-            if number in {0, state.tool}:
+            state.add_warning(word, "offset-cancelled", word=word.text)
+            if number in {0, state.tool_number}:
                 return
             offset = number
         if not 1 <= offset <= 32:
-            raise refuse(word.line, word.column, "tool-number", word=word.text)
-        if offset != state.tool:
-            state.tool, state.x, state.z = offset, None, None
-            state.add(Step(Kind.TOOL, statement.line, number=offset))
+            raise make_error(word.line_number, word.column, "tool-number", word=word.text)
+        if offset != state.tool_number:
+            state.tool_number, state.x, state.z = offset, None, None
+            state.append_step(PathStep(StepKind.TOOL, statement.line_number, number=offset))
 
-    def _spindle(self, statement: Statement) -> None:
+    def _spindle(self, statement: SourceStatement) -> None:
         """Execute G96, G97, S, M03 and M04. Raises ProgramError."""
         state = self.state
         spindle = state.spindle
-        limit = statement.has_g(50) or (statement.has_g(92) and state.control is not Control.LINUXCNC)
-        word = statement.word("S")
-        for code in statement.codes("G"):
-            if code.value in {96, 97} and spindle.css != (code.value == 96):
-                spindle = replace(spindle, css=code.value == 96, speed=0.0)
+        limit = statement.has_g(50) or (statement.has_g(92) and state.control is not SourceControl.LINUXCNC)
+        word = statement.find_word("S")
+        for code in statement.find_words("G"):
+            if code.value in {96, 97} and spindle.is_css != (code.value == 96):
+                spindle = replace(spindle, is_css=code.value == 96, speed=0.0)
         if word is not None and limit:
-            spindle = replace(spindle, most=self._rpm(word))
+            spindle = replace(spindle, max_rpm=self._rpm(word))
         elif word is not None:
-            spindle = replace(spindle, speed=word.value if spindle.css else self._rpm(word))
-        most = statement.word("D")
+            spindle = replace(spindle, speed=word.value if spindle.is_css else self._rpm(word))
+        most = statement.find_word("D")
         if most is not None and statement.has_g(96) and not state.control.is_fanuc:
-            spindle = replace(spindle, most=self._rpm(most))
-        for code in statement.codes("M"):
+            spindle = replace(spindle, max_rpm=self._rpm(most))
+        for code in statement.find_words("M"):
             if code.value in {3, 4}:
                 spindle = replace(spindle, direction=1 if code.value == 3 else -1)
         before, state.spindle = state.spindle, spindle
-        keeps_speed = before.css and not spindle.css and before.direction == spindle.direction
+        keeps_speed = before.is_css and not spindle.is_css and before.direction == spindle.direction
         if spindle != before and spindle.direction and (spindle.speed or keeps_speed):
-            state.add(Step(Kind.SPINDLE, statement.line, spindle=spindle))
+            state.append_step(PathStep(StepKind.SPINDLE, statement.line_number, spindle=spindle))
 
-    def _rpm(self, word: Word) -> float:
-        most = self.state.options.most_rpm
+    def _rpm(self, word: SourceWord) -> float:
+        most = self.state.options.max_rpm
         if word.value > most:
-            self.state.warn(word, "speed-limited", word=word.text)
+            self.state.add_warning(word, "speed-limited", word=word.text)
         return min(word.value, most)
 
     # --- M codes
 
-    def _start_codes(self, statement: Statement) -> None:
-        for word in statement.codes("M"):
+    def _start_codes(self, statement: SourceStatement) -> None:
+        for word in statement.find_words("M"):
             if word.value in {8, 7}:
-                self.state.add(Step(Kind.M, statement.line, number=8))
+                self.state.append_step(PathStep(StepKind.M, statement.line_number, number=8))
             elif word.value not in {0, 1, 2, 3, 4, 5, 9, 30, 60}:
                 self._machine_code(word)
 
-    def _machine_code(self, word: Word) -> None:
+    def _machine_code(self, word: SourceWord) -> None:
         options = self.state.options
         code = word.value
-        haas = options.control is Control.HAAS and code in _LEFT_OUT_M_OF_HAAS
-        if code in options.skipped_m or code in _LEFT_OUT_M or haas:
+        haas = options.control is SourceControl.HAAS and code in _LEFT_OUT_M_OF_HAAS
+        if code in options.skipped_m_codes or code in _LEFT_OUT_M or haas:
             if code not in _SILENT_M:
-                self.state.warn(word, "left-out", word=word.text)
+                self.state.add_warning(word, "left-out", word=word.text)
         elif code in options.m_codes:
-            self.state.warn(word, "machine-code", word=word.text)
-            self.state.add(Step(Kind.M, word.line, number=code))
+            self.state.add_warning(word, "machine-code", word=word.text)
+            self.state.append_step(PathStep(StepKind.M, word.line_number, number=code))
         else:
-            raise refuse(word.line, word.column, "m-code", word=word.text, number=f"{code:g}")
+            raise make_error(word.line_number, word.column, "m-code", word=word.text, number=f"{code:g}")
 
-    def _stop_codes(self, statement: Statement) -> None:
+    def _stop_codes(self, statement: SourceStatement) -> None:
         state = self.state
-        for word in statement.codes("M"):
+        for word in statement.find_words("M"):
             if word.value in {9, 0, 1, 60}:
-                state.add(Step(Kind.M, statement.line, number=0 if word.value == 60 else word.value))
+                state.append_step(
+                    PathStep(StepKind.M, statement.line_number, number=0 if word.value == 60 else word.value)
+                )
             elif word.value == 5:
                 if state.spindle.direction:
                     state.spindle = replace(state.spindle, direction=0)
-                    state.add(Step(Kind.SPINDLE, statement.line, spindle=state.spindle))
+                    state.append_step(
+                        PathStep(StepKind.SPINDLE, statement.line_number, spindle=state.spindle)
+                    )
             elif word.value in {2, 30}:
-                state.add(Step(Kind.END, statement.line, number=word.value))
+                state.append_step(PathStep(StepKind.END, statement.line_number, number=word.value))
                 self.flow.ended = True
 
     # --- moves
 
-    def _motion(self, statement: Statement) -> None:
+    def _motion(self, statement: SourceStatement) -> None:
         state = self.state
-        for word in statement.codes("G"):
+        for word in statement.find_words("G"):
             if self._one_shot(statement, word):
                 return
-        motion = [each for each in statement.codes("G") if self._is_motion(each)]
+        motion = [each for each in statement.find_words("G") if self._is_motion(each)]
         if motion:
-            state.motion = motion[-1].value
+            state.motion_code = motion[-1].value
             if motion[-1].value != state.cycle_code:
-                state.cycle_code, state.hole = -1, {}
+                state.cycle_code, state.hole_words = -1, {}
         if statement.has_g(80):
-            state.motion = 0
+            state.motion_code = 0
         self._nose_codes(statement)
         axes = [
             each for each in statement.words if each.letter in ("XZUW" if state.control.is_fanuc else "XZ")
         ]
-        if self._cycles.is_modal(state.motion):
-            if axes or (motion and self._cycles.is_hole(state.motion)):
-                self._cycles.modal(statement, motion[-1] if motion else axes[0])
+        if self._cycles.is_modal(state.motion_code):
+            if axes or (motion and self._cycles.is_hole_cycle(state.motion_code)):
+                self._cycles.execute_modal_cycle(statement, motion[-1] if motion else axes[0])
             return
         self._check_letters(statement)
         if not axes:
@@ -292,9 +301,9 @@ class Reader:
         self._move(statement, motion[-1] if motion else axes[0])
         if self._nose_ends:
             self._nose_ends = False
-            state.add(Step(Kind.NOSE, statement.line, number=40))
+            state.append_step(PathStep(StepKind.NOSE, statement.line_number, number=40))
 
-    def _is_motion(self, word: Word) -> bool:
+    def _is_motion(self, word: SourceWord) -> bool:
         if self._cycles.is_modal(word.value):
             return True
         if word.value in {0, 1, 2, 3, 33} or (word.value == 32 and self.state.control.is_fanuc):
@@ -307,49 +316,52 @@ class Reader:
             or (not self.state.control.is_fanuc and word.value in {7, 8, 70, 71})
         )
         if not known:
-            raise refuse(word.line, word.column, "code-unknown", word=word.text)
+            raise make_error(word.line_number, word.column, "code-unknown", word=word.text)
         return False
 
-    def _move(self, statement: Statement, code: Word) -> None:
+    def _move(self, statement: SourceStatement, code: SourceWord) -> None:
         state = self.state
-        if state.motion in {2, 3}:
+        if state.motion_code in {2, 3}:
             if self._corner is not None:
-                raise refuse(
-                    self._corner.word.line, self._corner.word.column, "corner", word=self._corner.word.text
+                raise make_error(
+                    self._corner.word.line_number,
+                    self._corner.word.column,
+                    "corner",
+                    word=self._corner.word.text,
                 )
-            arc(state, statement, code)
+            append_arc(state, statement, code)
             return
-        x, z = state.target(statement)
+        x, z = state.find_target(statement)
         corner, self._corner = self._corner, None
         if corner is not None:
-            if x is None or z is None or state.motion != 1:
-                raise refuse(corner.word.line, corner.word.column, "corner", word=corner.word.text)
+            if x is None or z is None or state.motion_code != 1:
+                raise make_error(corner.word.line_number, corner.word.column, "corner", word=corner.word.text)
             add_corner(state, corner, x, z)
-        if state.motion in {32, 33}:
-            single_pass(state, statement, code)
+        if state.motion_code in {32, 33}:
+            append_thread_pass(state, statement, code)
             return
-        if state.motion == 0:
-            state.rapid(statement.line, x, z)
+        if state.motion_code == 0:
+            state.append_rapid(statement.line_number, x, z)
             return
         word = self._corner_word(statement)
-        start = state.here(code) if x is None or z is None or word is not None else None
-        state.cut(code, x, z)
+        start = state.get_position(code) if x is None or z is None or word is not None else None
+        state.append_cut(code, x, z)
         if word is not None and start is not None:
-            self._corner = Corner(word, abs(state.length(word)), start)
+            self._corner = Corner(word, abs(state.convert_length(word)), start)
 
-    def _corner_word(self, statement: Statement) -> Word | None:
+    def _corner_word(self, statement: SourceStatement) -> SourceWord | None:
         if not self.state.control.is_fanuc:
             return None
         return next(
             (each for each in statement.words if each.letter in {",C", ",R", "C", "R", "I", "K"}), None
         )
 
-    def _check_letters(self, statement: Statement) -> None:
+    def _check_letters(self, statement: SourceStatement) -> None:
         """Reject words that this reader does not use. Raises ProgramError."""
         allowed = "GMXZFSTNUW" if self.state.control.is_fanuc else "GMXZFSTN"
-        if self.state.motion in {2, 3}:
+        if self.state.motion_code in {2, 3}:
             allowed += "RIK"
-        elif self.state.motion in {32, 33}:
+        elif self.state.motion_code in {32, 33}:
             allowed += "EQ" if self.state.control.is_fanuc else "K"
         for word in statement.words:
             if word.letter in allowed:
@@ -360,27 +372,27 @@ class Reader:
                 continue
             if word.letter == "H" and statement.has_g(43):
                 continue
-            if self.state.motion == 1 and self._corner_word(statement) is word:
+            if self.state.motion_code == 1 and self._corner_word(statement) is word:
                 continue
             code = "c-axis" if word.letter in _C_WORDS else "code-unknown"
-            raise refuse(word.line, word.column, code, word=word.text)
+            raise make_error(word.line_number, word.column, code, word=word.text)
 
-    def _nose_codes(self, statement: Statement) -> None:
+    def _nose_codes(self, statement: SourceStatement) -> None:
         state = self.state
-        for word in statement.codes("G"):
-            if word.value in {41, 42} and state.nose != word.value:
+        for word in statement.find_words("G"):
+            if word.value in {41, 42} and state.nose_code != word.value:
                 # OmniTurn sees X+ downward, so that left and right are exchanged.
                 code = 83 - word.value if not state.options.front else word.value
-                state.nose = round(word.value)
-                state.add(Step(Kind.NOSE, statement.line, number=code))
-                state.warn(word, "nose-offset", number=state.tool or 1)
-            elif word.value == 40 and state.nose != 40:
-                state.nose = 40
+                state.nose_code = round(word.value)
+                state.append_step(PathStep(StepKind.NOSE, statement.line_number, number=code))
+                state.add_warning(word, "nose-offset", number=state.tool_number or 1)
+            elif word.value == 40 and state.nose_code != 40:
+                state.nose_code = 40
                 self._nose_ends = True
 
     # --- codes that act only on their line
 
-    def _one_shot(self, statement: Statement, word: Word) -> bool:
+    def _one_shot(self, statement: SourceStatement, word: SourceWord) -> bool:
         """Execute a code that uses the axis words of its line; return whether the word is such a code."""
         code, control = word.value, self.state.control
         if code == 4:
@@ -392,75 +404,77 @@ class Reader:
         elif (code == 50 and control.is_fanuc) or (code == 92 and not control.has_system_a):
             self._preset(statement)
         else:
-            return self._cycles.one_shot(statement, word)
+            return self._cycles.execute_one_shot_cycle(statement, word)
         return True
 
-    def _dwell(self, statement: Statement, word: Word) -> None:
-        time = next((each for letter in "PXUF" if (each := statement.word(letter))), None)
+    def _dwell(self, statement: SourceStatement, word: SourceWord) -> None:
+        time = next((each for letter in "PXUF" if (each := statement.find_word(letter))), None)
         if time is None:
-            raise refuse(word.line, word.column, "cycle-word", word="P")
+            raise make_error(word.line_number, word.column, "cycle-word", word="P")
         seconds = time.value
         if self.state.control.is_fanuc and not time.has_point:
             seconds = seconds / 1000.0
         if seconds > 0:
-            self.state.add(Step(Kind.DWELL, statement.line, number=max(seconds, 0.1)))
+            self.state.append_step(PathStep(StepKind.DWELL, statement.line_number, number=max(seconds, 0.1)))
 
-    def _home(self, statement: Statement) -> None:
+    def _home(self, statement: SourceStatement) -> None:
         state = self.state
         letters = "XZUW" if state.control.is_fanuc else "XZ"
         self._only(statement, "GMST" + letters)
         x_word, z_word = (
             next((each for each in statement.words if each.letter in pair), None) for pair in ("XU", "ZW")
         )
-        through = state.target(statement)
+        through = state.find_target(statement)
         if through != (state.x, state.z):
-            state.rapid(statement.line, *through)
+            state.append_rapid(statement.line_number, *through)
         both = x_word is None and z_word is None
         self._go_home(statement, x=both or x_word is not None, z=both or z_word is not None)
 
-    def _machine_position(self, statement: Statement, word: Word) -> None:
+    def _machine_position(self, statement: SourceStatement, word: SourceWord) -> None:
         self._only(statement, "GMST" + "XZ")
-        x, z = statement.word("X"), statement.word("Z")
+        x, z = statement.find_word("X"), statement.find_word("Z")
         for each in (x, z):
             if each is not None and each.value:
-                self.state.warn(word, "home-position", word=f"{word.text} {each.text}")
+                self.state.add_warning(word, "home-position", word=f"{word.text} {each.text}")
         if x is not None or z is not None:
             self._go_home(statement, x=x is not None, z=z is not None)
 
-    def _only(self, statement: Statement, letters: str) -> None:
+    def _only(self, statement: SourceStatement, letters: str) -> None:
         for each in statement.words:
             if each.letter not in letters:
                 code = "c-axis" if each.letter in _C_WORDS else "code-unknown"
-                raise refuse(each.line, each.column, code, word=each.text)
+                raise make_error(each.line_number, each.column, code, word=each.text)
 
-    def _go_home(self, statement: Statement, *, x: bool, z: bool) -> None:
+    def _go_home(self, statement: SourceStatement, *, x: bool, z: bool) -> None:
         state = self.state
-        if self._nose_ends or state.nose != 40:
-            self._nose_ends, state.nose = False, 40
-            state.add(Step(Kind.NOSE, statement.line, number=40))
-        state.add(Step(Kind.HOME, statement.line, 0.0 if x else None, 0.0 if z else None))
+        if self._nose_ends or state.nose_code != 40:
+            self._nose_ends, state.nose_code = False, 40
+            state.append_step(PathStep(StepKind.NOSE, statement.line_number, number=40))
+        state.append_step(
+            PathStep(StepKind.HOME, statement.line_number, 0.0 if x else None, 0.0 if z else None)
+        )
         state.x, state.z = None if x else state.x, None if z else state.z
 
-    def _preset(self, statement: Statement) -> None:
+    def _preset(self, statement: SourceStatement) -> None:
         """Execute G50 or G92, which set a maximum speed, a position preset or both."""
         state = self.state
         self._only(statement, "GMSTXZ" + ("UW" if state.control.is_fanuc else ""))
-        if statement.word("X") is None and statement.word("Z") is None:
+        if statement.find_word("X") is None and statement.find_word("Z") is None:
             return
-        x, z = statement.word("X"), statement.word("Z")
-        state.x = state.across(x) if x is not None else state.x
-        state.z = state.length(z) if z is not None else state.z
-        state.add(Step(Kind.PRESET, statement.line, state.x, state.z))
+        x, z = statement.find_word("X"), statement.find_word("Z")
+        state.x = state.convert_x(x) if x is not None else state.x
+        state.z = state.convert_length(z) if z is not None else state.z
+        state.append_step(PathStep(StepKind.PRESET, statement.line_number, state.x, state.z))
 
 
-def read_source(texts: Sequence[str], options: Options) -> tuple[SourceState, list[Diagnostic]]:
+def read_source(texts: Sequence[str], options: ConversionOptions) -> tuple[SourceState, list[Diagnostic]]:
     """Return the state after a pass through the source, and the findings; an error is the last finding."""
     try:
-        reader = Reader(texts, options)
+        reader = SourceReader(texts, options)
     except ProgramError as error:
         return SourceState(options), [error.diagnostic]
     try:
-        reader.read()
+        reader.read_program()
     except ProgramError as error:
         return reader.state, [*reader.state.warnings, error.diagnostic]
     return reader.state, reader.state.warnings

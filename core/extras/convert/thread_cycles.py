@@ -4,54 +4,54 @@ from __future__ import annotations
 
 from math import copysign, radians, sqrt, tan
 
-from core.extras.convert.path_steps import Kind
-from core.extras.convert.reasons import refuse
-from core.extras.convert.single_cycles import cycle_target, taper_of
-from core.extras.convert.source_lines import Statement, Word
+from core.extras.convert.conversion_messages import make_error
+from core.extras.convert.path_steps import StepKind
+from core.extras.convert.single_cycles import read_cycle_target, read_taper
+from core.extras.convert.source_lines import SourceStatement, SourceWord
 from core.extras.convert.source_state import SourceState
 
 _LEAST_INFEED = 1e-6  # mm
 _MOST_PASSES = 1000
 
 
-def single_pass(state: SourceState, statement: Statement, code: Word) -> None:
+def append_thread_pass(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the thread pass of G32 or G33. Raises ProgramError."""
-    state.here(code)
-    lead = lead_of(state, statement, code)
-    x, z = state.target(statement)
-    state.go(Kind.THREAD, statement.line, x, z, feed=lead, per_rev=True)
+    state.get_position(code)
+    lead = read_lead(state, statement, code)
+    x, z = state.find_target(statement)
+    state.append_move(StepKind.THREAD, statement.line_number, x, z, feed=lead, per_rev=True)
 
 
-def lead_of(state: SourceState, statement: Statement, code: Word) -> float:
+def read_lead(state: SourceState, statement: SourceStatement, code: SourceWord) -> float:
     """Return the lead in mm/rev, which remains active for further passes.
 
     Raises ProgramError if there is no lead.
     """
     letters = "FE" if state.control.is_fanuc else "KP"
-    word = next((each for letter in letters if (each := statement.word(letter))), None)
+    word = next((each for letter in letters if (each := statement.find_word(letter))), None)
     if word is not None:
         if not word.has_point and state.control.is_fanuc and state.options.no_point != 1:
-            raise refuse(word.line, word.column, "feed-no-point", word=word.text)
-        state.lead = abs(word.value) * state.unit(word)
+            raise make_error(word.line_number, word.column, "feed-no-point", word=word.text)
+        state.lead = abs(word.value) * state.get_unit_mm(word)
     if not state.lead:
-        raise refuse(code.line, code.column, "thread-lead")
+        raise make_error(code.line_number, code.column, "thread-lead")
     return state.lead
 
 
-def thread_box(state: SourceState, statement: Statement, code: Word) -> None:
+def append_single_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the four moves of the single thread cycle G92 (G78 of system B). Raises ProgramError."""
-    x0, z0 = state.here(code)
-    lead = lead_of(state, statement, code)
-    taper = taper_of(state, statement)
-    x, z = cycle_target(state, statement, code)
-    line = statement.line
-    state.rapid(line, x + taper, z0)
-    state.go(Kind.THREAD, line, x, z, feed=lead, per_rev=True)
-    state.rapid(line, x0, z)
-    state.rapid(line, x0, z0)
+    x0, z0 = state.get_position(code)
+    lead = read_lead(state, statement, code)
+    taper = read_taper(state, statement)
+    x, z = read_cycle_target(state, statement, code)
+    line = statement.line_number
+    state.append_rapid(line, x + taper, z0)
+    state.append_move(StepKind.THREAD, line, x, z, feed=lead, per_rev=True)
+    state.append_rapid(line, x0, z)
+    state.append_rapid(line, x0, z0)
 
 
-class FanucThread:
+class FanucThreadValues:
     """Values of the first line of a two-line G76 cycle.
 
     The values are the number of finishing passes, the angle, the minimum depth and the finishing depth.
@@ -61,33 +61,35 @@ class FanucThread:
         self.finishing, self.chamfer, self.angle = 1, 0, 60.0
         self.least, self.allowance = 0.0, 0.0
 
-    def set(self, state: SourceState, statement: Statement) -> None:
+    def store_words(self, state: SourceState, statement: SourceStatement) -> None:
         """Store the words of the first line of the cycle."""
-        p, q, r = (statement.word(letter) for letter in "PQR")
+        p, q, r = (statement.find_word(letter) for letter in "PQR")
         if p is not None:
             passes, rest = divmod(round(p.value), 10000)
             self.finishing = max(passes, 1)
             self.chamfer, self.angle = rest // 100, float(rest % 100)
-        self.least = state.increment(q) if q is not None else self.least
-        self.allowance = state.increment(r) if r is not None else self.allowance
+        self.least = state.convert_increment(q) if q is not None else self.least
+        self.allowance = state.convert_increment(r) if r is not None else self.allowance
 
 
-def is_first_line(statement: Statement) -> bool:
+def is_first_of_two_lines(statement: SourceStatement) -> bool:
     """Return whether a G76 line is the first of two lines, which has no end point."""
     return not any(each.letter in "XZUW" for each in statement.words)
 
 
-def thread_cycle(state: SourceState, statement: Statement, code: Word, set_up: FanucThread) -> None:
+def append_thread_cycle(
+    state: SourceState, statement: SourceStatement, code: SourceWord, first_line_values: FanucThreadValues
+) -> None:
     """Append the passes of G76. Raises ProgramError."""
-    x0, z0 = state.here(code)
-    lead = lead_of(state, statement, code)
-    x, z = state.target(statement)
+    x0, z0 = state.get_position(code)
+    lead = read_lead(state, statement, code)
+    x, z = state.find_target(statement)
     assert x is not None
     assert z is not None
-    depth, first, least, allowance, finishing, angle = _depths(state, statement, code, set_up)
+    depth, first, least, allowance, finishing, angle = _depths(state, statement, code, first_line_values)
     taper = -_taper_of_cycle(state, statement)
-    if set_up.chamfer:
-        state.warn(code, "thread-pull-out")
+    if first_line_values.chamfer:
+        state.add_warning(code, "thread-pull-out")
     out = copysign(1.0, x0 - x)
     crest = x + out * depth
     cuts = _cut_depths(depth - allowance, first, least)
@@ -101,34 +103,34 @@ def thread_cycle(state: SourceState, statement: Statement, code: Word, set_up: F
         begin = z0 + along * (cut - first) * tan(radians(angle / 2))
         end = crest - out * cut
         if state.z != begin:
-            state.rapid(statement.line, x0, begin)
-        state.rapid(statement.line, end - taper, begin)
-        state.go(Kind.THREAD, statement.line, end, z, feed=lead, per_rev=True)
-        state.rapid(statement.line, x0, z)
-        state.rapid(statement.line, x0, begin)
-    state.rapid(statement.line, x0, z0)
+            state.append_rapid(statement.line_number, x0, begin)
+        state.append_rapid(statement.line_number, end - taper, begin)
+        state.append_move(StepKind.THREAD, statement.line_number, end, z, feed=lead, per_rev=True)
+        state.append_rapid(statement.line_number, x0, z)
+        state.append_rapid(statement.line_number, x0, begin)
+    state.append_rapid(statement.line_number, x0, z0)
 
 
 def _depths(
-    state: SourceState, statement: Statement, code: Word, set_up: FanucThread
+    state: SourceState, statement: SourceStatement, code: SourceWord, set_up: FanucThreadValues
 ) -> tuple[float, float, float, float, int, float]:
     """Return the depths of a G76 cycle in mm, the number of finishing passes, and the angle.
 
     The depths are the total depth, the first depth, the minimum depth and the finishing allowance.
     """
-    p, q, k, d, a = (statement.word(letter) for letter in "PQKDA")
+    p, q, k, d, a = (statement.find_word(letter) for letter in "PQKDA")
     if k is not None and d is not None:  # the form of one line
         angle = a.value if a is not None else 0.0
-        return state.length(k), state.increment(d), 0.0, 0.0, 1, angle
+        return state.convert_length(k), state.convert_increment(d), 0.0, 0.0, 1, angle
     if p is None or q is None:
-        raise refuse(code.line, code.column, "cycle-word", word="P" if p is None else "Q")
-    depth, first = state.increment(p), state.increment(q)
+        raise make_error(code.line_number, code.column, "cycle-word", word="P" if p is None else "Q")
+    depth, first = state.convert_increment(p), state.convert_increment(q)
     return depth, first, set_up.least, set_up.allowance, set_up.finishing, set_up.angle
 
 
-def _taper_of_cycle(state: SourceState, statement: Statement) -> float:
-    word = next((each for letter in "RI" if (each := statement.word(letter))), None)
-    return 0.0 if word is None else state.length(word)
+def _taper_of_cycle(state: SourceState, statement: SourceStatement) -> float:
+    word = next((each for letter in "RI" if (each := statement.find_word(letter))), None)
+    return 0.0 if word is None else state.convert_length(word)
 
 
 def _cut_depths(depth: float, first: float, least: float) -> list[float]:
@@ -144,25 +146,25 @@ def _cut_depths(depth: float, first: float, least: float) -> list[float]:
     return cuts
 
 
-def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) -> None:
+def append_linuxcnc_thread_cycle(state: SourceState, statement: SourceStatement, code: SourceWord) -> None:
     """Append the passes of the LinuxCNC cycle G76. Raises ProgramError."""
-    x0, z0 = state.here(code)
-    words = {letter: statement.word(letter) for letter in "PZIJKRQHEL"}
+    x0, z0 = state.get_position(code)
+    words = {letter: statement.find_word(letter) for letter in "PZIJKRQHEL"}
     for letter in "PZIJK":
         if words[letter] is None:
-            raise refuse(code.line, code.column, "cycle-word", word=letter)
+            raise make_error(code.line_number, code.column, "cycle-word", word=letter)
     taper = words["L"]
     if taper is not None and taper.value == 2:
-        state.warn(code, "thread-pull-out")
+        state.add_warning(code, "thread-pull-out")
     elif taper is not None and taper.value:
-        raise refuse(taper.line, taper.column, "thread-ends", word=taper.text)
-    _, z = state.target(statement)
+        raise make_error(taper.line_number, taper.column, "thread-ends", word=taper.text)
+    _, z = state.find_target(statement)
     assert z is not None
     peak, first, full = (_half(state, words[letter]) for letter in "IJK")
     power = 1.0 if words["R"] is None else words["R"].value
     angle = 0.0 if words["Q"] is None else words["Q"].value
     springs = 0 if words["H"] is None else round(words["H"].value)
-    lead = lead_of(state, statement, code)
+    lead = read_lead(state, statement, code)
     cuts = []
     depth, count = abs(first), 1
     while depth < abs(full) and count < _MOST_PASSES:
@@ -178,13 +180,13 @@ def linuxcnc_thread_cycle(state: SourceState, statement: Statement, code: Word) 
         x, clear = x0 + side * (abs(peak) + cut), x0 - side * left
         begin = z0 + along * cut * tan(radians(angle))
         end = z - along * left * tan(radians(angle))
-        state.rapid(statement.line, clear, begin)
-        state.rapid(statement.line, x, begin)
-        state.go(Kind.THREAD, statement.line, x, end, feed=lead, per_rev=True)
-        state.rapid(statement.line, clear, end)
-    state.rapid(statement.line, x0, z)
+        state.append_rapid(statement.line_number, clear, begin)
+        state.append_rapid(statement.line_number, x, begin)
+        state.append_move(StepKind.THREAD, statement.line_number, x, end, feed=lead, per_rev=True)
+        state.append_rapid(statement.line_number, clear, end)
+    state.append_rapid(statement.line_number, x0, z)
 
 
-def _half(state: SourceState, word: Word | None) -> float:
+def _half(state: SourceState, word: SourceWord | None) -> float:
     assert word is not None
-    return state.across(word)
+    return state.convert_x(word)

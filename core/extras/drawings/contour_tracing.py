@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from core.extras.drawings.drawing import DrawingError, check_work_limit
-from core.geometry.lines_and_arcs import Arc, BoundingBox, Element, Line, Point, intersections, make_arc
+from core.geometry.lines_and_arcs import Arc, BoundingBox, Element, Line, Point, find_intersections, make_arc
 from core.message import Message
 
 DEFAULT_GAP_MM = 0.02
@@ -37,7 +37,7 @@ def _above_axis(drawn: Iterable[tuple[Element, BoundingBox]], gap: float) -> Ite
             yield each
             continue
         for part in _cut_at_axis(each, box):
-            if part.point_at(part.length / 2.0)[0] > 0.0 and part.length > _AXIS:
+            if part.get_point(part.length / 2.0)[0] > 0.0 and part.length > _AXIS:
                 yield part
 
 
@@ -46,7 +46,7 @@ def _cut_at_axis(each: Element, box: BoundingBox) -> list[Element]:
     if low >= -_AXIS or high <= _AXIS:
         return [each]
     axis = Line((0.0, z0 - 1.0), (0.0, z1 + 1.0))
-    return split_element(each, [(0.0, p[1]) for p in intersections(axis, each)])
+    return split_element(each, [(0.0, p[1]) for p in find_intersections(axis, each)])
 
 
 def _crossings(drawn: Iterable[tuple[Element, BoundingBox]]) -> Iterator[float]:
@@ -62,9 +62,9 @@ def _crossings(drawn: Iterable[tuple[Element, BoundingBox]]) -> Iterator[float]:
 
 def split_element(element: Element, points: Iterable[Point]) -> list[Element]:
     """Return the sections of an element between the given points on the element."""
-    within = (p for p in points if _AXIS < element.distance_from_start(p) < element.length - _AXIS)
-    places = [element.start, *sorted(within, key=element.distance_from_start), element.end]
-    return [element.section_between(a, b) for a, b in pairwise(places)]
+    within = (p for p in points if _AXIS < element.get_distance_from_start(p) < element.length - _AXIS)
+    places = [element.start, *sorted(within, key=element.get_distance_from_start), element.end]
+    return [element.cut_section(a, b) for a, b in pairwise(places)]
 
 
 @dataclass(slots=True)
@@ -130,7 +130,7 @@ def find_element_groups(elements: Iterable[Element], gap: float = DEFAULT_GAP_MM
         a, b = nodes.find_node(each.start), nodes.find_node(each.end)
         if a == b:
             continue
-        middle = each.point_at(each.length / 2.0)
+        middle = each.get_point(each.length / 2.0)
         key = (min(a, b), max(a, b), round(middle[0] / (2 * gap)), round(middle[1] / (2 * gap)))
         moved = max(math.dist(each.start, nodes.points[a]), math.dist(each.end, nodes.points[b]))
         found.setdefault(key, (_moved(each, nodes.points[a], nodes.points[b]), moved))
@@ -158,7 +158,7 @@ def _moved(element: Element, a: Point, b: Point) -> Element:
     """Return the element with its ends moved to the positions of the nodes."""
     if isinstance(element, Line):
         return Line(a, b)
-    return make_arc(a, b, element.center, clockwise=element.clockwise)
+    return make_arc(a, b, element.center, is_clockwise=element.clockwise)
 
 
 def _hanging(count: int, pairs: Sequence[tuple[int, int]]) -> list[int]:
@@ -205,10 +205,10 @@ def _split_at_touching_ends(elements: list[Element], gap: float) -> list[Element
 
 def _touch(element: Element, point: Point, gap: float) -> Point | None:
     """Return the point at which a point touches an element between its ends, or None."""
-    along = element.distance_from_start(point)
+    along = element.get_distance_from_start(point)
     if not gap < along < element.length - gap:
         return None
-    at = element.point_at(along)
+    at = element.get_point(along)
     return at if math.dist(at, point) <= gap else None
 
 
@@ -275,12 +275,12 @@ def _leads_to_chuck(group: ElementGroup, node: int, gap: float) -> bool:
 
 
 def _from(each: Element, ends: tuple[int, int], node: int) -> Element:
-    return each if ends[0] == node else each.reversed()
+    return each if ends[0] == node else each.make_reversed()
 
 
 def _angle(element: Element) -> float:
     """Return the angle of an element's direction at its start, from Z+ toward r+."""
-    ahead = element.point_at(min(_AHEAD, element.length / 2.0))
+    ahead = element.get_point(min(_AHEAD, element.length / 2.0))
     return math.atan2(ahead[0] - element.start[0], ahead[1] - element.start[1])
 
 
@@ -309,7 +309,7 @@ def _walk(
             ends = group.element_end_nodes[step]
             node = ends[1] if ends[0] == node else ends[0]
             path_steps.append((step, node))
-            back = _angle(each.reversed())
+            back = _angle(each.make_reversed())
             place = group.node_points[node]
             if node in seen or place[0] <= gap or place[1] <= low + gap:
                 return _elements(group, start, path_steps)
@@ -410,7 +410,7 @@ def _overlapping(walked: Sequence[Element]) -> Iterator[tuple[int, int]]:
 def _crossing(walked: Sequence[Element], i: int, k: int) -> Iterator[Point]:
     """Yield the points at which two elements cross, except at their ends."""
     shared = (walked[i].start, walked[i].end, walked[k].start, walked[k].end)
-    for point in intersections(walked[i], walked[k]):
+    for point in find_intersections(walked[i], walked[k]):
         if min(math.dist(point, end) for end in shared) > 1e-3:
             yield point
 

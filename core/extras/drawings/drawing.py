@@ -83,19 +83,19 @@ def make_line(start: Point, end: Point) -> Iterator[Element]:
         yield Line((start[1], start[0]), (end[1], end[0]))
 
 
-def make_arc(center: Point, radius: float, start: float, sweep: float) -> Iterator[Element]:
+def make_arc(center: Point, radius: float, start_angle: float, sweep_angle: float) -> Iterator[Element]:
     """Yield an arc around ``center`` (x, y) in pieces of less than half a revolution.
 
     Angles are in radians, counterclockwise from x.
     """
-    if radius <= _NONE or abs(sweep) < 1e-9:
+    if radius <= _NONE or abs(sweep_angle) < 1e-9:
         return
-    count = math.ceil(abs(sweep) / (0.95 * math.pi))
+    count = math.ceil(abs(sweep_angle) / (0.95 * math.pi))
     x, y = center
-    ends = [start + sweep * k / count for k in range(count + 1)]
+    ends = [start_angle + sweep_angle * k / count for k in range(count + 1)]
     points = [(y + radius * math.sin(a), x + radius * math.cos(a)) for a in ends]
     for a, b in itertools.pairwise(points):
-        yield Arc(a, b, (y, x), sweep > 0.0)
+        yield Arc(a, b, (y, x), sweep_angle > 0.0)
 
 
 def make_bulged_segment(start: Point, end: Point, bulge: float) -> Iterator[Element]:
@@ -226,12 +226,12 @@ _limit: ContextVar[_Limit | None] = ContextVar("drawing_work", default=None)
 
 
 @contextmanager
-def limit_work(watch: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
+def limit_work(report_time: Callable[[float], None], limit_s: float = MAX_READING_TIME_S) -> Iterator[None]:
     """Limit the processor time of this thread in the ``with`` block to ``limit_s`` seconds.
 
     ``watch`` is called with the processor time used so far in seconds.
     """
-    token = _limit.set(_Limit(time.thread_time(), limit_s, watch))
+    token = _limit.set(_Limit(time.thread_time(), limit_s, report_time))
     try:
         yield
     finally:

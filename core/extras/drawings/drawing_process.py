@@ -13,7 +13,7 @@ from pathlib import Path
 from core.extras.drawings.drawing import Drawing, DrawingError, decode_drawing
 from core.input_file import convert_exceptions
 from core.message import Message
-from core.own_process import module_environment
+from core.process_environment import make_module_environment
 
 _CHILD = "core.extras.drawings.drawing_child"
 _LOOK = 0.1  # s between two checks whether the drawing is still needed
@@ -52,7 +52,7 @@ def read_in_process(
     try:
         process = subprocess.Popen(
             [sys.executable, "-P", "-m", _CHILD, *words],  # -P: the current folder is not trusted
-            env=module_environment(OPENBLAS_NUM_THREADS="1"),
+            env=make_module_environment(OPENBLAS_NUM_THREADS="1"),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

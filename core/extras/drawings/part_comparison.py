@@ -25,7 +25,7 @@ FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Deviation:
+class PartDeviation:
     """A deviation of the part from the drawing between two Z positions in mm.
 
     ``max_deviation_mm`` is the largest difference of the radius in mm, positive if material remains.
@@ -45,7 +45,7 @@ class DrawingComparison:
     """
 
     worst_deviation_mm: float
-    deviations: tuple[Deviation, ...]
+    deviations: tuple[PartDeviation, ...]
 
 
 def compare_part(
@@ -98,10 +98,10 @@ def convert_to_points(element: Element) -> list[tuple[float, float]]:
     most = (
         2.0 * math.acos(max(0.0, 1.0 - _CHORD / element.radius)) if element.radius > _CHORD else math.pi / 2.0
     )
-    count = max(2, math.ceil(abs(element.sweep) / most))
+    count = max(2, math.ceil(abs(element.sweep_rad) / most))
     return [
         element.start,
-        *(element.point_at(element.length * k / count) for k in range(1, count)),
+        *(element.get_point(element.length * k / count) for k in range(1, count)),
         element.end,
     ]
 
@@ -112,11 +112,11 @@ def _find_part_radii(part: Sequence[tuple[float, float]], z: FloatArray, side: f
     return np.interp(z, points[:, 0], side * points[:, 1], left=np.nan, right=np.nan)
 
 
-def _spans(z: FloatArray, off: FloatArray, tolerance: float) -> Iterable[Deviation]:
+def _spans(z: FloatArray, off: FloatArray, tolerance: float) -> Iterable[PartDeviation]:
     """Yield the deviations in order from the face, with adjacent deviations of the same sign joined."""
     kind = np.where(off > tolerance, 1, np.where(off < -tolerance, -1, 0))
     edges = np.flatnonzero(np.diff(kind)) + 1
     for part in reversed(np.split(np.arange(len(z)), edges)):
         if kind[part[0]]:
             worst = off[part][np.abs(off[part]).argmax()]
-            yield Deviation(float(z[part[0]]), float(z[part[-1]]), float(worst))
+            yield PartDeviation(float(z[part[0]]), float(z[part[-1]]), float(worst))

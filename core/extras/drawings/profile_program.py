@@ -22,7 +22,7 @@ from core.extras.shapes.editor_shape import FilledShape, Shape, fill_shape
 from core.extras.shapes.shape_fields import FieldError, FieldValue, FieldValues, ProgramSettings
 from core.extras.shapes.shape_pieces import find_settings
 from core.extras.shapes.shape_table import SHAPES_BY_DIALECT
-from core.geometry.lines_and_arcs import Arc, Element, Line, intersections
+from core.geometry.lines_and_arcs import Arc, Element, Line, find_intersections
 from core.language.source import Dialect
 from core.message import Message
 from core.part.insert_codes import decode_insert_code
@@ -51,7 +51,7 @@ class NoseOffset(NamedTuple):
     number: int
     x: float
     z: float
-    r: float
+    nose_radius: float
     quadrant: int = 0
 
 
@@ -68,7 +68,7 @@ class ProfileProgram:
     contour: TurningContour
     errors: tuple[FieldError, ...] = ()
     nose_offset: NoseOffset | None = None
-    nose_radius: float = 0.0  # mm, nose radius of the turning tool
+    nose_radius_mm: float = 0.0  # mm, nose radius of the turning tool
     tool_number: float = 0.0
 
 
@@ -204,7 +204,7 @@ def _calculate_allowance(
     """
     if settings.dialect is Dialect.SINUMERIK:
         return {}  # CYCLE95 compensates the nose radius
-    tool, a = settings.tool(_number(typed, "T")), contour.steepest_angle
+    tool, a = settings.tool(_number(typed, "T")), contour.steepest_angle_rad
     deep = find_nose_radius(tool) * (1.0 + math.sin(a) - math.cos(a)) if a > 0.0 else 0.0
     usual = 0.25 if settings.metric else 0.01
     need = (deep + _ROOM) / settings.mm
@@ -300,9 +300,9 @@ def _cut_at_radius(elements: Iterable[Element], r: float) -> Iterator[Element]:
             yield each
             continue
         hole = Line((r, each.start[1] + 1e4), (r, each.end[1] - 1e4))
-        meet = intersections(hole, each)
+        meet = find_intersections(hole, each)
         if meet:
-            yield each.section_between(each.start, meet[0])
+            yield each.cut_section(each.start, meet[0])
         return
 
 
@@ -479,7 +479,7 @@ def _radii(elements: Iterable[Element], low: float, high: float) -> Iterator[flo
     """Yield the radii of a contour at both ends of a range and at the points within it."""
     for each in elements:
         walls = (Line((-1e5, z), (1e5, z)) for z in (low, high))
-        for point in (p for wall in walls for p in intersections(wall, each)):
+        for point in (p for wall in walls for p in find_intersections(wall, each)):
             yield point[0]
         for point in (each.start, each.end):
             if low - _SAME <= point[1] <= high + _SAME:

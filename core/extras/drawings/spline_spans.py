@@ -16,8 +16,8 @@ import numpy.typing as npt
 from core.extras.drawings.reader_tools import CURVE_SAMPLES, STRAIGHT_TOLERANCE, CurveFunction, CurvePoint
 from core.geometry.lines_and_arcs import Point
 
-Floats = npt.NDArray[np.float64]
-Bools = npt.NDArray[np.bool_]
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
 
 _SHORTEST = 1e-12  # parameter difference below which knots are equal
 _INSIDE = 1e-6  # fraction of a span; directions are measured this far inside, because a knot may be a corner
@@ -31,8 +31,8 @@ class SplineSpans(NamedTuple):
     ``control_points`` (n, degree+1, 3) contains x·w, y·w and w. ``parameter_lengths`` has the shape (n,).
     """
 
-    control_points: Floats
-    parameter_lengths: Floats
+    control_points: FloatArray
+    parameter_lengths: FloatArray
 
 
 class Biarc(NamedTuple):
@@ -74,7 +74,7 @@ def make_spans(
     return SplineSpans(made, knot[at + 1] - knot[at])
 
 
-def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) -> Floats:
+def _homogeneous(points: Iterable[Sequence[float]], weights: Iterable[float]) -> FloatArray:
     places = np.array([(p[0], p[1], 1.0) for p in points], dtype=np.float64)
     factors = np.array(list(weights), dtype=np.float64)
     return places * factors[:, None] if len(factors) else places
@@ -136,18 +136,18 @@ def _fitted(spans: SplineSpans, tolerance: float) -> Iterator[Biarc | None]:
         yield Biarc(*map(tuple, row)) if fits else None
 
 
-def _levels(control: Floats, u: float, keep: int) -> Floats:
+def _levels(control: FloatArray, u: float, keep: int) -> FloatArray:
     while control.shape[1] > keep:
         control = control[:, :-1] + (control[:, 1:] - control[:, :-1]) * u
     return control
 
 
-def _points(control: Floats, u: float) -> Floats:
+def _points(control: FloatArray, u: float) -> FloatArray:
     last = _levels(control, u, 1)[:, 0]
     return last[:, :2] / last[:, 2:]
 
 
-def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
+def _ends(spans: SplineSpans, u: float) -> tuple[FloatArray, FloatArray]:
     """Return the points of the spans at ``u``, and the directions there, measured just inside the spans."""
     held = min(max(u, _INSIDE), 1.0 - _INSIDE)
     pair = _levels(spans.control_points, held, 2)
@@ -157,7 +157,9 @@ def _ends(spans: SplineSpans, u: float) -> tuple[Floats, Floats]:
     return _points(spans.control_points, u), size[:, None] * (q[:, :2] * p[:, 2:] - p[:, :2] * q[:, 2:])
 
 
-def _joints(a: Floats, start_tangents: Floats, b: Floats, end_tangents: Floats) -> tuple[Floats, Bools]:
+def _joints(
+    a: FloatArray, start_tangents: FloatArray, b: FloatArray, end_tangents: FloatArray
+) -> tuple[FloatArray, BoolArray]:
     """Return the points at which both arcs meet, and whether each point exists (see ``reader_tools``)."""
     sizes = np.array([np.hypot(*start_tangents.T), np.hypot(*end_tangents.T)])
     one, other, v = start_tangents / sizes[0][:, None], end_tangents / sizes[1][:, None], b - a
@@ -171,14 +173,14 @@ def _joints(a: Floats, start_tangents: Floats, b: Floats, end_tangents: Floats) 
     return 0.5 * (a + b + far[:, None] * (one - other)), good
 
 
-def _bulges(at: Floats, tangents: Floats, to: Floats) -> Floats:
+def _bulges(at: FloatArray, tangents: FloatArray, to: FloatArray) -> FloatArray:
     """Return the bulges of arcs from their starts, their start directions and their ends."""
     d = to - at
     half = np.arctan2(tangents[:, 0] * d[:, 1] - tangents[:, 1] * d[:, 0], (tangents * d).sum(axis=1))
     return np.where(np.abs(half) < STRAIGHT_TOLERANCE, 0.0, np.tan(0.5 * half))
 
 
-def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:
+def _apart(p: FloatArray, a: FloatArray, b: FloatArray, bulge: FloatArray) -> FloatArray:
     """Return the distance (n,) of each point from its arc or line.
 
     If the foot of the perpendicular is outside the arc or line, the distance from the nearer end is
@@ -197,5 +199,5 @@ def _apart(p: Floats, a: Floats, b: Floats, bulge: Floats) -> Floats:
     on_arc = (side * bulge >= 0.0) | (np.abs(side) < chord * radius * 1e-6)
     to = np.where(line, np.abs(side) / chord, np.abs(np.hypot(*(p - centre).T) - radius))
     near = np.where(np.where(line, on_line, on_arc), to, from_ends)
-    apart: Floats = np.where(chord < _TINY, np.hypot(*(p - a).T), near)
+    apart: FloatArray = np.where(chord < _TINY, np.hypot(*(p - a).T), near)
     return apart

@@ -15,9 +15,9 @@ from core.extras.drawings.contour_tracing import mirror_elements, split_element
 from core.extras.drawings.drawing import DrawingError
 from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
 from core.geometry.contour_offset import GougeError, TrimError, offset_known_contour, trim_offset
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, intersections
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, find_intersections
 from core.message import Message
-from core.part.swept_edge import axis_facing_edge
+from core.part.swept_edge import find_axis_facing_edge
 from core.part.tool_outline import make_outline
 from core.part.tool_shape import ToolShape
 
@@ -59,7 +59,7 @@ class TurningContour:
     elements: tuple[Element, ...]
     grooves: tuple[OmittedGroove, ...] = ()
     unreachable_ranges: tuple[tuple[float, float, str], ...] = ()
-    steepest_angle: float = 0.0  # rad, steepest fall of the turned contour toward the chuck
+    steepest_angle_rad: float = 0.0  # rad, steepest fall of the turned contour toward the chuck
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +82,7 @@ def calculate_tool_reach(shape: ToolShape | None, side: ContourSide) -> ToolReac
     cutting = make_outline(shape).cutting_outlines if shape is not None else ()
     if not cutting:
         return ToolReach()
-    edge = axis_facing_edge(cutting[0] * [1.0, -1.0 if side is ContourSide.INSIDE else 1.0])
+    edge = find_axis_facing_edge(cutting[0] * [1.0, -1.0 if side is ContourSide.INSIDE else 1.0])
     points = [(float(z), float(r)) for z, r in zip(edge.z, edge.r, strict=True)]
     tip = int(edge.r.argmin())
     back_angle, before = _straight(points[tip:]), _straight(points[tip::-1])
@@ -135,7 +135,7 @@ def _monotone(elements: Iterable[Element]) -> list[Element]:
             (r, z), radius = each.center, each.radius
             quarters = [(r + radius, z), (r - radius, z), (r, z + radius), (r, z - radius)]
             found += split_element(
-                each, [p for p in quarters if 0.0 < each.distance_from_start(p) < each.length]
+                each, [p for p in quarters if 0.0 < each.get_distance_from_start(p) < each.length]
             )
         else:
             found.append(each)
@@ -207,7 +207,7 @@ def _find_point_at_z(element: Element, z: float) -> Point:
 
 def _crossing(element: Element, line: Line) -> Point | None:
     """Return the first point along an element at which it meets a line, or None."""
-    return min(intersections(line, element), key=element.distance_from_start, default=None)
+    return min(find_intersections(line, element), key=element.get_distance_from_start, default=None)
 
 
 def _without_face(elements: list[Element]) -> list[Element]:
@@ -328,7 +328,7 @@ def _gently(elements: list[Element], at: int, most: float, kept: list[Element]) 
     if isinstance(each, Arc) and each.start[1] > each.center[1] - _SAME and each.start[0] > each.center[0]:
         r, z = each.center
         turn = (r + each.radius * math.cos(most), z - each.radius * math.sin(most))
-        if _SAME < each.distance_from_start(turn) < each.length:
+        if _SAME < each.get_distance_from_start(turn) < each.length:
             before, elements[at] = split_element(each, [turn])
             kept.append(before)
     return at
@@ -346,9 +346,9 @@ def _sloped(elements: list[Element], at: int, most: float, kept: list[Element]) 
         far, drop = far * edge[0] / drop, edge[0]
     slope = Line(edge, (edge[0] - drop, edge[1] - far))
     for number in range(at, len(elements)):
-        meet = [p for p in intersections(slope, elements[number]) if math.dist(p, edge) > 10 * _SAME]
+        meet = [p for p in find_intersections(slope, elements[number]) if math.dist(p, edge) > 10 * _SAME]
         if meet:
-            point = min(meet, key=elements[number].distance_from_start)
+            point = min(meet, key=elements[number].get_distance_from_start)
             kept.append(Line(edge, point))
             elements[number] = split_element(elements[number], [point])[-1]
             return number if math.dist(point, elements[number].end) > _SAME else number + 1
@@ -382,7 +382,7 @@ def _one(a: Element, b: Element) -> Element | None:
         return Line(a.start, b.end) if abs(ar * bz - az * br) < 1e-7 and ar * br + az * bz > 0 else None
     if isinstance(a, Arc) and isinstance(b, Arc) and a.clockwise == b.clockwise:
         same = math.dist(a.center, b.center) < _SAME and abs(a.radius - b.radius) < _SAME
-        whole = abs(a.sweep) + abs(b.sweep)
+        whole = abs(a.sweep_rad) + abs(b.sweep_rad)
         return Arc(a.start, b.end, a.center, a.clockwise) if same and whole < _MOST else None
     return None
 
@@ -416,13 +416,13 @@ def add_nose_fillets(
 def _without_slivers(contour: Sequence[Element]) -> Iterator[Element]:
     """Yield the contour without arcs that are too short to be programmed with rounded coordinates."""
     for number, each in enumerate(contour):
-        short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep) < _STRAIGHT
+        short = isinstance(each, Arc) and each.length < _SLIVER and abs(each.sweep_rad) < _STRAIGHT
         if not short or number in {0, len(contour) - 1}:
             yield each
 
 
 def _reversed(elements: Sequence[Element]) -> list[Element]:
-    return [each.reversed() for each in reversed(elements)]
+    return [each.make_reversed() for each in reversed(elements)]
 
 
 def _follows(contour: Sequence[Element], nose_radius: float) -> bool:

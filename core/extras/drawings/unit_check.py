@@ -14,7 +14,7 @@ UNIT_SIZES_MM = {"MM": 1.0, "INCH": 25.4}
 
 
 def detect_wrong_unit(
-    group: ElementGroup, unit: float, travel: tuple[float, float]
+    group: ElementGroup, unit_mm: float, travel: tuple[float, float]
 ) -> tuple[str, str] | None:
     """Return the excessive size and the name of a smaller unit in which the contour would fit, or None.
 
@@ -25,10 +25,10 @@ def detect_wrong_unit(
     low, high, radius = group.extent
     if not all(travel) or _fits(high - low, radius, travel):
         return None
-    smaller = sorted(((mm, name) for name, mm in UNIT_SIZES_MM.items() if mm < unit), reverse=True)
+    smaller = sorted(((mm, name) for name, mm in UNIT_SIZES_MM.items() if mm < unit_mm), reverse=True)
     for mm, name in smaller:
-        if _fits((high - low) * mm / unit, radius * mm / unit, travel):
-            return _too_large(high - low, radius, unit, travel[1]), name
+        if _fits((high - low) * mm / unit_mm, radius * mm / unit_mm, travel):
+            return _too_large(high - low, radius, unit_mm, travel[1]), name
     return None
 
 

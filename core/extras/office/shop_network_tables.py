@@ -37,19 +37,19 @@ class StatusPageTable:
     )
     port: int = declare_key(KeyRange(1, 65535), default=8317, meaning="TCP port of the page.")
     token: str = declare_key(
-        secret=True,
+        is_secret=True,
         default="",
         meaning="Password in the address of the page: letters, digits, - and _. At least 12 characters if "
         "other computers can connect.",
     )
     desks: Words = declare_key(
-        secret=True,
+        is_secret=True,
         default="",
         meaning="Addresses of the office pages of other machines, with their tokens, to be shown on the "
         "same page.",
     )
     agents: Words = declare_key(
-        secret=True,
+        is_secret=True,
         default="",
         meaning="Addresses of MTConnect agents with the device, such as `http://shop-pc:5000/MILL4`, whose "
         "machines are shown on the same page.",
@@ -80,7 +80,7 @@ class AnnounceTable:
     )
     topic: str = declare_key(default="turndesk", meaning="Topic before `/available`, `/state` and `/event`.")
     user: str = declare_key(default="", meaning="User name for the broker.")
-    password: str = declare_key(secret=True, default="", meaning="Password for the broker.")
+    password: str = declare_key(is_secret=True, default="", meaning="Password for the broker.")
     hook: str = declare_key(
         default="", meaning="Web address that receives each event by POST. Default: none."
     )

@@ -50,9 +50,9 @@ class Capability:
 
 
 def calculate_capability(
-    values: Sequence[float], lower: float | None, upper: float | None, size: int = 1
+    values: Sequence[float], lower: float | None, upper: float | None, sample_size: int = 1
 ) -> Capability:
-    """Calculate the capability from values in the order of the parts, in samples of ``size``.
+    """Calculate the capability from values in the order of the parts, in samples of ``sample_size``.
 
     Raises QualityError if there are fewer than 10 values, if there are no limits, or if the limits are in
     the wrong order.
@@ -74,7 +74,7 @@ def calculate_capability(
             ),
             "too-few-readings",
         )
-    within = make_charts(values, size).within_sigma
+    within = make_charts(values, sample_size).within_sigma
     # standard deviation of all values with n − 1
     mean, overall = float(np.mean(values)), float(np.std(values, ddof=1))
     cp, cpk = _indices(mean, within, lower, upper)
@@ -169,26 +169,26 @@ class ControlChartPair:
     sample_size: int  # values in a sample; 1 means individuals
 
 
-def make_charts(values: Sequence[float], size: int) -> ControlChartPair:
+def make_charts(values: Sequence[float], sample_size: int) -> ControlChartPair:
     """Return the control charts of values in the order of the parts.
 
-    If ``size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
+    If ``sample_size`` is 1, the charts are for individuals, otherwise X-bar/R. An incomplete last sample is
     omitted. Raises QualityError.
     """
-    if size == 1:
+    if sample_size == 1:
         return make_individuals_charts(values)
-    if size not in SAMPLE_SIZES:
+    if sample_size not in SAMPLE_SIZES:
         raise QualityError(
             Message(
                 "a control chart is not possible for samples of {size}; use samples of 1 to "
                 "{sample_sizes} parts",
-                size=size,
+                size=sample_size,
                 sample_sizes=SAMPLE_SIZES[-1],
             ),
             "sample-size",
         )
-    whole = len(values) // size * size
-    return make_xbar_r_charts(np.asarray(values[:whole], dtype=np.float64).reshape(-1, size))
+    whole = len(values) // sample_size * sample_size
+    return make_xbar_r_charts(np.asarray(values[:whole], dtype=np.float64).reshape(-1, sample_size))
 
 
 def make_xbar_r_charts(samples: npt.ArrayLike) -> ControlChartPair:

@@ -191,10 +191,10 @@ class CorrectionProposal:
 
     feature: MeasuredFeature
     reading_count: int  # number of readings used
-    mean_deviation: float
+    mean_deviation_mm: float
     change_mm: float
     offset_change_mm: float  # the change of the offset, X as a radius
-    expected_size: float  # expected size of parts with the correction
+    expected_size_mm: float  # expected size of parts with the correction
     reason: str  # reason why no correction is needed
 
 

@@ -65,7 +65,7 @@ def _of_triangle(word: str) -> ValueProposal:
 
 
 def _taper_lines(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    code.write(
+    code.append_lines(
         code.format_point(filled.get_number("SMALL") / 2.0, 0.0),
         code.format_point(filled.get_number("LARGE") / 2.0, -filled.get_number("LONG")),
     )
@@ -117,8 +117,8 @@ TAPER_CALCULATOR = Shape(
     _taper_lines,
     _taper_sketch,
     _taper_checks,
-    noted=False,
-    says=_taper_says,
+    has_comment=False,
+    make_notes=_taper_says,
 )
 
 
@@ -167,7 +167,7 @@ def _per_minute(values: FieldValues, _setting: ProgramSettings) -> FieldValue | 
 
 
 def _speed_lines(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    code.write(
+    code.append_lines(
         f"M03S{format_short_number(filled.get_number('RPM'), 0)}",
         f"G95F{format_short_number(filled.get_number('FEED'), 6)}",
     )
@@ -244,8 +244,8 @@ SPEED_CALCULATOR = Shape(
     _speed_lines,
     _speed_sketch,
     _speed_checks,
-    noted=False,
-    says=_speed_says,
+    has_comment=False,
+    make_notes=_speed_says,
 )
 
 
@@ -269,11 +269,11 @@ def _thread_lines(filled: FilledShape, setting: ProgramSettings, code: CodeWrite
     c = "" if not infeed else "C" if infeed == 29.0 else f"C{format_short_number(infeed)}"
     words = f"{code.format_x(filled.get_number('ROOT') / 2.0)}{code.format_z(-filled.get_number('LONG'))}"
     words += code.format_x(round_first_depth(filled, setting), "I")
-    code.write(f"G33{words}K{format_short_number(filled.get_number('PITCH'), 6)}{c}")
+    code.append_lines(f"G33{words}K{format_short_number(filled.get_number('PITCH'), 6)}{c}")
 
 
 def _thread_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldError]:
-    yield from THREAD_SHAPE.checks(filled, setting)
+    yield from THREAD_SHAPE.find_field_conflicts(filled, setting)
     deep = calculate_first_depth(filled)
     if abs(deep - filled.get_number("FIRST")) > 1e-4:
         words = Message(
@@ -337,9 +337,9 @@ THREAD_CALCULATOR = Shape(
         _own("INFEED"),
     ),
     _thread_lines,
-    THREAD_SHAPE.sketch,
+    THREAD_SHAPE.make_sketch,
     _thread_checks,
-    noted=False,
-    first=THREAD_SHAPE.first,
-    says=_thread_says,
+    has_comment=False,
+    find_blocking_errors=THREAD_SHAPE.find_blocking_errors,
+    make_notes=_thread_says,
 )

@@ -47,7 +47,7 @@ def find_next_tool(settings: ProgramSettings) -> int:
     return next(free, min(first, _MOST_TOOL))
 
 
-def propose_bar(_values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
+def propose_bar_diameter(_values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Return the bar diameter that the program head specifies as the proposal."""
     return settings.bar or None
 

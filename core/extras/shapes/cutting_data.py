@@ -205,7 +205,7 @@ def _limit_depth_by_torque(settings: ProgramSettings, tool: float, diameter: flo
 
     The torque is force · depth · feed · radius.
     """
-    torque = settings.shop.spindle_power / (settings.shop.max_rpm * math.pi / 30.0)  # N m
+    torque = settings.shop.spindle_power_w / (settings.shop.max_rpm * math.pi / 30.0)  # N m
     radius, mm = diameter * settings.mm / 2000.0, settings.mm
     if radius <= 0.0:
         return math.inf

@@ -41,28 +41,33 @@ TOOL_FIELD_WORD = "T"  # in the code of the line with the comment, and therefore
 class Shape:
     """A shape that the editor offers.
 
-    ``name`` begins the comment, so it contains only letters and spaces. ``cut`` writes the lines. ``first``
-    yields errors that prevent proposals for other fields, and ``checks`` yields errors between fields. If
-    ``contour`` is True, the shape has a point table, which is read from its lines. ``ends`` returns lines
-    for the end of the program, after M30. If ``noted`` is True, the lines have a comment, so that the shape
-    can be opened again. ``says`` returns notes about the lines. ``extent`` returns values of the points on
-    which proposals depend.
+    ``name`` begins the comment, so it contains only letters and spaces. ``write_lines`` writes the lines.
+    ``find_blocking_errors`` yields errors that prevent proposals for other fields, and
+    ``find_field_conflicts`` yields errors between fields. If ``contour`` is True, the shape has a point
+    table, which is read from its lines. ``make_program_end_lines`` returns lines for the end of the program,
+    after M30. If ``has_comment`` is True, the lines have a comment, so that the shape can be opened again.
+    ``make_notes`` returns notes about the lines. ``calculate_extent`` returns values of the points on which
+    proposals depend.
     """
 
     name: str
-    use: str
+    purpose: str
     fields: tuple[ShapeField, ...]
-    cut: Callable[[FilledShape, ProgramSettings, CodeWriter], None]
-    sketch: Callable[[FilledShape], Sketch]
-    checks: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(default=_no_checks)
-    contour: bool = False
-    ends: Callable[[FilledShape], tuple[str, ...]] = field(default=lambda _filled: ())
-    noted: bool = True
-    first: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(default=_no_checks)
-    says: Callable[[FilledShape, ProgramSettings], tuple[str, ...]] = field(
+    write_lines: Callable[[FilledShape, ProgramSettings, CodeWriter], None]
+    make_sketch: Callable[[FilledShape], Sketch]
+    find_field_conflicts: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(
+        default=_no_checks
+    )
+    has_point_table: bool = False
+    make_program_end_lines: Callable[[FilledShape], tuple[str, ...]] = field(default=lambda _filled: ())
+    has_comment: bool = True
+    find_blocking_errors: Callable[[FilledShape, ProgramSettings], Iterator[FieldError]] = field(
+        default=_no_checks
+    )
+    make_notes: Callable[[FilledShape, ProgramSettings], tuple[str, ...]] = field(
         default=lambda _filled, _setting: ()
     )
-    extent: Callable[[Sequence[ContourPoint]], FieldValues] = field(default=lambda _rows: {})
+    calculate_extent: Callable[[Sequence[ContourPoint]], FieldValues] = field(default=lambda _rows: {})
 
     def find_field(self, word: str) -> ShapeField | None:
         """Return the field with this word, or None."""
@@ -94,11 +99,11 @@ class FilledShape:
 
     def find_errors(self, settings: ProgramSettings) -> list[FieldError]:
         """Return all errors of single fields or, if there are none, the errors between fields."""
-        if first := list(self.shape.first(self, settings)):
+        if first := list(self.shape.find_blocking_errors(self, settings)):
             return first
         said = (each.find_error(self.values.get(each.word)) for each in self.fields)
         found = [refused for refused in said if refused is not None]
-        return found or [*self._tool(settings), *self.shape.checks(self, settings)]
+        return found or [*self._tool(settings), *self.shape.find_field_conflicts(self, settings)]
 
     def _tool(self, settings: ProgramSettings) -> Iterator[FieldError]:
         """Yield an error if the tool data specifies a kind of tool that the shape cannot use."""
@@ -121,8 +126,8 @@ class FilledShape:
         code = (
             SinumerikCodeWriter(settings) if settings.dialect is Dialect.SINUMERIK else CodeWriter(settings)
         )
-        self.shape.cut(self, settings, code)
-        return code.add_comment(self.make_comment(settings)) if self.shape.noted else code.lines
+        self.shape.write_lines(self, settings, code)
+        return code.add_comment(self.make_comment(settings)) if self.shape.has_comment else code.lines
 
     def make_comment(self, settings: ProgramSettings) -> str:
         """Return the comment that describes the shape.
@@ -153,7 +158,7 @@ def fill_shape(
     The proposals are made in the order of the fields.
     """
     values: dict[str, FieldValue] = {}
-    drawn = shape.extent(contour_points)
+    drawn = shape.calculate_extent(contour_points)
     for each in shape.fields:
         value = entered_values.get(each.word)
         if value is None and each.applies_to({**entered_values, **values}):

@@ -132,9 +132,9 @@ def make_choice_text(field: ShapeField, choice: str) -> str:
     return f"{field.label}: {choice}"
 
 
-def propose_length(inch_value: float, metric: float) -> ValueProposal:
+def make_length_proposal(inch_value: float, metric_value: float) -> ValueProposal:
     """Return a function that proposes a length in the unit of the program."""
-    return lambda _values, setting: metric if setting.metric else inch_value
+    return lambda _values, setting: metric_value if setting.metric else inch_value
 
 
 def number(values: FieldValues, word: str) -> float:
@@ -150,7 +150,7 @@ def text(values: FieldValues, word: str) -> str:
 
 
 _NEAR = {False: 0.1, True: 2.5}  # by metric; distance from the part at which a rapid ends
-DEFAULT_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the tool change position
+DEFAULT_TOOL_CHANGE_Z = {False: 1.0, True: 25.0}  # by metric; default Z of the tool change position
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,15 +161,15 @@ class ShopData:
     """
 
     max_rpm: float = 3500.0
-    spindle_power: float = 1500.0  # W at the highest speed; the default is a small drive
-    max_acceleration: float = 0.0  # mm/s², or 0 if it is unknown
+    spindle_power_w: float = 1500.0  # W at the highest speed; the default is a small drive
+    max_acceleration_mm_s2: float = 0.0  # mm/s², or 0 if it is unknown
     max_c_rpm: float = 200.0
     live_tool_codes: tuple[int, int] = (15, 16)  # =
     has_live_output: bool = True  # SINUMERIK: an output drives the live tool as spindle 2
     third_axis: str = "C"  # name of the C axis in SINUMERIK programs; empty without a C axis
     has_spindle_as_c: bool = True  # the C axis is the spindle, so rigid tapping is possible
     chuck_codes: tuple[int, int] | None = None  # SINUMERIK: M codes that open and close the chuck
-    travel: tuple[float, float] = (0.0, 0.0)  # mm, travel of X (as a radius) and of Z, or 0 if unknown
+    travel_mm: tuple[float, float] = (0.0, 0.0)  # mm, travel of X (as a radius) and of Z, or 0 if unknown
     tools: Mapping[int, ToolShape] = field(default_factory=dict)
 
 
@@ -179,7 +179,7 @@ class ProgramSettings:
 
     ``tool_change_z`` is the Z of the tool change position, or 0 if it is not specified. ``bar`` is the bar
     diameter. If ``is_subroutine`` is True, the shape is in a subroutine. ``used`` contains the numbers of
-    the tools used before the shape. ``free_subroutine`` is the first number that is not used by a
+    the tools used before the shape. ``free_subroutine_number`` is the first number that is not used by a
     subroutine of the program or, in SINUMERIK, by a labeled contour.
     """
 
@@ -190,7 +190,7 @@ class ProgramSettings:
     material: str = ""
     is_subroutine: bool = False
     used: frozenset[int] = frozenset()
-    free_subroutine: int = 1
+    free_subroutine_number: int = 1
     shop: ShopData = field(default_factory=ShopData)
     dialect: Dialect = Dialect.OMNITURN
 
@@ -202,7 +202,7 @@ class ProgramSettings:
     @property
     def clear(self) -> float:
         """Return the Z of the tool change position."""
-        return self.tool_change_z or DEFAULT_CHANGE_Z[self.metric]
+        return self.tool_change_z or DEFAULT_TOOL_CHANGE_Z[self.metric]
 
     @property
     def mm(self) -> float:

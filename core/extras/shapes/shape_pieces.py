@@ -117,7 +117,7 @@ def find_settings(
         now = _after(line, now)
     used = {int(n) for line in lines for n in _SUB[now.dialect].findall(strip_line(line, now.dialect))}
     free = next(number for number in range(1, len(used) + 2) if number not in used)
-    return replace(now, free_subroutine=free)
+    return replace(now, free_subroutine_number=free)
 
 
 def _after(line: str, now: ProgramSettings) -> ProgramSettings:
@@ -281,7 +281,7 @@ def _contours(
 
     For a shape without a contour, one empty table is yielded.
     """
-    if not shape.contour:
+    if not shape.has_point_table:
         yield ()
         return
     if settings.dialect is Dialect.SINUMERIK:
@@ -427,7 +427,7 @@ def insert_shape(
     if not any(re.match(ends, line) for line in text):
         text.append("M30")
     next_line_number = line_number + len(new)
-    tail = shape.shape.ends(shape)
+    tail = shape.shape.make_program_end_lines(shape)
     if tail and replaced_piece is None and tail[0] not in (strip_line(line) for line in text):
         text += tail
         next_line_number = len(text) - 1
@@ -461,7 +461,7 @@ def _scaled(row: ContourPoint, scale: float) -> ContourPoint:
 
 
 def rewrite_pieces(
-    lines: Sequence[str], shop: ShopData, old_settings: Sequence[ShapePiece]
+    lines: Sequence[str], shop: ShopData, pieces: Sequence[ShapePiece]
 ) -> tuple[list[str], int]:
     """Rewrite the pieces after a changed head; return the text and the number of unchanged pieces.
 
@@ -469,8 +469,8 @@ def rewrite_pieces(
     """
     text, stay = list(lines), 0
     shift = 0
-    new = ProgramSettings(dialect=old_settings[0].settings.dialect) if old_settings else None
-    for piece in old_settings:
+    new = ProgramSettings(dialect=pieces[0].settings.dialect) if pieces else None
+    for piece in pieces:
         if piece.filled_shape.shape.name == "HEAD":
             continue
         if piece.edited_line >= 0:

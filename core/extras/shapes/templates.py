@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from core.extras.shapes.calculators import SPEED_CALCULATOR, THREAD_CALCULATOR
-from core.extras.shapes.common_fields import MAX_RPM, find_next_tool, make_feed_field, propose_bar
+from core.extras.shapes.common_fields import MAX_RPM, find_next_tool, make_feed_field, propose_bar_diameter
 from core.extras.shapes.contour import ContourPoint
 from core.extras.shapes.cutting_data import (
     CUTTING_DATA,
@@ -27,7 +27,7 @@ from core.extras.shapes.lines.code_lines import (
     write_bar_feed_loop,
 )
 from core.extras.shapes.shape_fields import (
-    DEFAULT_CHANGE_Z,
+    DEFAULT_TOOL_CHANGE_Z,
     FieldError,
     FieldKind,
     FieldValue,
@@ -35,8 +35,8 @@ from core.extras.shapes.shape_fields import (
     ProgramSettings,
     ShapeField,
     ValueProposal,
+    make_length_proposal,
     number,
-    propose_length,
     text,
 )
 from core.extras.shapes.threads.threading import write_cycle97
@@ -66,9 +66,9 @@ def _unit(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
 def _cut(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
     modes = "G71" if _metric(filled.values) else ""
     modes += "G72" if filled.get_text("WORDS") == DIAMETER else "G73"
-    code.write(f"G90G94F{format_short_number(filled.get_number('RAPID'))}{modes}")
+    code.append_lines(f"G90G94F{format_short_number(filled.get_number('RAPID'))}{modes}")
     if filled.get_text("COOLANT") == _YES:
-        code.write("M08")
+        code.append_lines("M08")
 
 
 def _sketch(_filled: FilledShape) -> Sketch:
@@ -92,7 +92,7 @@ HEAD_SHAPE = Shape(
             "CLEAR",
             "TOOL CHANGE AT Z",
             FieldKind.LENGTH,
-            _length(DEFAULT_CHANGE_Z[False], DEFAULT_CHANGE_Z[True]),
+            _length(DEFAULT_TOOL_CHANGE_Z[False], DEFAULT_TOOL_CHANGE_Z[True]),
         ),
         ShapeField("RAPID", "RAPID", FieldKind.RATE, _length(300.0, 7620.0)),
     ),
@@ -103,13 +103,17 @@ HEAD_SHAPE = Shape(
 
 def _sinumerik(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
     unit = "G710" if _metric(filled.values) else "G700"
-    code.write(f"G54 G18 G90 G95 {unit} {'DIAMON' if filled.get_text('WORDS') == DIAMETER else 'DIAMOF'}")
+    code.append_lines(
+        f"G54 G18 G90 G95 {unit} {'DIAMON' if filled.get_text('WORDS') == DIAMETER else 'DIAMOF'}"
+    )
     if filled.get_text("COOLANT") == _YES:
-        code.write("M8")
+        code.append_lines("M8")
 
 
 SINUMERIK_HEAD_SHAPE = replace(
-    HEAD_SHAPE, cut=_sinumerik, fields=tuple(each for each in HEAD_SHAPE.fields if each.word != "RAPID")
+    HEAD_SHAPE,
+    write_lines=_sinumerik,
+    fields=tuple(each for each in HEAD_SHAPE.fields if each.word != "RAPID"),
 )
 """The same for a control that knows its rapid: zero offset, plane, unit of F too."""
 
@@ -118,7 +122,10 @@ V60_DEPTH_FACTOR = 0.6134  # depth of a 60-degree thread in pitches, ISO 68-1
 _TOOL = ShapeField("T", "TOOL", FieldKind.TOOL, lambda _v, s: float(find_next_tool(s)), maximum=32)
 _SPEED = ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, 1000.0, maximum=MAX_RPM)
 _ACROSS = ShapeField(
-    "FROM", "DIAMETER", FieldKind.DIAMETER, lambda v, s: propose_bar(v, s) or (25.0 if s.metric else 1.0)
+    "FROM",
+    "DIAMETER",
+    FieldKind.DIAMETER,
+    lambda v, s: propose_bar_diameter(v, s) or (25.0 if s.metric else 1.0),
 )
 
 
@@ -145,11 +152,11 @@ def _change(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 def _rough(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
     r, far = filled.get_number("FROM") / 2.0, 25.0 if setting.metric else 1.0
     code.write_rapid(r, setting.near)
-    code.write(f"G95F{format_short_number(filled.get_number('FEED'), 6)}")
-    code.write(
+    code.append_lines(f"G95F{format_short_number(filled.get_number('FEED'), 6)}")
+    code.append_lines(
         f"G75{code.format_z(filled.get_number('ROUGH'), 'I')}{code.format_z(filled.get_number('LEAVE'), 'U')}"
     )
-    code.write(
+    code.append_lines(
         code.format_point(0.5 * r, 0.0), code.format_point(None, -0.5 * far), code.format_point(r, None), "RF"
     )
 
@@ -162,11 +169,11 @@ def _rough_sketch(_filled: FilledShape) -> Sketch:
 def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
     r, pitch = filled.get_number("FROM") / 2.0, filled.get_number("PITCH")
     deep = V60_DEPTH_FACTOR * pitch
-    first = round_depth_up(deep / 8.0**0.5, metric=setting.metric)
+    first = round_depth_up(deep / 8.0**0.5, is_metric=setting.metric)
     code.write_tool_start(
         filled.get_number("T"), filled.get_number("RPM"), r - first, 3.0 * pitch + setting.near
     )
-    code.write(
+    code.append_lines(
         f"G33{code.format_x(r - deep)}{code.format_z(-filled.get_number('LONG'))}"
         f"{code.format_x(first, 'I')}K{format_short_number(pitch, 6)}PC"
     )
@@ -180,13 +187,13 @@ def _thread_sketch(_filled: FilledShape) -> Sketch:
 
 
 def _loop(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> None:
-    code.write(f"LS{filled.get_number('COUNT'):.0f}", f"T{filled.get_number('T'):.0f}")
+    code.append_lines(f"LS{filled.get_number('COUNT'):.0f}", f"T{filled.get_number('T'):.0f}")
     code.write_rapid(0.0, setting.clear)
     code.write_rapid(z=-filled.get_number("LONG"))
-    code.write("M13", f"G94F{500 if setting.metric else 20}{code.format_z(0.0)}", "M12")
+    code.append_lines("M13", f"G94F{500 if setting.metric else 20}{code.format_z(0.0)}", "M12")
     code.clear_modal_state()
     code.write_retract()
-    code.write(f"P{filled.get_number('SUB'):.0f}", "LF")
+    code.append_lines(f"P{filled.get_number('SUB'):.0f}", "LF")
 
 
 def _loop_end(filled: FilledShape) -> tuple[str, ...]:
@@ -204,9 +211,9 @@ START_TEMPLATE = Shape(
     "START OF PROGRAM",
     "units, diameter programming, rapid rates, coolant",
     HEAD_SHAPE.fields,
-    HEAD_SHAPE.cut,
-    HEAD_SHAPE.sketch,
-    noted=False,
+    HEAD_SHAPE.write_lines,
+    HEAD_SHAPE.make_sketch,
+    has_comment=False,
 )
 TOOL_CHANGE_TEMPLATE = Shape(
     "TOOL CHANGE",
@@ -214,7 +221,7 @@ TOOL_CHANGE_TEMPLATE = Shape(
     (_TOOL, _SPEED, _ACROSS),
     _change,
     _bar,
-    noted=False,
+    has_comment=False,
 )
 ROUGHING_TEMPLATE = Shape(
     "G75 ROUGHING",
@@ -227,7 +234,7 @@ ROUGHING_TEMPLATE = Shape(
     ),
     _rough,
     _rough_sketch,
-    noted=False,
+    has_comment=False,
 )
 THREADING_TEMPLATE = Shape(
     "THREAD G33",
@@ -236,12 +243,12 @@ THREADING_TEMPLATE = Shape(
         _TOOL,
         _SPEED,
         _ACROSS,
-        ShapeField("PITCH", "PITCH", FieldKind.LENGTH, propose_length(0.05, 1.5)),
-        ShapeField("LONG", "LENGTH", FieldKind.LENGTH, propose_length(0.5, 12.0)),
+        ShapeField("PITCH", "PITCH", FieldKind.LENGTH, make_length_proposal(0.05, 1.5)),
+        ShapeField("LONG", "LENGTH", FieldKind.LENGTH, make_length_proposal(0.5, 12.0)),
     ),
     _thread,
     _thread_sketch,
-    noted=False,
+    has_comment=False,
 )
 BAR_FEED_TEMPLATE = Shape(
     "BAR FEED LOOP",
@@ -249,19 +256,21 @@ BAR_FEED_TEMPLATE = Shape(
     (
         ShapeField("COUNT", "PARTS", FieldKind.COUNT, 10.0, maximum=100_000),
         _TOOL,
-        ShapeField("LONG", "BAR LENGTH PER PART + CUT-OFF", FieldKind.LENGTH, propose_length(1.0, 25.0)),
+        ShapeField(
+            "LONG", "BAR LENGTH PER PART + CUT-OFF", FieldKind.LENGTH, make_length_proposal(1.0, 25.0)
+        ),
         ShapeField(
             "SUB",
             "PART SUBROUTINE NUMBER",
             FieldKind.COUNT,
-            lambda _v, s: float(s.free_subroutine),
+            lambda _v, s: float(s.free_subroutine_number),
             maximum=9999,
         ),
     ),
     _loop,
     _loop_sketch,
-    ends=_loop_end,
-    noted=False,
+    make_program_end_lines=_loop_end,
+    has_comment=False,
 )
 
 
@@ -269,7 +278,7 @@ _BAR_RATE = {False: 20.0, True: 500.0}  # by metric, feed per minute
 
 
 def _speed(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
-    code.write(
+    code.append_lines(
         f"G95 S{format_sinumerik_number(filled.get_number('RPM'), 0)} M3 "
         f"F{format_sinumerik_number(filled.get_number('FEED'), 6)}"
     )
@@ -277,7 +286,7 @@ def _speed(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> 
 
 def _make_speed_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
     """Return the notes of the speed calculator, with the feed per minute in the syntax of SINUMERIK."""
-    _, *others = SPEED_CALCULATOR.says(filled_shape, settings)
+    _, *others = SPEED_CALCULATOR.make_notes(filled_shape, settings)
     return Message(
         "equivalent feed per minute: G94 F{number}",
         number=format_sinumerik_number(filled_shape.get_number("RATE"), 3),
@@ -301,7 +310,7 @@ def _make_pass_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> 
 
     The cycle moves to its first pass automatically.
     """
-    depth, _, passes = THREAD_CALCULATOR.says(filled_shape, settings)
+    depth, _, passes = THREAD_CALCULATOR.make_notes(filled_shape, settings)
     return depth, passes
 
 
@@ -338,23 +347,26 @@ def _bar_feed_checks(_filled: FilledShape, setting: ProgramSettings) -> Iterator
     return check_chuck(setting, "COUNT")
 
 
-SINUMERIK_SPEED_CALCULATOR = replace(SPEED_CALCULATOR, cut=_speed, says=_make_speed_remarks)
-SINUMERIK_THREAD_CALCULATOR = replace(THREAD_CALCULATOR, cut=_passes, says=_make_pass_remarks)
+SINUMERIK_SPEED_CALCULATOR = replace(SPEED_CALCULATOR, write_lines=_speed, make_notes=_make_speed_remarks)
+SINUMERIK_THREAD_CALCULATOR = replace(THREAD_CALCULATOR, write_lines=_passes, make_notes=_make_pass_remarks)
 SINUMERIK_START_TEMPLATE = replace(
-    START_TEMPLATE, fields=SINUMERIK_HEAD_SHAPE.fields, cut=SINUMERIK_HEAD_SHAPE.cut
+    START_TEMPLATE, fields=SINUMERIK_HEAD_SHAPE.fields, write_lines=SINUMERIK_HEAD_SHAPE.write_lines
 )
 SINUMERIK_ROUGHING_TEMPLATE = replace(
     ROUGHING_TEMPLATE,
     name="CYCLE95 ROUGHING",
-    cut=_sinumerik_rough,
+    write_lines=_sinumerik_rough,
     fields=(*ROUGHING_TEMPLATE.fields, LABEL_FIELD),
 )
 SINUMERIK_THREADING_TEMPLATE = replace(
     THREADING_TEMPLATE,
     name="THREAD CYCLE97",
-    use="calls the tool, leads in, and cuts passes with a constant chip cross-section",
-    cut=_sinumerik_thread,
+    purpose="calls the tool, leads in, and cuts passes with a constant chip cross-section",
+    write_lines=_sinumerik_thread,
 )
 SINUMERIK_BAR_FEED_TEMPLATE = replace(
-    BAR_FEED_TEMPLATE, cut=_bar_feed, checks=_bar_feed_checks, ends=SINUMERIK_BAR_LOOP_SHAPE.ends
+    BAR_FEED_TEMPLATE,
+    write_lines=_bar_feed,
+    find_field_conflicts=_bar_feed_checks,
+    make_program_end_lines=SINUMERIK_BAR_LOOP_SHAPE.make_program_end_lines,
 )

@@ -28,7 +28,7 @@ from core.extras.sharing.version_record import (
     MAX_PROGRAM_BYTES,
     MAX_RECORD_BYTES,
     MAX_STATE_BYTES,
-    MachineState,
+    PublishedMachineState,
     RecordError,
     decode_state,
     decode_version,
@@ -194,16 +194,16 @@ class SharedDatabase:
             desks = self._desks(connection, strays)
         return Found(frozenset(there - set(strays)), tuple(fresh), desks, tuple(strays))
 
-    def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
+    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine in one transaction.
 
         The method returns when the data is on the server's disk.
         """
         with self._open_transaction() as connection:
-            rows = [(each.version.id, encode_version(each.version), each.text) for each in versions]
+            rows = [(each.version.id, encode_version(each.version), each.program_text) for each in versions]
             if rows:
                 connection.cursor().executemany(_ADD, rows)
-            connection.execute(_TELL, (state.machine_id, state.encode()))
+            connection.execute(_TELL, (state.machine_id, state.encode_state()))
 
     def read_text(self, version: SharedVersion) -> bytes:
         """Return the text of a version from its row, after checking it against its checksum."""
@@ -216,7 +216,7 @@ class SharedDatabase:
             raise SharingErrorCause.DAMAGED.make_error(self.name, error) from error
 
     @staticmethod
-    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[MachineState, ...]:
+    def _desks(connection: psycopg.Connection, strays: list[str]) -> tuple[PublishedMachineState, ...]:
         found = []
         for home, state in connection.execute(_DESKS, (MAX_STATE_BYTES,)):
             try:

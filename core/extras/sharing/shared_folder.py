@@ -27,7 +27,7 @@ from core.extras.sharing.version_record import (
     MAX_PROGRAM_BYTES,
     MAX_RECORD_BYTES,
     MAX_STATE_BYTES,
-    MachineState,
+    PublishedMachineState,
     RecordError,
     decode_state,
     decode_version,
@@ -97,7 +97,7 @@ class SharedFolder:
             desks, bad = self._desks()
             return Found(frozenset(there), tuple(fresh), desks, (*strays, *bad))
 
-    def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
+    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add version files and the state of this machine.
 
         Each file is synced before it gets its final name.
@@ -109,7 +109,7 @@ class SharedFolder:
                 self._add(version, text, state.machine_id)
             _to_disk(self._folder / VERSIONS)
             self._write(
-                self._folder / DESKS / f"{state.machine_id}{_STATE}", state.encode(), state.machine_id
+                self._folder / DESKS / f"{state.machine_id}{_STATE}", state.encode_state(), state.machine_id
             )
             _to_disk(self._folder / DESKS)
 
@@ -156,7 +156,7 @@ class SharedFolder:
             for path in (self._folder / folder).glob(f"{_WRITING}{machine_id}-*"):
                 path.unlink(missing_ok=True)
 
-    def _desks(self) -> tuple[tuple[MachineState, ...], list[str]]:
+    def _desks(self) -> tuple[tuple[PublishedMachineState, ...], list[str]]:
         found, strays = [], list[str]()
         for path in _files(self._folder / DESKS):
             home = path.name.removesuffix(_STATE)

@@ -12,7 +12,7 @@ from enum import Enum
 from typing import NamedTuple, Protocol
 
 from core.extras.sharing.shared_versions import SharedVersion
-from core.extras.sharing.version_record import MachineState
+from core.extras.sharing.version_record import PublishedMachineState
 from core.input_file import NotAFileError, TooLargeError
 from core.message import CodedError, Message
 
@@ -21,7 +21,7 @@ class PublishedVersion(NamedTuple):
     """A program version together with its text."""
 
     version: SharedVersion
-    text: bytes
+    program_text: bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Found:
 
     stored_ids: frozenset[str]
     unknown_versions: tuple[SharedVersion, ...] = ()
-    machine_states: tuple[MachineState, ...] = ()
+    machine_states: tuple[PublishedMachineState, ...] = ()
     foreign_items: tuple[str, ...] = ()
 
 
@@ -58,7 +58,7 @@ class SharedLocation(Protocol):
         """
         ...
 
-    def publish(self, versions: Sequence[PublishedVersion], state: MachineState) -> None:
+    def publish(self, versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         """Add versions and the state of this machine, and return when they are stored permanently.
 
         Versions that already exist remain unchanged. After a failure some versions may have been added

@@ -29,7 +29,7 @@ class SharingTable:
 
     folder: str = declare_key(default="", meaning="Shared folder, mounted on every computer.")
     postgresql: str = declare_key(
-        secret=True, default="", meaning="Connection string of a PostgreSQL database, as libpq reads it."
+        is_secret=True, default="", meaning="Connection string of a PostgreSQL database, as libpq reads it."
     )
     desk: str = declare_key(
         default="",

@@ -82,23 +82,30 @@ def verify_text(version: SharedVersion, text: bytes) -> bytes:
 
 
 @dataclass(frozen=True, slots=True)
-class MachineState:
+class PublishedMachineState:
     """The versions that a machine has, as ids by program name.
 
     ``machine_id`` identifies the machine, because two machines may have the same name.
     """
 
     machine_id: str
-    desk: str
-    at: str  # UTC, by the machine's clock
-    has: Mapping[str, str] = field(default_factory=dict)
+    machine_name: str
+    reported_at: str  # UTC, by the machine's clock
+    version_ids: Mapping[str, str] = field(default_factory=dict)
 
-    def encode(self) -> bytes:
+    def encode_state(self) -> bytes:
         """Return the state encoded as JSON bytes."""
-        return _plain({"format": FORMAT_VERSION, "desk": self.desk, "at": self.at, "has": dict(self.has)})
+        return _plain(
+            {
+                "format": FORMAT_VERSION,
+                "desk": self.machine_name,
+                "at": self.reported_at,
+                "has": dict(self.version_ids),
+            }
+        )
 
 
-def decode_state(machine_id: str, data: bytes) -> MachineState:
+def decode_state(machine_id: str, data: bytes) -> PublishedMachineState:
     """Return the state that a machine has published. Raises RecordError if it is invalid."""
     values = _object(data)
     desk, at, has = values.get("desk"), values.get("at"), values.get("has")
@@ -111,7 +118,7 @@ def decode_state(machine_id: str, data: bytes) -> MachineState:
         raise RecordError("the record is not a valid status record of a control", "not-a-desk")
     if not desk.isprintable() or not at.isprintable():
         raise RecordError("the record is not a valid status record of a control", "not-a-desk")
-    return MachineState(
+    return PublishedMachineState(
         machine_id, desk, at, {name: each for name, each in has.items() if is_version_id(each)}
     )
 

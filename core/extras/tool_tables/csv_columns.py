@@ -6,10 +6,10 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from core.extras.tool_tables.tool_entry import DIAMETER, TABLE_FIELDS
+from core.extras.tool_tables.tool_entry import DIAMETER_FIELD, TABLE_FIELDS
 
 NUMBER, X_DIAMETER, NOSE_DIAMETER = "number", "x_diameter", "nose_diameter"
-FIELD_NAMES = (NUMBER, *TABLE_FIELDS, DIAMETER, X_DIAMETER, NOSE_DIAMETER)
+FIELD_NAMES = (NUMBER, *TABLE_FIELDS, DIAMETER_FIELD, X_DIAMETER, NOSE_DIAMETER)
 """The fields that a column can have; ``x`` with the option for X, ``x_diameter`` always as a diameter."""
 
 # Names without their unit, in lower case, without blanks and signs.
@@ -20,7 +20,7 @@ _NAMES: Mapping[str, Sequence[str]] = {
     "z": ("zoffset", "offsetz", "zgeometry", "geometryz", "zgeom", "geomz"),
     "nose_radius": ("r", "radius", "tipradius", "toolradius", "cornerradius", "toolnoseradius", "tnr"),
     NOSE_DIAMETER: ("tipdiameter",),
-    DIAMETER: ("dia",),
+    DIAMETER_FIELD: ("dia",),
     "quadrant": ("q", "tip", "tipquadrant", "tipdirection", "direction", "tiptype", "imaginarytip", "tipno"),
     "remark": ("comment", "description", "desc", "name", "toolname", "note", "notes", "rem"),
     "kind": ("type", "tooltype", "kindoftool"),
@@ -42,7 +42,7 @@ _BY_NAME = {
 _SURE_RADIUS = frozenset({"xradius", "radiusx"})
 
 
-class Column(NamedTuple):
+class TableColumn(NamedTuple):
     """A column of a CSV file, with its index (from 0), heading and field.
 
     ``unit`` is the unit in the heading, or empty. ``is_radius`` is True if the heading of X states that X
@@ -51,12 +51,12 @@ class Column(NamedTuple):
 
     place: int
     heading: str
-    field: str
+    field_name: str
     unit: str = ""
     is_radius: bool = False
 
 
-def column_of(place: int, heading: str, field: str = "") -> Column | None:
+def identify_column(index: int, heading: str, field: str = "") -> TableColumn | None:
     """Return the column with this heading, or None if the heading is unknown and ``field`` is empty.
 
     ``field`` is the field that the user assigned to the column.
@@ -71,4 +71,4 @@ def column_of(place: int, heading: str, field: str = "") -> Column | None:
         name = X_DIAMETER
     letters = unit[1].lower() if unit else ""
     known = ("mm" if letters.startswith("m") else "in") if letters else ""
-    return Column(place, heading.strip(), name, known, plain in _SURE_RADIUS)
+    return TableColumn(index, heading.strip(), name, known, plain in _SURE_RADIUS)

@@ -15,32 +15,32 @@ from core.extras.tool_tables.csv_columns import (
     NOSE_DIAMETER,
     NUMBER,
     X_DIAMETER,
-    Column,
-    column_of,
+    TableColumn,
+    identify_column,
 )
 from core.extras.tool_tables.tool_entry import (
-    DIAMETER,
+    DIAMETER_FIELD,
     MM_PER_UNIT,
     TABLE_FIELDS,
     TableReader,
     ToolEntry,
 )
-from core.message import Message, find_nearest
+from core.message import Message, find_similar_word
 from core.store.store_rows import FieldType, FieldValue, RowField
 
-MOST_LINES = 10_000
+MAX_LINES = 10_000
 _SEPARATORS = ";\t,"  # The first of them that the heading contains.
 _FLAGS = {"1": True, "yes": True, "true": True, "0": False, "no": False, "false": False}
 _HEADINGS = {NUMBER: "T", "x": "X radius"}
 
 
-def read(table: TableReader, text: str) -> None:
+def read_tools(table: TableReader, text: str) -> None:
     """Add the tools of a CSV file to ``table``."""
     lines = text.splitlines(keepends=True)
     start = next((n for n, line in enumerate(lines) if line.strip(" \t\r\n,;")), 0)
-    if len(lines) > MOST_LINES:
-        message = Message("the file has more than {most} lines; it is not a tool table", most=MOST_LINES)
-        table.reject(Message("line {line}", line=MOST_LINES + 1), "too-long", message)
+    if len(lines) > MAX_LINES:
+        message = Message("the file has more than {most} lines; it is not a tool table", most=MAX_LINES)
+        table.add_mistake(Message("line {line}", line=MAX_LINES + 1), "too-long", message)
         return
     heading = lines[start] if lines else ""
     separator = next((each for each in _SEPARATORS if each in heading), ",")
@@ -53,30 +53,30 @@ def read(table: TableReader, text: str) -> None:
                     _read_row(table, Message("line {line}", line=start + rows.line_num), row, columns)
     except csv.Error as error:
         place = Message("line {line}", line=start + rows.line_num)
-        table.reject(place, "not-csv", Message("not valid CSV ({error}); check the quotes", error=error))
+        table.add_mistake(place, "not-csv", Message("not valid CSV ({error}); check the quotes", error=error))
 
 
-def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[Column, ...]:
+def _columns(table: TableReader, line: int, headings: Sequence[str]) -> tuple[TableColumn, ...]:
     """Return the columns whose fields are known, and add a mistake for each wrong heading."""
     place = Message("line {line}", line=line)
     assigned = _assigned(table, place, headings)
     found = [
         column
         for index, heading in enumerate(headings)
-        if (column := column_of(index, heading, assigned.get(index, "")))
+        if (column := identify_column(index, heading, assigned.get(index, "")))
     ]
     mapped = set(assigned.values())
-    found = [each for each in found if each.place in assigned or each.field not in mapped]
-    fields = [each.field for each in found]
+    found = [each for each in found if each.place in assigned or each.field_name not in mapped]
+    fields = [each.field_name for each in found]
     for field in sorted({each for each in fields if fields.count(each) > 1}):
         text = Message("two columns are {field}; use --map {field}=COLUMN to select one", field=field)
-        table.reject(place, "column-twice", text)
+        table.add_mistake(place, "column-twice", text)
     if NUMBER not in fields:
         text = Message(
             "no column has the tool number; use --map number=COLUMN. The columns are: {names}",
             names=", ".join(heading.strip()[:40] for heading in headings[:40]) or "none",
         )
-        table.reject(place, "no-number-column", text)
+        table.add_mistake(place, "no-number-column", text)
     _check_x(table, place, found)
     unused = [
         h.strip()[:40] for i, h in enumerate(headings) if h.strip() and i not in {c.place for c in found}
@@ -94,7 +94,7 @@ def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[i
         if column.strip().lower() in names:
             found[names.index(column.strip().lower())] = field
             continue
-        near = find_nearest(column, [heading.strip() for heading in headings])
+        near = find_similar_word(column, [heading.strip() for heading in headings])
         text = Message(
             "the file has no column {column}; {remedy}",
             column=column,
@@ -102,31 +102,31 @@ def _assigned(table: TableReader, place: str, headings: Sequence[str]) -> dict[i
             if near
             else Message("its columns are: {names}", names=", ".join(h.strip()[:40] for h in headings[:40])),
         )
-        table.reject(place, "unknown-column", text)
+        table.add_mistake(place, "unknown-column", text)
     return found
 
 
-def _check_x(table: TableReader, place: str, columns: Iterable[Column]) -> None:
+def _check_x(table: TableReader, place: str, columns: Iterable[TableColumn]) -> None:
     """Add a mistake if the file and the options do not specify whether X is a radius or a diameter."""
     for each in columns:
-        if each.field == "x" and not (each.is_radius or table.options.x):
+        if each.field_name == "x" and not (each.is_radius or table.options.x_meaning):
             text = Message(
                 "column {name} can be a radius or a diameter; add --x radius or --x diameter",
                 name=each.heading,
             )
-            table.reject(place, "x-unclear", text)
+            table.add_mistake(place, "x-unclear", text)
 
 
-def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Iterable[Column]) -> None:
+def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Iterable[TableColumn]) -> None:
     """Add the tool of one row."""
     mistakes = len(table.mistakes)
-    cells = {each.field: (each, row[each.place].strip()) for each in columns if each.place < len(row)}
+    cells = {each.field_name: (each, row[each.place].strip()) for each in columns if each.place < len(row)}
     column, text = cells.pop(NUMBER, (None, ""))
     where = Message("{place}, column {column}", place=place, column=column.heading if column else NUMBER)
     if not text:
-        table.reject(where, "no-number", "the line has no tool number; add T1 to T32")
+        table.add_mistake(where, "no-number", "the line has no tool number; add T1 to T32")
         return
-    number = table.tool_number(where, table.number(where, text.upper().removeprefix("T")))
+    number = table.check_tool_number(where, table.parse_number(where, text.upper().removeprefix("T")))
     if number is None or len(table.mistakes) > mistakes:
         return
     values = {
@@ -136,33 +136,35 @@ def _read_row(table: TableReader, place: str, row: Sequence[str], columns: Itera
     }
     if len(table.mistakes) == mistakes:
         _convert_diameters(table, values)
-        table.add(number, place, values, str(values.get("remark", "")))
+        table.add_tool(number, place, values, str(values.get("remark", "")))
 
 
 def _convert_diameters(table: TableReader, values: dict[str, FieldValue]) -> None:
     """Convert the diameters of X and of the nose to radii."""
-    if table.options.x == "diameter" and X_DIAMETER not in values and "x" in values:
+    if table.options.x_meaning == "diameter" and X_DIAMETER not in values and "x" in values:
         values[X_DIAMETER] = values.pop("x")
     for diameter, radius in ((X_DIAMETER, "x"), (NOSE_DIAMETER, "nose_radius")):
         if diameter in values:
             values[radius] = float(values.pop(diameter)) / 2.0
 
 
-def _value(table: TableReader, place: str, column: Column, cell: str) -> FieldValue | None:
+def _value(table: TableReader, place: str, column: TableColumn, cell: str) -> FieldValue | None:
     """Return the value of a cell, with lengths in mm.
 
     If the value is invalid, a mistake is added and the result is None.
     """
     where = Message("{place}, column {column}", place=place, column=column.heading)
-    field = _field(column.field)
+    field = _field(column.field_name)
     if field.field_type is FieldType.TEXT:
         return _text(table, where, field, cell)
     if field.field_type is FieldType.BOOLEAN:
         if cell.lower() in _FLAGS:
             return _FLAGS[cell.lower()]
-        table.reject(where, "not-a-flag", Message("{text} is not valid; use 1 or 0", text=repr(cell[:40])))
+        table.add_mistake(
+            where, "not-a-flag", Message("{text} is not valid; use 1 or 0", text=repr(cell[:40]))
+        )
         return None
-    value = table.number(where, cell.replace(",", ".") if cell.count(",") == 1 else cell)
+    value = table.parse_number(where, cell.replace(",", ".") if cell.count(",") == 1 else cell)
     if value is None or field.field_type is not FieldType.LENGTH:
         return (
             int(value)
@@ -171,11 +173,11 @@ def _value(table: TableReader, place: str, column: Column, cell: str) -> FieldVa
         )
     if not value:
         return value
-    return value * (MM_PER_UNIT[column.unit] if column.unit else table.unit(where))
+    return value * (MM_PER_UNIT[column.unit] if column.unit else table.get_unit_mm(where))
 
 
 def _field(name: str) -> RowField:
-    same = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius", DIAMETER: "diameter"}
+    same = {X_DIAMETER: "x", NOSE_DIAMETER: "nose_radius", DIAMETER_FIELD: "diameter"}
     return TABLE_FIELDS[same.get(name, name)]
 
 
@@ -188,17 +190,19 @@ def _text(table: TableReader, where: str, field: RowField, cell: str) -> str | N
     if word in field.choices:
         return word
     text = Message("{text} is unknown; use {range}", text=repr(cell[:40]), range=field.range_text)
-    table.reject(where, "unknown-word", text)
+    table.add_mistake(where, "unknown-word", text)
     return None
 
 
 # --- writing -----------------------------------------------------------------------------------------------
 
 
-def written(tools: Iterable[ToolEntry], unit: str) -> str:
+def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
     """Return a CSV table with these tools. Lengths are in ``unit``, which the headings contain."""
     rows = list(tools)
-    names = [name for name in TABLE_FIELDS if any({**t.offset, **t.shape}.get(name) for t in rows)]
+    names = [
+        name for name in TABLE_FIELDS if any({**t.offset_values, **t.shape_values}.get(name) for t in rows)
+    ]
     out = io.StringIO()
     table = csv.writer(out, lineterminator="\n")
     table.writerow([_HEADINGS[NUMBER], *(_heading(name, unit) for name in names)])
@@ -212,7 +216,7 @@ def _heading(name: str, unit: str) -> str:
 
 
 def _cells(tool: ToolEntry, names: Iterable[str], factor: float) -> Iterator[str]:
-    values: Mapping[str, FieldValue] = {**tool.offset, **tool.shape}
+    values: Mapping[str, FieldValue] = {**tool.offset_values, **tool.shape_values}
     yield str(tool.number)
     for name in names:
         value = values.get(name, "")
@@ -230,4 +234,4 @@ def _harmless(value: FieldValue) -> str:
     return f" {text}" if text[:1] in {"=", "+", "-", "@"} else text
 
 
-__all__ = ["FIELD_NAMES", "read", "written"]
+__all__ = ["FIELD_NAMES", "format_table", "read_tools"]

@@ -9,21 +9,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 
-from core.extras.tool_tables.tool_entry import DIAMETER, MM_PER_UNIT, TableReader, ToolEntry
+from core.extras.tool_tables.tool_entry import DIAMETER_FIELD, MM_PER_UNIT, TableReader, ToolEntry
 from core.message import Message
 from core.store.store_rows import FieldValue
 
-QUADRANTS = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
+QUADRANT_BY_ORIENTATION = {1: 4, 2: 3, 3: 2, 4: 1, 5: 5, 6: 8, 7: 7, 8: 6, 9: 9}
 """Tip quadrant by orientation Q."""
-ORIENTATIONS = {quadrant: orientation for orientation, quadrant in QUADRANTS.items()}
+ORIENTATION_BY_QUADRANT = {quadrant: orientation for orientation, quadrant in QUADRANT_BY_ORIENTATION.items()}
 
-_LENGTHS = {"X": "x", "Z": "z", "D": DIAMETER}
+_LENGTHS = {"X": "x", "Z": "z", "D": DIAMETER_FIELD}
 _WORDS = frozenset("TPXYZABCUVWDIJQ")
 _UNUSED = frozenset("YABCUVW")  # axes that the lathe does not have; P, I and J have no equivalent either
 _WORD = re.compile(r"\S+")
 
 
-def read(table: TableReader, text: str) -> None:
+def read_tools(table: TableReader, text: str) -> None:
     """Add the tools of a table to ``table``."""
     for count, line in enumerate(text.splitlines(), start=1):
         words, _, remark = line.partition(";")
@@ -38,25 +38,25 @@ def _read_line(table: TableReader, count: int, line: str, remark: str) -> None:
     found = _words(table, count, line)
     if "T" not in found:
         if len(table.mistakes) == mistakes:
-            table.reject(place, "no-number", "the line has no tool number; add T1 to T32")
+            table.add_mistake(place, "no-number", "the line has no tool number; add T1 to T32")
         return
-    number = table.tool_number(place, found["T"])
+    number = table.check_tool_number(place, found["T"])
     if number is None or len(table.mistakes) > mistakes:
         return
-    factor = table.unit(place) if any(found.get(letter) for letter in _LENGTHS) else 1.0
+    factor = table.get_unit_mm(place) if any(found.get(letter) for letter in _LENGTHS) else 1.0
     values: dict[str, FieldValue] = {
         name: found[letter] * factor for letter, name in _LENGTHS.items() if letter in found
     }
-    values[DIAMETER] = abs(float(values.get(DIAMETER, 0.0)))
-    if (orientation := found.get("Q", 0.0)) not in {0.0, *QUADRANTS}:
+    values[DIAMETER_FIELD] = abs(float(values.get(DIAMETER_FIELD, 0.0)))
+    if (orientation := found.get("Q", 0.0)) not in {0.0, *QUADRANT_BY_ORIENTATION}:
         text = Message("Q{value} is not an orientation; use 0 to 9", value=f"{orientation:g}")
-        table.reject(place, "unknown-orientation", text)
+        table.add_mistake(place, "unknown-orientation", text)
         return
-    values["quadrant"] = QUADRANTS.get(int(orientation), 0)
+    values["quadrant"] = QUADRANT_BY_ORIENTATION.get(int(orientation), 0)
     values["remark"] = remark
     unused = sorted(letter for letter in _UNUSED & found.keys() if found[letter])
     notes = [Message("not imported: {words}", words=" ".join(unused))] if unused else []
-    table.add(number, place, values, remark, notes)
+    table.add_tool(number, place, values, remark, notes)
 
 
 def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
@@ -71,19 +71,19 @@ def _words(table: TableReader, count: int, line: str) -> dict[str, float]:
                 "with a semicolon",
                 word=repr(match[0][:20]),
             )
-            table.reject(place, "unknown-word", text)
+            table.add_mistake(place, "unknown-word", text)
             continue
         if letter in found:
             text = Message("{letter} is on the line twice; remove one", letter=letter)
-            table.reject(place, "word-twice", text)
+            table.add_mistake(place, "word-twice", text)
             continue
-        value = table.number(place, match[0][1:])
+        value = table.parse_number(place, match[0][1:])
         if value is not None:
             found[letter] = value
     return found
 
 
-def written(tools: Iterable[ToolEntry], unit: str) -> str:
+def format_table(tools: Iterable[ToolEntry], unit: str) -> str:
     """Return the table with these tools, with lengths in ``unit``."""
     return "".join(f"{line}\n" for line in _lines(tools, MM_PER_UNIT[unit]))
 
@@ -92,34 +92,34 @@ def _lines(tools: Iterable[ToolEntry], factor: float) -> Iterator[str]:
     for tool in tools:
         words = [f"T{tool.number}", f"P{tool.number}"]
         for letter, name in (("X", "x"), ("Z", "z")):
-            if name in tool.offset:
-                words.append(f"{letter}{float(tool.offset[name]) / factor:+.6f}")
-        if diameter := diameter_of(tool):
+            if name in tool.offset_values:
+                words.append(f"{letter}{float(tool.offset_values[name]) / factor:+.6f}")
+        if diameter := get_diameter(tool):
             words.append(f"D{diameter / factor:.6f}")
-        if quadrant := int(tool.offset.get("quadrant", 0)):
-            words.append(f"Q{ORIENTATIONS[quadrant]}")
-        if remark := remark_of(tool):
+        if quadrant := int(tool.offset_values.get("quadrant", 0)):
+            words.append(f"Q{ORIENTATION_BY_QUADRANT[quadrant]}")
+        if remark := make_remark(tool):
             words.append(f";{remark}")
         yield " ".join(words)
 
 
-def diameter_of(tool: ToolEntry) -> float:
+def get_diameter(tool: ToolEntry) -> float:
     """Return the diameter of a rotating tool, or twice the nose radius of another tool, in mm.
 
     The result is 0 if the diameter is not specified.
     """
-    from core.extras.tool_tables.iso_words import ROUND_KINDS  # noqa: PLC0415
+    from core.extras.tool_tables.iso_code_recognition import ROUND_KINDS  # noqa: PLC0415
 
-    if tool.shape.get("kind") in ROUND_KINDS:
-        return float(tool.shape.get("diameter", 0.0))
-    return 2.0 * float(tool.offset.get("nose_radius", 0.0))
+    if tool.shape_values.get("kind") in ROUND_KINDS:
+        return float(tool.shape_values.get("diameter", 0.0))
+    return 2.0 * float(tool.offset_values.get("nose_radius", 0.0))
 
 
-def remark_of(tool: ToolEntry) -> str:
+def make_remark(tool: ToolEntry) -> str:
     """Return the remark of a tool, with its kind and codes added unless the remark already contains them."""
-    words = [str(tool.offset.get("remark", ""))]
+    words = [str(tool.offset_values.get("remark", ""))]
     for name in ("insert", "holder", "kind"):
-        value = str(tool.shape.get(name, ""))
+        value = str(tool.shape_values.get(name, ""))
         if value and value != "turning" and "," not in value and value.upper() not in " ".join(words).upper():
             words.append(value)
     return " ".join(word for word in words if word)

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from core.extras.tool_tables import csv_table, linuxcnc_table
-from core.extras.tool_tables.tool_entry import Reading, TableReader, ToolTable, ToolTableError
+from core.extras.tool_tables.tool_entry import ReadingOptions, TableReader, ToolTable, ToolTableError
 from core.input_file import BYTES_PER_MB, TooLargeError, read_input_bytes
 from core.message import Message
 
-MOST_BYTES = 16 * BYTES_PER_MB
+MAX_TABLE_BYTES = 16 * BYTES_PER_MB
 _CONTROL = re.compile(rb"[\x00-\x08\x0b\x0e-\x19\x1b-\x1f]")
 
 
-class Format(NamedTuple):
+class TableFormat(NamedTuple):
     """A format of tool tables.
 
     The format has a name for users, file suffixes, and a function that reads the text of a table.
@@ -24,18 +24,18 @@ class Format(NamedTuple):
 
     title: str
     suffixes: tuple[str, ...]
-    read: Callable[[TableReader, str], None]
+    read_text: Callable[[TableReader, str], None]
 
 
-FORMATS: Mapping[str, Format] = {
-    "linuxcnc": Format("LinuxCNC tool table", (".tbl",), linuxcnc_table.read),
-    "mach": Format("Mach tool table", (".dat",), csv_table.read),
-    "csv": Format("CSV", (".csv", ".txt", ".tsv"), csv_table.read),
+FORMATS: Mapping[str, TableFormat] = {
+    "linuxcnc": TableFormat("LinuxCNC tool table", (".tbl",), linuxcnc_table.read_tools),
+    "mach": TableFormat("Mach tool table", (".dat",), csv_table.read_tools),
+    "csv": TableFormat("CSV", (".csv", ".txt", ".tsv"), csv_table.read_tools),
 }
 """The formats that can be read, by the word of the option --from."""
 
 
-def format_of(name: str) -> str:
+def find_format(name: str) -> str:
     """Return the format that the suffix of a file name implies. Raises ToolTableError if it is unknown."""
     suffix = Path(name).suffix.lower()
     for word, each in FORMATS.items():
@@ -49,17 +49,17 @@ def format_of(name: str) -> str:
     raise ToolTableError(text, "unknown-format")
 
 
-def read_table(path: Path, word: str, options: Reading) -> ToolTable:
+def read_table(path: Path, format_name: str, options: ReadingOptions) -> ToolTable:
     """Return the tools of a file in the format that ``word`` names. Raises ToolTableError."""
     table = TableReader(path.name, options)
-    FORMATS[word].read(table, _text(path.name, _bytes(path), word))
-    return table.table()
+    FORMATS[format_name].read_text(table, _text(path.name, _bytes(path), format_name))
+    return table.make_table()
 
 
 def _bytes(path: Path) -> bytes:
     """Return the contents of a file. Raises ToolTableError."""
     try:
-        return read_input_bytes(path, MOST_BYTES)
+        return read_input_bytes(path, MAX_TABLE_BYTES)
     except TooLargeError as error:
         text = Message("{path} is larger than 16 MB, so it is not a tool table; check the name", path=path)
         raise ToolTableError(text, "too-large") from error

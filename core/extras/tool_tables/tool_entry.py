@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from math import isfinite
 from typing import NamedTuple
 
-from core.extras.tool_tables.iso_words import ROUND_KINDS, shape_words
+from core.extras.tool_tables.iso_code_recognition import ROUND_KINDS, recognize_shape_fields
 from core.message import CodedError, Message
 from core.part.insert_codes import InsertCodeError, decode_insert_code
 from core.store.store_rows import (
@@ -32,7 +32,7 @@ TABLE_FIELDS: Mapping[str, RowField] = {
     **FIELDS_BY_KIND[OffsetKind.SHAPE],
 }
 """The fields that a table can set. Wear and the master mark are never imported."""
-DIAMETER = "d"
+DIAMETER_FIELD = "d"
 """The pseudo field D: the nose diameter of a turning tool, or the diameter of a rotating tool, in mm."""
 
 MM_PER_UNIT = {"in": MM_PER_INCH, "mm": 1.0}
@@ -49,19 +49,20 @@ class ToolTableError(CodedError):
     """
 
 
-class Reading(NamedTuple):
+class ReadingOptions(NamedTuple):
     """Options for reading a table, for values that the file itself does not specify.
 
-    ``unit`` is a key of ``MM_PER_UNIT``, and ``x`` is "radius" or "diameter". ``columns`` contains the
-    column names of a CSV file by field. ``number`` is the tool number for a file that contains one tool
-    without a number. Only the tools in ``only`` are read, or all tools if ``only`` is empty.
+    ``unit`` is a key of ``MM_PER_UNIT``, and ``x_meaning`` is "radius" or "diameter". ``columns`` contains
+    the column names of a CSV file by field. ``number`` is the tool number for a file that contains one tool
+    without a number. Only the tools in ``selected_tool_numbers`` are read, or all tools if
+    ``selected_tool_numbers`` is empty.
     """
 
     unit: str = ""
-    x: str = ""
+    x_meaning: str = ""
     columns: Mapping[str, str] = {}
-    number: int = 0
-    only: frozenset[int] = frozenset()
+    default_tool_number: int = 0
+    selected_tool_numbers: frozenset[int] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +70,9 @@ class ToolEntry:
     """One tool of a table, with its position in the file and notes about values that are not imported."""
 
     number: int
-    place: str
-    offset: Mapping[str, FieldValue]
-    shape: Mapping[str, FieldValue]
+    position_text: str
+    offset_values: Mapping[str, FieldValue]
+    shape_values: Mapping[str, FieldValue]
     notes: tuple[str, ...] = ()
 
 
@@ -86,17 +87,17 @@ class ToolTable(NamedTuple):
 class TableReader:
     """Collector of the tools and the mistakes of the file ``name``."""
 
-    name: str
-    options: Reading
+    file_name: str
+    options: ReadingOptions
     tools: dict[int, ToolEntry] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     mistakes: list[CodedError] = field(default_factory=list)
 
-    def reject(self, place: str, code: str, text: str) -> None:
+    def add_mistake(self, place: str, code: str, text: str) -> None:
         """Add a mistake at this position in the file."""
         self.mistakes.append(CodedError(Message("{place}: {text}", place=place, text=text), code))
 
-    def number(self, place: str, text: str) -> float | None:
+    def parse_number(self, place: str, text: str) -> float | None:
         """Return the number in a text.
 
         If the text is not a finite number, a mistake is added and the result is None.
@@ -105,10 +106,12 @@ class TableReader:
         if len(words) <= _LONGEST_NUMBER and _NUMBER.fullmatch(words) and isfinite(value := float(words)):
             return value
         shown = words if len(words) <= _LONGEST_NUMBER else f"{words[:_LONGEST_NUMBER]}…"
-        self.reject(place, "not-a-number", Message("{text} is not a number; correct it", text=repr(shown)))
+        self.add_mistake(
+            place, "not-a-number", Message("{text} is not a number; correct it", text=repr(shown))
+        )
         return None
 
-    def tool_number(self, place: str, value: float | None) -> int | None:
+    def check_tool_number(self, place: str, value: float | None) -> int | None:
         """Return the number of a tool, or None if the tool is not to be read.
 
         The result is None if the options exclude the tool. It is also None if the number is invalid or used
@@ -117,27 +120,27 @@ class TableReader:
         if value is None:
             return None
         whole = int(value) if value.is_integer() else None
-        if whole in self.options.only or not self.options.only:
+        if whole in self.options.selected_tool_numbers or not self.options.selected_tool_numbers:
             if whole not in OFFSET_NUMBERS:
                 text = Message(
                     "T{number} does not exist here; tool numbers are 1 to 32. Change the number, or use "
                     "--only to import only some tools",
                     number=f"{value:g}",
                 )
-                self.reject(place, "unknown-number", text)
+                self.add_mistake(place, "unknown-number", text)
                 return None
             if whole in self.tools:
                 text = Message(
                     "T{number} is already in {earlier}; remove one of them",
                     number=whole,
-                    earlier=self.tools[whole].place,
+                    earlier=self.tools[whole].position_text,
                 )
-                self.reject(place, "tool-twice", text)
+                self.add_mistake(place, "tool-twice", text)
                 return None
             return whole
         return None
 
-    def unit(self, place: str) -> float:
+    def get_unit_mm(self, place: str) -> float:
         """Return the size of the file's length unit in mm.
 
         If the unit is not specified, a mistake is added and the result is 1.
@@ -146,12 +149,12 @@ class TableReader:
             return MM_PER_UNIT[self.options.unit]
         known = {mistake.code for mistake in self.mistakes}
         if "unit-missing" not in known:
-            self.reject(
+            self.add_mistake(
                 place, "unit-missing", "the file does not specify its unit; add --unit in or --unit mm"
             )
         return 1.0
 
-    def add(
+    def add_tool(
         self,
         number: int,
         place: str,
@@ -164,7 +167,7 @@ class TableReader:
         ``words`` is a text in which ISO codes and tool kinds are recognized. The values 0 and "" mean not
         specified. If X and Z are both 0, the tool is not measured.
         """
-        found: dict[str, FieldValue] = {**shape_words(words), **_stated(values)}
+        found: dict[str, FieldValue] = {**recognize_shape_fields(words), **_stated(values)}
         all_notes = [*notes, *_cleaned(found), *_unmeasured(values, found), *_diameter(found)]
         for name, value in found.items():
             self._check(place, name, value)
@@ -178,7 +181,7 @@ class TableReader:
 
     def _check(self, place: str, name: str, value: FieldValue) -> None:
         known = TABLE_FIELDS[name]
-        if known.accepts(value):
+        if known.is_valid_value(value):
             return
         shown: FieldValue = value
         if known.field_type is FieldType.LENGTH and not isinstance(value, str):
@@ -189,9 +192,9 @@ class TableReader:
             value=shown,
             range=known.range_text,
         )
-        self.reject(place, "out-of-range", text)
+        self.add_mistake(place, "out-of-range", text)
 
-    def table(self) -> ToolTable:
+    def make_table(self) -> ToolTable:
         """Return the collected tools.
 
         Raises ToolTableError with all mistakes, or if the file has no tools.
@@ -199,7 +202,7 @@ class TableReader:
         if self.mistakes:
             raise self._error()
         if not self.tools:
-            text = Message("{name} has no tools to import; check the file and --only", name=self.name)
+            text = Message("{name} has no tools to import; check the file and --only", name=self.file_name)
             raise ToolTableError(text, "no-tools")
         return ToolTable(dict(sorted(self.tools.items())), tuple(self.notes))
 
@@ -208,7 +211,7 @@ class TableReader:
         if more := len(self.mistakes) - _MOST_SHOWN:
             shown += Message("; further mistakes: {count}", count=more) if more > 0 else ""
         codes = dict.fromkeys(each.code for each in self.mistakes)
-        return ToolTableError(Message("{name}: {text}", name=self.name, text=shown), " ".join(codes))
+        return ToolTableError(Message("{name}: {text}", name=self.file_name, text=shown), " ".join(codes))
 
 
 def _stated(values: Mapping[str, FieldValue]) -> dict[str, FieldValue]:
@@ -245,7 +248,7 @@ def _diameter(found: dict[str, FieldValue]) -> list[str]:
 
     Return notes about the replacement.
     """
-    if (value := found.pop(DIAMETER, None)) is None or isinstance(value, str):
+    if (value := found.pop(DIAMETER_FIELD, None)) is None or isinstance(value, str):
         return []
     if found.get("kind") in ROUND_KINDS:
         found.setdefault("diameter", value)

@@ -23,13 +23,13 @@ from core.language.klartext.klartext_faults import (
     FILE_MISSING,
     INPUT_VALUE_INCORRECT,
     M128_ACTIVE,
-    M_UNDEFINED,
+    M_FUNCTION_UNDEFINED,
     NOT_ALLOWED_WITH_M128,
     NOT_SUPPORTED,
     PATH_FUNCTION_NOT_POSSIBLE,
     POLE_MISSING,
     PROBE_MISSING,
-    Q_UNDEFINED,
+    Q_PARAMETER_UNDEFINED,
     RADIUS_TOO_LARGE,
     ROUNDING_NOT_POSSIBLE,
     TOOL_AXIS_MISSING,
@@ -54,10 +54,10 @@ _PATH_CODES = frozenset(
 )
 _CYCLE_CODES = frozenset({CYCLE_MISSING})
 _PLANE_CODES = frozenset({M128_ACTIVE, NOT_ALLOWED_WITH_M128})
-_VALUE_CODES = frozenset({Q_UNDEFINED, ARITHMETIC_ERROR, INPUT_VALUE_INCORRECT})
+_VALUE_CODES = frozenset({Q_PARAMETER_UNDEFINED, ARITHMETIC_ERROR, INPUT_VALUE_INCORRECT})
 _ALL_CODES = _TOOL_CODES | _PATH_CODES | _CYCLE_CODES | _PLANE_CODES | _VALUE_CODES
 _MISSING_CODES = frozenset(
-    {NOT_SUPPORTED, M_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, PROBE_MISSING, FILE_MISSING}
+    {NOT_SUPPORTED, M_FUNCTION_UNDEFINED, TOOL_UNKNOWN, CYCLE_UNKNOWN, PROBE_MISSING, FILE_MISSING}
 )
 """What control, machine or shop lacks: the same wherever it stands, so it is told at its first place."""
 
@@ -72,7 +72,7 @@ _BEGINS = (  # start of a block that cannot be read, and the possible consequenc
     ),
     (re.compile(r"SEL\s+PGM"), frozenset({FILE_MISSING})),
     (re.compile(r"CYCL|CONTOUR|PATTERN|GLOBAL|SEL|DECLARE|QC"), _CYCLE_CODES | _VALUE_CODES),
-    (re.compile(r"PLANE|FUNCTION|TRANS"), _PLANE_CODES | {Q_UNDEFINED}),
+    (re.compile(r"PLANE|FUNCTION|TRANS"), _PLANE_CODES | {Q_PARAMETER_UNDEFINED}),
     (re.compile(r"M\s*[0-9]"), frozenset({WRONG_RPM}) | _PLANE_CODES),
     (re.compile(r"Q|FN"), _VALUE_CODES),
     (re.compile(r"LBL|STOP|BLK|TCH|\*|END|BEGIN"), frozenset[str]()),
@@ -88,13 +88,13 @@ class ConsequentFaultFilter:
         self._cycles = False  # the tool, the cycle or a cycle parameter is uncertain
         self._unknown: set[tuple[str, int]] = set()  # parameters without a value because of an error
 
-    def is_consequence(self, problem: ProgramError, node: nodes.Node | None) -> bool:
+    def is_consequence(self, error: ProgramError, node: nodes.Node | None) -> bool:
         """Return whether an error may be a consequence of an earlier error.
 
         The method also records the possible consequences of this error.
         """
-        found = problem.diagnostic
-        parameter = problem.parameter if isinstance(problem, MissingValueError) else None
+        found = error.diagnostic
+        parameter = error.parameter if isinstance(error, MissingValueError) else None
         silent = found.code in self._silent or parameter in self._unknown
         silent = silent or (self._cycles and _runs_a_cycle(node) and found.code in _ALL_CODES)
         if parameter is not None:

@@ -32,7 +32,7 @@ from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.control_flow import EndlessLoopDetector
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import MAX_LINES_WITHOUT_BLOCK, LinePass
+from core.interpreter.shared.interpretation import MAX_LINE_COUNT_WITHOUT_BLOCK, LinePass
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import ProgramError
@@ -53,7 +53,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         self._state = State(setup, kinematics, self._log, is_inch=program.is_inch)
         self._state.blank_corners = program.blank_corners
         self._flow = Flow(program)
-        self._watch = None if self._flow.reads_control_values else EndlessLoopDetector()
+        self._watch = None if self._flow.has_system_reads else EndlessLoopDetector()
         self._path = PathRunner(self._state)
         self._cycles = ActiveCycle(self._state)
         self._setup = setup
@@ -103,10 +103,10 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         kept = start.checkpoint.kept
         if kept is not None:
             parts: InterpreterParts = kept.copy_parts(self._setup, self._log)
-            self._state, self._path, self._cycles = parts.state, parts.path_runner, parts.cycles
+            self._state, self._path, self._cycles = parts.state, parts.path_runner, parts.active_cycle
             if not start.is_mdi_line:
                 self._flow, self._taken = parts.flow, parts.pending_line
-        mid_program_startup.restore_state(self._state, start, inch=self._program.is_inch)
+        mid_program_startup.restore_state(self._state, start, is_inch=self._program.is_inch)
         self._approach = mid_program_startup.generate_mill_approach(self._state, start)
 
     def _can_stop(self, line: nodes.KlartextLine) -> bool:
@@ -115,7 +115,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
     def _report_limit(self, line: nodes.KlartextLine) -> None:
         self._stop_endless(line.number, "Reduce the repeat counts.")
 
-    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Generate the elementary blocks of the program. Call this method only once."""
         yield from self._approach
         self._made = self._state.block_count
@@ -124,7 +124,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 if not self._stopped:
                     yield block
             self._made = self._state.block_count
-            if self._stopped and (to_first_error or self._log.is_full):
+            if self._stopped and (stops_at_first_error or self._log.is_full):
                 return
         if not (self._stopped or self.has_stopped_before_line or self._flow.is_ended_by_code):
             yield from self._end_of_program()
@@ -138,7 +138,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         try:
             yield from self._path.finish_program()
         except ProgramError as problem:
-            self._log.add(problem.diagnostic)
+            self._log.add_finding(problem.diagnostic)
             self._stopped = True
             return
         yield m_functions.execute_program_end(state)
@@ -148,7 +148,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
         if line.is_skippable and self._state.setup.block_delete:
             return
         if line.error is not None:
-            self._log.add(self._flow.relocate_finding(line.error))
+            self._log.add_finding(self._flow.relocate_finding(line.error))
             self._stopped = True
             self._consequences.record_unreadable_block(line.code)
             return
@@ -156,7 +156,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             yield from self._line(line)
         except ProgramError as problem:
             if not self._consequences.is_consequence(problem, line.node):
-                self._log.add(problem.diagnostic)
+                self._log.add_finding(problem.diagnostic)
             self._stopped = True
             if makes_flow_unknown(line.node):
                 self._flow.end_program()
@@ -213,7 +213,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             case nodes.CoordinateTransform():
                 execute_transformation(state, node)
             case nodes.TcpmSwitch():
-                plane_functions.set_tcpm_active(state, active=node.is_on)
+                plane_functions.set_tcpm_active(state, is_active=node.is_on)
             case (
                 nodes.CycleDefinition()
                 | nodes.CycleLine()
@@ -291,7 +291,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                 lambda: m_functions.execute_before_motion(state, node.m_functions)
             )
         datum = m_functions.read_machine_datum(state, node.m_functions)
-        yield from path.execute_move(node, datum=datum, has_corner_after=self._corner_is_next())
+        yield from path.execute_move(node, machine_datum=datum, has_corner_after=self._corner_is_next())
         yield from self._behind(node.m_functions, comment)
         moved = any(word.axis in "XY" for word in node.axes) or bool(node.words)
         yield from self._with_cycle(node.m_functions, node.column, has_moved=moved)
@@ -311,7 +311,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             if node.is_pattern_call:
                 yield from self._cycles.call_pattern(node)
             else:
-                yield from self._cycles.call_at(node) if node.axes else self._run_cycle(node.column)
+                yield from self._cycles.call_at_position(node) if node.axes else self._run_cycle(node.column)
         if isinstance(node, nodes.StopBlock):
             stop = ProgramStop(optional=False, message=comment)
             yield from path.execute_between_elements(lambda: iter((state.make_action_block(stop),)))
@@ -376,7 +376,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
             raise self._state.make_error(
                 column, LABEL_NOT_FOUND, text, "Correct the label number, or add the label."
             )
-        runner, lines = ContourCollector(state), MAX_LINES_WITHOUT_BLOCK
+        runner, lines = ContourCollector(state), MAX_LINE_COUNT_WITHOUT_BLOCK
         while (line := flow.read_next_line()) is not None:
             lines -= 1
             if line.error is not None:
@@ -394,7 +394,7 @@ class Interpreter(LinePass[nodes.KlartextLine]):
                     flow.program.text(line),
                 )
                 _collect_contour_line(state, runner, flow, line)
-        runner.finish()
+        runner.finish_contour()
         return SlContour(name, runner.elements, runner.side, part.is_pocket)
 
     def _corner_is_next(self) -> bool:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.consequent_faults import remove_repeated_errors
 from core.interpreter.shared.control_flow import ControlFlow, FlowFrame
-from core.interpreter.shared.diagnostic_log import MAX_PER_KIND
+from core.interpreter.shared.diagnostic_log import MAX_FINDINGS_PER_KIND
 from core.interpreter.shared.units import MM_PER_INCH
 from core.interpreter.shared.working_plane import BlankCorners
 from core.language.diagnostics import Diagnostic, Severity, make_error_diagnostic
@@ -22,7 +22,7 @@ from core.language.klartext.canonical_text import format_block, format_name
 from core.language.klartext.klartext_faults import (
     EXCESSIVE_NESTING,
     LABEL_NOT_FOUND,
-    LABEL_TWICE,
+    LABEL_REPEATED,
     NOT_SUPPORTED,
     make_klartext_error,
     make_syntax_error,
@@ -82,12 +82,12 @@ class Program:
             text = self._texts[line.number] = format_block(line)
         return text
 
-    def find_subprogram_end(self, label: int) -> int | None:
+    def find_subprogram_end(self, label_index: int) -> int | None:
         """Return the index of the LBL 0 that ends a subprogram, or None if it has no end.
 
         ``label`` is the index of the line with the label of the subprogram.
         """
-        for index in range(label + 1, self.end_index):
+        for index in range(label_index + 1, self.end_index):
             node = self.lines[index].node
             if isinstance(node, Label) and node.name == 0:
                 return index
@@ -107,7 +107,9 @@ def read_program(source: ProgramSource) -> Program:
     found = [line.error for line in lines if line.error is not None]
     for look in (_frame, _labels, _calls):
         found += look(program)
-    program.diagnostics = sorted(found, key=lambda each: (each.line, each.column))[: 2 * MAX_PER_KIND]
+    program.diagnostics = sorted(found, key=lambda each: (each.line, each.column))[
+        : 2 * MAX_FINDINGS_PER_KIND
+    ]
     program.blank_corners = _corners(program)
     for each in source.subprograms:
         name = normalize_file_name(each.name)
@@ -257,7 +259,7 @@ def _labels(program: Program) -> Iterator[Diagnostic]:
                 labels=program.labels[node.name] + 1,
             )
             yield make_klartext_error(
-                line.number, node.column, LABEL_TWICE, text, "Use a different number."
+                line.number, node.column, LABEL_REPEATED, text, "Use a different number."
             ).diagnostic
 
 
@@ -333,7 +335,7 @@ class Flow(ControlFlow[_Level]):
             return None
         own = Flow(program)
         own.next_index = program.end_index
-        own.enter(_Level(program, at + 1, program.end_index, is_section=True))
+        own.enter_subprogram(_Level(program, at + 1, program.end_index, is_section=True))
         return own
 
     def find_program(self, name: str) -> Program | None:
@@ -356,7 +358,7 @@ class Flow(ControlFlow[_Level]):
         super().end_program()
         self.is_ended_by_code = True
 
-    def call_label(self, line: int, node: LabelCall, times: int) -> None:
+    def call_label(self, line: int, node: LabelCall, repeat_count: int) -> None:
         """Execute CALL LBL, or repeat the section of the label ``times`` times.
 
         Raises ProgramError if calls are nested too deeply.
@@ -365,7 +367,7 @@ class Flow(ControlFlow[_Level]):
         if target is None:
             return  # already reported when the program was read
         if node.repeat_count is not None:
-            self._repeat(line, target, times)
+            self._repeat(line, target, repeat_count)
             return
         if len(self.frames) - self._program_frame_index > MAX_CALL_DEPTH:
             text = Message(
@@ -375,7 +377,9 @@ class Flow(ControlFlow[_Level]):
             )
             hint = "A subprogram must not call itself."
             raise make_klartext_error(line, node.column, EXCESSIVE_NESTING, text, hint)
-        self.enter(replace(self.active_frame, next_index=target + 1, remaining_repeats={}, is_section=True))
+        self.enter_subprogram(
+            replace(self.active_frame, next_index=target + 1, remaining_repeats={}, is_section=True)
+        )
 
     def execute_label(self, node: Label) -> None:
         """Execute LBL.
@@ -392,7 +396,7 @@ class Flow(ControlFlow[_Level]):
             self.next_index = target + 1
 
     @property
-    def reads_control_values(self) -> bool:
+    def has_system_reads(self) -> bool:
         """Return whether the program or a called program contains FN 18."""
         programs = (self._main, *self._main.called_programs.values())
         return any(isinstance(line.node, SystemRead) for each in programs for line in each.lines)
@@ -416,7 +420,7 @@ class Flow(ControlFlow[_Level]):
                 name=name,
             )
             raise make_klartext_error(line, 1, EXCESSIVE_NESTING, text, "A program must not call itself.")
-        self.enter(
+        self.enter_subprogram(
             _Level(
                 called,
                 0,

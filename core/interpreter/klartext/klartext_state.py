@@ -16,7 +16,7 @@ from core.geometry.rotation_frames import (
     multiply_matrices,
     transpose_matrix,
 )
-from core.geometry.working_plane import XY, AxisMove, AxisOrder, CurvedMove, ProgramTransform
+from core.geometry.working_plane import XY_ORDER, AxisMove, AxisOrder, CurvedMove, ProgramTransform
 from core.interpreter.shared.actions import Action, Dwell, ProgramStop
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
@@ -48,7 +48,7 @@ class ActivePlane:
 
     frame: Matrix
     target_angles: Mapping[str, float]
-    line: int
+    line_number: int
 
 
 LINEAR_AXES = "XYZ"
@@ -85,7 +85,7 @@ class State:
         self.uses_shorter_rotation = True
         self._shown: RotaryAngles | None = None  # recalculated after a move of a rotary axis
         self.plane_transform = self._place()
-        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
+        self.tip_in_plane = self.plane_transform.convert_to_frame_point(self.linear_position)
         self.setup = setup
         self.log = log
         self.mm_per_unit = MM_PER_INCH if is_inch else 1.0
@@ -107,7 +107,7 @@ class State:
         self.global_def_values: dict[int, float] = {}  # values of GLOBAL DEF for PREDEF
         self.transformation = ProgramTransform()
         self.pole: tuple[float, float] | None = None  # pole of CC, in the axes of its plane
-        self.pole_plane: AxisOrder = XY
+        self.pole_plane: AxisOrder = XY_ORDER
         self.rotation_direction = ""  # active DR, + or -
         self.tool_radius_mm = 0.0
         self.tool_deltas_mm = (0.0, 0.0)  # DL and DR of the last TOOL CALL, mm
@@ -132,11 +132,13 @@ class State:
     @property
     def programmed_position(self) -> Vector:
         """Return the tip position in program coordinates, in mm."""
-        return self.transformation.to_program(self.tip_in_plane)
+        return self.transformation.convert_to_program(self.tip_in_plane)
 
-    def to_machine_position(self, program_point: Vector) -> Vector:
+    def convert_to_machine_position(self, program_point: Vector) -> Vector:
         """Return the machine positions X, Y and Z that place the tip at a program point, in mm."""
-        return self.plane_transform.to_machine_position(self.transformation.to_plane(program_point))
+        return self.plane_transform.convert_to_machine_position(
+            self.transformation.convert_to_plane(program_point)
+        )
 
     def set_axis_positions(self, goal: dict[str, float]) -> None:
         """Set the positions of all axes, which ``goal`` contains by axis name."""
@@ -146,7 +148,7 @@ class State:
         self.position_by_axis, self.axis_positions = goal, tuple([goal[name] for name in self.axis_names])
         if turned and self.is_tcpm_active:
             self.update_derived_values()
-        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
+        self.tip_in_plane = self.plane_transform.convert_to_frame_point(self.linear_position)
 
     def set_machine_positions(self, positions: Sequence[float]) -> None:
         """Set the axis positions to these machine positions, which are in the machine's axis order."""
@@ -170,7 +172,7 @@ class State:
 
     def get_displayed_angle(self, axis: RotaryAxis) -> float:
         """Return the displayed angle of a rotary axis, in degrees."""
-        return self.kinematics.displayed_angle(axis, self.position_by_axis[axis.name])
+        return self.kinematics.get_displayed_angle(axis, self.position_by_axis[axis.name])
 
     @property
     def linear_position(self) -> Vector:
@@ -191,7 +193,7 @@ class State:
         if self.active_plane is not None:
             return dict(self.active_plane.target_angles)
         return {
-            axis.name: axis.displayed_angle(self.position_by_axis[axis.name])
+            axis.name: axis.get_displayed_angle(self.position_by_axis[axis.name])
             for axis in self.kinematics.rotary_axes
         }
 
@@ -204,7 +206,7 @@ class State:
             )
         self.origin = add_vectors(self.datum, apply_matrix(self.frame, self.shift))
         self.plane_transform = self._place()
-        self.tip_in_plane = self.plane_transform.to_frame_point(self.linear_position)
+        self.tip_in_plane = self.plane_transform.convert_to_frame_point(self.linear_position)
         self._shared = None
 
     def reset_transformations(self) -> None:
@@ -236,12 +238,12 @@ class State:
 
     # --- numbers ------------------------------------------------------------------------------------------
 
-    def convert_feed_to_mm_s(self, word: float) -> float:
+    def convert_feed_to_mm_s(self, feed: float) -> float:
         """Convert an F value to mm/s.
 
         F is in mm/min, or in tenths of an inch per minute in an INCH program.
         """
-        return word / 60.0 if self.mm_per_unit == 1.0 else word * 0.1 * MM_PER_INCH / 60.0
+        return feed / 60.0 if self.mm_per_unit == 1.0 else feed * 0.1 * MM_PER_INCH / 60.0
 
     def make_error(
         self, column: int, code: str, text: str, hint: str, line: int = 0, /, **values: object
@@ -254,7 +256,7 @@ class State:
             line or self.line_number, column, code, fill_template(text, values), fill_template(hint, values)
         )
 
-    def check(
+    def check_condition(
         self, condition: object, column: int, code: str, text: str, hint: str, /, **values: object
     ) -> None:
         """Raise the error of ``make_error`` unless ``condition`` is true."""
@@ -283,7 +285,7 @@ class State:
         text = fill_template(text, values)
         if text not in self.reported_findings:
             self.reported_findings.add(text)
-            self.log.add(
+            self.log.add_finding(
                 Diagnostic(self.line_number, column, severity, code, text, fill_template(hint, values))
             )
 
@@ -361,7 +363,7 @@ class State:
                 datum=self.origin,
                 is_tilted=self.active_plane is not None,
                 target_angles=(q120, q121, q122),
-                plane_block_line=self.active_plane.line if self.active_plane is not None else 0,
+                plane_block_line=self.active_plane.line_number if self.active_plane is not None else 0,
                 tool_length_mm=self.tool_length_mm,
                 blank_corners=self.blank_corners,
             )

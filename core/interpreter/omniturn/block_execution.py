@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from core.interpreter.omniturn.codes.code_entry import ActionKind
 from core.interpreter.omniturn.codes.code_table import load_handler
-from core.interpreter.omniturn.cycles.canned_cycles import check_ready, make_move_blocks
+from core.interpreter.omniturn.cycles.canned_cycles import check_cycle_start, make_move_blocks
 from core.interpreter.omniturn.motion.arc_moves import make_arc_block
 from core.interpreter.omniturn.motion.c_axis import lock_spindle, move_c_axis, uses_c_speed
 from core.interpreter.omniturn.motion.corners import check_radius_word, read_corner
@@ -15,7 +15,7 @@ from core.interpreter.omniturn.motion.feeds import (
     execute_feed_words,
     warn_about_crash_feed,
 )
-from core.interpreter.omniturn.motion.straight_moves import execute_geometry_modes, make_statement_move
+from core.interpreter.omniturn.motion.straight_moves import execute_dimension_modes, make_statement_move
 from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import ExecutableLine, Statement
 from core.interpreter.omniturn.setup.m_codes import execute_after_motion, execute_before_motion
@@ -54,7 +54,7 @@ def execute(
         return
     if execute_coarse_feed(state, statement, following_lines):
         return
-    execute_geometry_modes(state, statement)
+    execute_dimension_modes(state, statement)
     if statement.comment is not None:
         state.set_modal(state.modal._replace(comment=statement.comment))
     execute_feed_words(state, statement, is_first_line=is_first_line)
@@ -93,17 +93,17 @@ def _motion(state: State, statement: Statement, contour: Sequence[Statement] = (
     elif acts is ActionKind.MOTION:
         yield from load_handler(statement.code_entry)(state, statement)
     elif acts is ActionKind.CYCLE or acts is ActionKind.CONTOUR:
-        check_ready(state, statement)
+        check_cycle_start(state, statement)
         described = (contour,) if acts is ActionKind.CONTOUR else ()
         yield from make_move_blocks(
             state, statement, load_handler(statement.code_entry)(state, statement, *described)
         )
     elif statement.has_c_word and (
-        state.modal.c_locked or not statement.moves_x_or_z or "C" not in statement.words
+        state.modal.c_locked or not statement.has_x_or_z_move or "C" not in statement.words
     ):
         check_radius_word(state, statement)
         yield from move_c_axis(state, statement)
-    elif statement.moves_x_or_z:
+    elif statement.has_x_or_z_move:
         block = make_statement_move(state, statement)
         read_corner(state, statement)
         yield block

@@ -34,8 +34,8 @@ from core.interpreter.shared.checkpoint import Checkpoint
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, StraightMoveSeries
 from core.interpreter.shared.interpretation import (
-    MAX_BLOCKS,
-    MAX_LINES,
+    MAX_BLOCK_COUNT,
+    MAX_LINE_COUNT,
     InterpreterPass,
     generate_lathe_approach,
 )
@@ -64,10 +64,10 @@ def check_program_start(state: State, program: Program) -> tuple[int, bool]:
         _log_mode_error(program, log)
     large = check_program_size(program, state.setup.inputs)
     if large is not None:
-        log.add(large)
-    if state.setup.metric and not program.specifies_units and first:
+        log.add_finding(large)
+    if state.setup.metric and not program.has_units_code and first:
         text = "The program has neither G70 nor G71, so it runs in the control's unit, millimeters."
-        log.warn(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
+        log.add_warning(first, 0, "units-unnamed", text, "Write G70 or G71 on the first line.")
     return first, large is not None
 
 
@@ -78,7 +78,7 @@ def _log_mode_error(program: Program, log: DiagnosticLog) -> None:
     moves = isinstance(step, tuple) or (step is not None and {"X", "Z"}.intersection(step.words))
     if moves and not named:
         text = "Neither G90 (absolute) nor G91 (incremental) is active."
-        log.add(make_error_diagnostic(1, 1, "first-line", text, "Program G90 or G91 first."))
+        log.add_finding(make_error_diagnostic(1, 1, "first-line", text, "Program G90 or G91 first."))
 
 
 def _first_line(program: Program, log: DiagnosticLog, *, block_delete: bool) -> int:
@@ -90,18 +90,20 @@ def _first_line(program: Program, log: DiagnosticLog, *, block_delete: bool) -> 
         if step is None:
             continue
         if isinstance(step, Statement):
-            if not step.is_executable or (block_delete and step.block_delete):
+            if not step.is_executable or (block_delete and step.has_block_delete):
                 continue
             if step.flow_code == UNREADABLE_FLOW or {90, 91}.intersection(step.modal_codes):
                 return number
         text = "The first line must contain G90 (absolute) or G91 (incremental)."
-        log.add(make_error_diagnostic(number, 1, "first-line", text, "Start the program with G90G94F300."))
+        log.add_finding(
+            make_error_diagnostic(number, 1, "first-line", text, "Start the program with G90G94F300.")
+        )
         return number
     return 0
 
 
 _LOOKAHEAD_LINES = 8
-LONG_PROGRAM_LINES = 200
+LONG_PROGRAM_LINE_COUNT = 200
 """Lines from which on moves are made in series where there is no loop either; fewer gain nothing."""
 
 
@@ -119,7 +121,7 @@ class Interpreter(InterpreterPass):
         self._first, self._refused = check_program_start(self._state, program)
         if setup.begin is not None:
             restore_state(self._state, setup.begin)
-            self._flow.resume(setup.begin.line_number, setup.begin.checkpoint.flow)
+            self._flow.resume_at(setup.begin.line_number, setup.begin.checkpoint.flow)
 
     @property
     def source_block_count(self) -> int:
@@ -131,11 +133,11 @@ class Interpreter(InterpreterPass):
         """Return the modal state after the last generated block."""
         return self._state.modal
 
-    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Generate the elementary blocks of the program. Call this method only once."""
         for each in chain(self._approach(), self._pass()):
             if self._stopped:
-                if to_first_error:
+                if stops_at_first_error:
                     return
             elif isinstance(each, StraightMoveSeries):
                 yield from each
@@ -147,7 +149,10 @@ class Interpreter(InterpreterPass):
 
         The moves are combined where possible.
         """
-        if self._program.structure.loop_ends or len(self._program.executable_lines) >= LONG_PROGRAM_LINES:
+        if (
+            self._program.structure.loop_ends
+            or len(self._program.executable_lines) >= LONG_PROGRAM_LINE_COUNT
+        ):
             from core.interpreter.omniturn.motion.move_series import SeriesReader
 
             self._ahead = SeriesReader(self._state, self._program, self._flow)
@@ -171,16 +176,16 @@ class Interpreter(InterpreterPass):
         yield from self._end()
 
     def _end(self) -> Iterator[Block]:
-        yield from self._released(self._modifier.finish())
+        yield from self._released(self._modifier.check_program_end())
         warn_about_idle_shifts(self._state)
 
     def _lines(self) -> Iterator[Block | StraightMoveSeries]:
         ready, flow, state, ahead = self._program.executable_lines, self._flow, self._state, self._ahead
         texts = self._program.source.lines
-        left = MAX_LINES
+        left = MAX_LINE_COUNT
         while flow.next_index < flow.end_index:
             if ahead is not None and state.fast:
-                taken = ahead.read_next_series(left, MAX_BLOCKS - state.blocks)
+                taken = ahead.read_next_series(left, MAX_BLOCK_COUNT - state.blocks)
                 if taken is not None:
                     left -= taken[1]
                     yield taken[0]
@@ -189,7 +194,7 @@ class Interpreter(InterpreterPass):
             flow.next_index = at + 1
             line = ready[at]
             left -= 1
-            if left < 0 or state.blocks >= MAX_BLOCKS:
+            if left < 0 or state.blocks >= MAX_BLOCK_COUNT:
                 self._stop_endless(at + 1, "Reduce the loop counts.")
                 break
             try:
@@ -208,11 +213,11 @@ class Interpreter(InterpreterPass):
 
     def _statement(self, statement: Statement) -> Iterator[Block]:
         contour = self._contour(statement) if statement.is_contour_cycle else ()
-        if contour is None or (statement.block_delete and self._state.setup.block_delete):
+        if contour is None or (statement.has_block_delete and self._state.setup.block_delete):
             return
         if statement.flow_code == UNREADABLE_FLOW:
             self._stopped = True
-            self._modifier.discard()  # The buffered blocks are invalid without this line.
+            self._modifier.discard_blocks()  # The buffered blocks are invalid without this line.
             self._skip(statement)
         elif statement.calls_subroutine:
             self._modifier.check_line(statement)
@@ -241,7 +246,7 @@ class Interpreter(InterpreterPass):
             ):
                 yield from self._apply_stages(block)
                 if isinstance(block.action, ProgramEnd):
-                    self._flow.stop()
+                    self._flow.stop_here()
 
     def _contour(self, statement: Statement) -> list[Statement] | None:
         """Return the lines that describe the contour of a cycle, or None if the contour has no end.
@@ -269,7 +274,7 @@ class Interpreter(InterpreterPass):
         Blocks are buffered while a corner or nose compensation is active.
         """
         if self._state.contour.is_buffering:
-            yield from self._released(self._modifier.accept(block))
+            yield from self._released(self._modifier.accept_block(block))
         else:
             yield block
 
@@ -282,9 +287,9 @@ class Interpreter(InterpreterPass):
     def _log_error(self, problem: ProgramError) -> None:
         """Log the error unless it is a consequence of another error, and discard buffered blocks."""
         if not self._consequences.is_consequence(problem.diagnostic.code):
-            self._log.add(problem.diagnostic)
+            self._log.add_finding(problem.diagnostic)
         self._stopped = True
-        self._modifier.discard()
+        self._modifier.discard_blocks()
         self._state.fast = False
 
     def _call(self, statement: Statement) -> Iterator[Block]:
@@ -307,7 +312,7 @@ class Interpreter(InterpreterPass):
         """
         self._log_error(problem)
         if problem.diagnostic.code == "recursion" or self._log.is_full:
-            self._flow.stop()
+            self._flow.stop_here()
         if isinstance(line, Statement):
             self._skip(line)
 
@@ -315,13 +320,13 @@ class Interpreter(InterpreterPass):
         """Set the state so that the pass continues after a rejected line."""
         self._set_end_position(statement)
         self._consequences.record_rejected_line(
-            statement.text, is_position_known=statement.moves_x_or_z and self._state.absolute
+            statement.text, is_position_known=statement.has_x_or_z_move and self._state.absolute
         )
 
     def _set_end_position(self, statement: Statement) -> None:
         """Set the position to the end point of the line."""
         state = self._state
-        if statement.moves_x_or_z and state.absolute:
+        if statement.has_x_or_z_move and state.absolute:
             set_position(
                 state, round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
             )

@@ -80,26 +80,28 @@ class StyleChecker:
         self._strict = strict
         self._places: dict[str, int] = {}  # kind → index in ``findings``
 
-    def record_deviation(self, kind: str, line: int, column: int = 0, count: int = 1) -> None:
-        """Record ``count`` occurrences of a deviation.
+    def record_deviation(self, kind: str, line: int, column: int = 0, occurrence_count: int = 1) -> None:
+        """Record ``occurrence_count`` occurrences of a deviation.
 
         ``line`` and ``column`` are the location of the first occurrence.
         """
         at = self._places.get(kind)
         if at is not None and not self._strict:
             self.findings[at] = replace(
-                self.findings[at], occurrence_count=self.findings[at].occurrence_count + count
+                self.findings[at], occurrence_count=self.findings[at].occurrence_count + occurrence_count
             )
             return
         self._places[kind] = len(self.findings)
         message, hint = _KINDS[kind]
         severity = Severity.ERROR if self._strict else Severity.NOTE
-        self.findings.append(Diagnostic(line, column, severity, kind, message, hint, occurrence_count=count))
+        self.findings.append(
+            Diagnostic(line, column, severity, kind, message, hint, occurrence_count=occurrence_count)
+        )
 
     def check_file(self, source: ProgramSource) -> None:
         """Record deviations in the line ends of the file."""
         if "\r" in source.text:
-            self.record_deviation("line-ends", 1, count=source.text.count("\r"))
+            self.record_deviation("line-ends", 1, occurrence_count=source.text.count("\r"))
         if source.text and source.text[-1] not in "\r\n":
             self.record_deviation("last-newline", len(source.lines))
 
@@ -135,7 +137,7 @@ class Program:
     structure: ProgramStructure
     diagnostics: tuple[Diagnostic, ...]
     block_count: int  # lines with more than a comment
-    specifies_units: bool  # whether the program contains G70 or G71
+    has_units_code: bool  # whether the program contains G70 or G71
     machine_m_code_lines: tuple[Statement, ...]  # lines whose M code must be in the machine file
     input_dependent_calls: tuple[Statement, ...] = ()  # lines whose subroutine call depends on an input
     # line and subroutine number of each call, and of each contour in a subroutine
@@ -143,7 +145,7 @@ class Program:
 
     def copy_for_pass(self) -> Program:
         """Return a copy for one pass, which can change its lines independently."""
-        return replace(self, executable_lines=self.executable_lines.copy())
+        return replace(self, executable_lines=self.executable_lines.copy_lines())
 
     def get_line(self, number: int) -> LexedLine:
         """Return the words of a line, which is numbered from 1."""
@@ -165,7 +167,7 @@ class _Reader:
         self._plane = 0  # line of a (~PL..) without its (END) so far
 
     def read(self) -> ExecutableLines:
-        lines = parse_lines(self.source.lines, self._line, in_order="~" in self.source.text)
+        lines = parse_lines(self.source.lines, self._line, reads_every_line="~" in self.source.text)
         if self._plane:
             self._plane_open(self._plane)
         return lines
@@ -238,13 +240,13 @@ class _Reader:
         self._plane = 0
 
 
-def read_program(source: ProgramSource, strict: bool = False) -> Program:
+def read_program(source: ProgramSource, is_strict: bool = False) -> Program:
     """Parse all lines of a program, find loops, subroutines and the end, and collect the errors.
 
     The function does not raise exceptions. With ``strict``, style deviations that the manual of the
     original control forbids are errors.
     """
-    reader = _Reader(source, strict=strict)
+    reader = _Reader(source, strict=is_strict)
     ready = reader.read()
     length = len(ready)
     structure, faults = find_structure(reader.statements, length)
@@ -264,7 +266,7 @@ def read_program(source: ProgramSource, strict: bool = False) -> Program:
         structure=structure,
         diagnostics=(*_limit_findings(problems), *_limit_findings(reader.style.findings)),
         block_count=_executable(reader, length),
-        specifies_units=any({70, 71}.intersection(statement.modal_codes) for statement in reader.statements),
+        has_units_code=any({70, 71}.intersection(statement.modal_codes) for statement in reader.statements),
         machine_m_code_lines=tuple(
             statement for statement in reader.statements if is_machine_m_code(statement)
         ),
@@ -356,11 +358,11 @@ def read_mdi_line(source: ProgramSource) -> Program:
     unknown = (statement,) if statement is not None and is_machine_m_code(statement) else ()
     return Program(
         source=source,
-        executable_lines=ExecutableLines(LineColumns.empty(1), {0: statement}),
+        executable_lines=ExecutableLines(LineColumns.make_empty(1), {0: statement}),
         structure=ProgramStructure({}, {}, {}, {}, 1, {}),
         diagnostics=tuple(problems),
         block_count=int(executable),
-        specifies_units=True,
+        has_units_code=True,
         machine_m_code_lines=unknown,
     )
 
@@ -369,7 +371,7 @@ def _check_context(statement: Statement) -> Diagnostic | None:
     """Return the error for a line that depends on other lines, or None."""
     if statement.flow_code and statement.flow_code != UNREADABLE_FLOW:
         return _refuse(statement, 1, _steers(statement))
-    if statement.block_delete:
+    if statement.has_block_delete:
         return _refuse(statement, 1, "/ skips a program line and has no meaning in MDI.")
     for code in statement.modal_codes:
         if G_CODES[code].mdi_error_text:
@@ -381,7 +383,7 @@ def _check_context(statement: Statement) -> Diagnostic | None:
             Message(statement.code_entry.mdi_error_text, code=statement.code_word.text),
         )
     radius = statement.words.get("R")
-    if radius is not None and statement.moves_x_or_z and statement.one_shot_code is None:
+    if radius is not None and statement.has_x_or_z_move and statement.one_shot_code is None:
         return _refuse(
             statement,
             radius.column,

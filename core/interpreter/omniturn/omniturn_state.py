@@ -197,14 +197,14 @@ class State:
 
     def move(
         self, kind: BlockKind, line: int, text: str, start: tuple[float, float, float], feed: float,
-        *, per_rev: bool = False, rpm: float = 0.0, surface_speed: float | None = None,
+        *, is_feed_per_rev: bool = False, rpm: float = 0.0, surface_speed: float | None = None,
         center: tuple[float, float] = (0.0, 0.0), is_clockwise: bool = False, plane: PlaneMove | None = None,
     ) -> Block:  # fmt: skip
         """Return the block of a move from ``start`` (x, z, c) to the present position of the state."""
         self.blocks += 1
         return Block(
             self.blocks, line, kind, text, *start, self.x, self.z, self.c, self.offset_x, self.offset_z,
-            self.modal, feed, per_rev, rpm, surface_speed, *center, is_clockwise, plane=plane,
+            self.modal, feed, is_feed_per_rev, rpm, surface_speed, *center, is_clockwise, plane=plane,
         )  # fmt: skip
 
 

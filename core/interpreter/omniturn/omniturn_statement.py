@@ -15,7 +15,7 @@ PlainMove = tuple[float | None, float | None, float | None, int, bool]
 """A line of G00 or G01, X, Z and F and no more: X, Z, F as written, 0 or 1 for the code (-1: none), and
 whether one of the numbers has a fifth decimal. Most lines of a long program."""
 
-_ARC, _LOCK, _MODE = ActionKind.ARC, ActionKind.LOCK, ActionKind.MODE  # Read for every line.
+_ARC, _LOCK, _MODE = ActionKind.ARC, ActionKind.SPINDLE_LOCK, ActionKind.MODE  # Read for every line.
 _FEED, _LIMIT = FMeaning.FEED, SMeaning.SPEED_LIMIT
 _C_WORDS = frozenset({"C", "CA", "CI"})
 UNREADABLE_FLOW = "unreadable"
@@ -42,13 +42,13 @@ class Statement:
     m_code_entry: CodeEntry | None = None  # table entry of its M code, if it is built into the control
     flow_code: str = ""  # a key of FLOW_CODES, UNREADABLE, or PLANE
     comment: str | None = None
-    block_delete: bool = False
+    has_block_delete: bool = False
     block_texts: dict[str, str] | None = None
     is_simple_move: bool = False  # only a move, its feed and G00…G03
     plane_line: PlaneLine | None = None  # a line of plane switching
-    f_is_feed: bool = True  # no code on the line changes the meaning of F
-    s_is_limit: bool = False  # S belongs to G76 or G77
-    moves_x_or_z: bool = False  # the line moves X or Z
+    is_f_feed: bool = True  # no code on the line changes the meaning of F
+    is_s_speed_limit: bool = False  # S belongs to G76 or G77
+    has_x_or_z_move: bool = False  # the line moves X or Z
     has_c_word: bool = False  # the line has a C word, which moves a locked spindle
     locks_spindle: bool = False  # the line locks the spindle as the C axis
     calls_subroutine: bool = False  # the line calls a subroutine, conditionally or not
@@ -94,7 +94,7 @@ class Statement:
             self.line, column, code, fill_template(text, values), fill_template(hint, values)
         )
 
-    def check(
+    def check_condition(
         self,
         condition: object,
         location: Word | str | int,
@@ -136,7 +136,9 @@ def make_statement(line: LexedLine) -> Statement:
     """Return the statement of a line. Raises ProgramError if words of the line exclude each other."""
     if line.errors:
         return make_unreadable_statement(line)
-    statement = Statement(line.number, line.text, comment=line.comment, block_delete=line.has_block_delete)
+    statement = Statement(
+        line.number, line.text, comment=line.comment, has_block_delete=line.has_block_delete
+    )
     if line.comment is not None and line.comment.lstrip().startswith("~"):
         what = f"({line.comment.strip()})"
         message = Message(
@@ -153,11 +155,13 @@ def make_statement(line: LexedLine) -> Statement:
         )
     _sort(statement, line)
     words = statement.words
-    statement.moves_x_or_z = statement.code_entry.action_kind is _ARC or (
+    statement.has_x_or_z_move = statement.code_entry.action_kind is _ARC or (
         statement.one_shot_code is None and ("X" in words or "Z" in words)
     )
     if line.comment is None and not statement.m_word and _SIMPLE.issuperset(statement.words):
-        statement.is_simple_move = statement.moves_x_or_z and _SIMPLE_MODAL.issuperset(statement.modal_codes)
+        statement.is_simple_move = statement.has_x_or_z_move and _SIMPLE_MODAL.issuperset(
+            statement.modal_codes
+        )
     if not statement.is_simple_move:
         _set_other_functions(statement)
         _name_parts(statement, line)
@@ -174,9 +178,9 @@ def make_unreadable_statement(line: LexedLine) -> Statement:
     if not any(word.letter == "G" and word.value in {4, 10, 92} for word in line.words):
         words = {word.letter: word for word in line.words if word.letter in {"X", "Z"}}
     statement = Statement(
-        line.number, line.text, words, flow_code=UNREADABLE_FLOW, block_delete=line.has_block_delete
+        line.number, line.text, words, flow_code=UNREADABLE_FLOW, has_block_delete=line.has_block_delete
     )
-    statement.moves_x_or_z = bool(words)
+    statement.has_x_or_z_move = bool(words)
     statement.modal_codes = tuple(
         code for code in (90, 91) if any(word[:2] == ("G", code) for word in line.words)
     )
@@ -237,9 +241,9 @@ def _sort_g(statement: Statement, word: Word, modal: list[Word]) -> None:
     else:
         statement.one_shot_code, statement.code_word, statement.code_entry = code, word, entry
     if entry.f_meaning is not _FEED:
-        statement.f_is_feed = False
+        statement.is_f_feed = False
     if entry.s_meaning is _LIMIT:
-        statement.s_is_limit = True
+        statement.is_s_speed_limit = True
 
 
 def _set_other_functions(statement: Statement) -> None:
@@ -311,7 +315,7 @@ def _check_flow(statement: Statement, line: LexedLine) -> None:
             raise _refused(
                 line, line.words[0], "word-missing", text, hint, flow=statement.flow_code, letter=letter
             )
-    for letter, rule in FLOW_CODES[statement.flow_code].rules.items():
+    for letter, rule in FLOW_CODES[statement.flow_code].word_rules.items():
         word = statement.words[letter]
         refusal = rule.find_error(word.value or 0.0)
         if refusal is not None:
@@ -327,7 +331,7 @@ def _name_parts(statement: Statement, line: LexedLine) -> None:
         name = _group(statement, word)
         groups[name] = groups.get(name, "") + word.text
     own: list[str] = [name for name in ("tool", "frame", "spindle", "m") if name in groups]
-    if statement.moves_x_or_z or statement.has_c_word or statement.code_entry.action_kind in _MOTIONS:
+    if statement.has_x_or_z_move or statement.has_c_word or statement.code_entry.action_kind in _MOTIONS:
         own.append("move")
     if len(own) > 1:
         if "move" not in own and "move" in groups:
@@ -346,7 +350,7 @@ def _group(statement: Statement, word: Word) -> str:
     if letter == "M":
         m_code = statement.m_code_entry
         return "spindle" if m_code is not None and m_code.action_kind is ActionKind.SPINDLE else "m"
-    if letter == "S" and not statement.s_is_limit and not statement.has_c_word:
+    if letter == "S" and not statement.is_s_speed_limit and not statement.has_c_word:
         return "m" if statement.locks_spindle else "spindle"
     return "move"
 

@@ -15,7 +15,7 @@ from math import cos, hypot, inf, nan, pi, sin, sqrt
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.lines_and_arcs import arc_sweep
+from core.geometry.lines_and_arcs import compute_arc_sweep
 from core.geometry.virtual_mill import SidePlane
 from core.interpreter.shared.actions import ColletSwitch
 from core.interpreter.shared.elementary_blocks import Block, BlockKind, StraightMoveSeries
@@ -69,9 +69,9 @@ class CutRecord:
     def __len__(self) -> int:
         return len(self.block_number)
 
-    def find_last_row(self, block: int) -> int:
+    def find_last_row(self, block_number: int) -> int:
         """Return the last row of this block or of an earlier block, or -1 if no axis has moved."""
-        return int(np.searchsorted(self.block_number, block, side="right")) - 1
+        return int(np.searchsorted(self.block_number, block_number, side="right")) - 1
 
     def find_first_row(self, row: int) -> int:
         """Return the first row of the block to which a row belongs."""
@@ -294,7 +294,9 @@ def _points(block: Block) -> list[tuple[float, float]]:
         return [(block.x, block.z)]
     cx, cz = block.cx, block.cz
     radius = hypot(block.x0 - cx, block.z0 - cz)
-    start, sweep = arc_sweep(block.x0, block.z0, block.x, block.z, cx, cz, clockwise=block.clockwise)
+    start, sweep = compute_arc_sweep(
+        block.x0, block.z0, block.x, block.z, cx, cz, is_clockwise=block.clockwise
+    )
     count = max(1, min(720, round(abs(sweep) / _step(radius)) + 1))
     angles = [start + sweep * k / count for k in range(1, count)]
     return [*((cx + radius * sin(a), cz + radius * cos(a)) for a in angles), (block.x, block.z)]

@@ -16,7 +16,7 @@ from core.interpreter.shared.checkpoint import FlowPosition
 from core.interpreter.shared.job_setup import Setup
 from core.message import Message
 
-MAX_VISITS = 20_000
+MAX_VISIT_COUNT = 20_000
 """Visits that are told apart; more are made by nobody who wants to go on in one of them."""
 
 _PROGRESS_INTERVAL = 2000
@@ -44,11 +44,11 @@ class LineVisits:
         """Return the reason why a visit does not exist, or an empty string if the visit exists."""
         if not self.earlier_block_counts:
             return Message("The program never reaches line {line}.", line=line)
-        if len(self.earlier_block_counts) > MAX_VISITS:
+        if len(self.earlier_block_counts) > MAX_VISIT_COUNT:
             return Message(
                 "Line {line} is executed more than {maximum} times; choose the line that begins the loop.",
                 line=line,
-                maximum=f"{MAX_VISITS:,}",
+                maximum=f"{MAX_VISIT_COUNT:,}",
             )
         if 1 <= number <= len(self.earlier_block_counts):
             return ""
@@ -94,7 +94,7 @@ def find_line_visits(
             if count % _PROGRESS_INTERVAL == 0:
                 report_progress(count)
             ended = ended or isinstance(block.action, ProgramEnd)
-        if ended or not walk.is_at_line or len(found.earlier_block_counts) > MAX_VISITS:
+        if ended or not walk.is_at_line or len(found.earlier_block_counts) > MAX_VISIT_COUNT:
             return found
         point = walk.checkpoint
         found.earlier_block_counts.append(point.blocks)

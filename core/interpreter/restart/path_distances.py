@@ -7,15 +7,15 @@ from math import hypot, isnan
 from core.interpreter.restart.cut_record import SAME_POINT_MM, CutRecord
 from core.interpreter.restart.tool_retract import RetractLeg
 
-ON_PATH_MM = 0.1  # mm; a tool within this distance of a path is on the path
+PATH_TOLERANCE_MM = 0.1  # mm; a tool within this distance of a path is on the path
 
 
-def distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
+def compute_distance_from_row(cut_record: CutRecord, row: int, x: float, z: float) -> float:
     """Return the distance of a point from the move of a row, in mm."""
     x0, z0, x1, z1 = cut_record.get_end_points(row)
     if isnan(x0) or isnan(z0):
         return hypot(x - x1, z - z1)
-    return distance_from_segment(x0, z0, x1, z1, x, z)
+    return compute_distance_from_segment(x0, z0, x1, z1, x, z)
 
 
 def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> tuple[float, float] | None:
@@ -28,7 +28,7 @@ def find_nearest_point(cut_record: CutRecord, row: int, x: float, z: float) -> t
     return None if isnan(length) or not length else _foot(x0, z0, x1, z1, x, z)
 
 
-def distance_from_segment(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
+def compute_distance_from_segment(x0: float, z0: float, x1: float, z1: float, x: float, z: float) -> float:
     """Return the distance of a point from the segment from (x0, z0) to (x1, z1), in mm."""
     foot_x, foot_z = _foot(x0, z0, x1, z1, x, z)
     return hypot(foot_x - x, foot_z - z)
@@ -49,8 +49,8 @@ def remove_detours(points: list[RetractLeg]) -> list[RetractLeg]:
         start, end = points[at], points[at + 1]
         reached = at + 1
         for k in range(len(points) - 1, at + 1, -1):
-            ends_here = distance_from_segment(*start, *end, *points[k]) <= SAME_POINT_MM
-            passes = distance_from_segment(*points[k - 1], *points[k], *start) <= SAME_POINT_MM
+            ends_here = compute_distance_from_segment(*start, *end, *points[k]) <= SAME_POINT_MM
+            passes = compute_distance_from_segment(*points[k - 1], *points[k], *start) <= SAME_POINT_MM
             if ends_here or passes:
                 reached = k
                 break

@@ -15,7 +15,7 @@ from math import inf, isclose
 
 from core.interpreter.dialects import SharedProgram
 from core.interpreter.restart.cut_record import CutRecord, record_all_cuts
-from core.interpreter.restart.path_distances import ON_PATH_MM
+from core.interpreter.restart.path_distances import PATH_TOLERANCE_MM
 from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
 from core.interpreter.restart.state_rebuild import make_lathe_restart, make_skipped_cuts_message
 from core.interpreter.restart.tool_retract import Retract, ToolSituation
@@ -103,7 +103,7 @@ class BlockSearch:
             return False
 
         run.stop_condition = see
-        for block in self._watched(run.generate_blocks(to_first_error=True)):
+        for block in self._watched(run.generate_blocks(stops_at_first_error=True)):
             made = block.n
             if isinstance(block.action, ProgramEnd):
                 run_visits.end_line = block.line
@@ -121,7 +121,7 @@ class BlockSearch:
             return not left
 
         run.stop_condition = stop
-        for block in self._watched(run.generate_blocks(to_first_error=True)):
+        for block in self._watched(run.generate_blocks(stops_at_first_error=True)):
             stand.process_block(block, uncut=interruption is not None and _is_uncut(block, interruption))
         stand.has_failed = run.has_errors or not run.has_stopped_before_line
         stand.blocking_reason = run.blocking_reason
@@ -304,7 +304,7 @@ def _is_uncut(block: Block, interruption: Interruption) -> bool:
     if block.n != interruption.block_number or block.travel is None:
         return block.n > interruption.last_complete_block
     travel = block.travel
-    if travel.length > ON_PATH_MM and _is_same_position(travel.start, travel.end):
+    if travel.length > PATH_TOLERANCE_MM and _is_same_position(travel.start, travel.end):
         return True
     return block.n > interruption.last_complete_block or not _is_same_position(
         interruption.machine_position, travel.end
@@ -315,7 +315,7 @@ def _is_same_position(one: Sequence[float], other: Sequence[float]) -> bool:
     """Return whether two machine positions agree, without regard to whole revolutions of the rotary axes."""
     offs = [b - a for a, b in zip(one, other, strict=False)]
     turned = [(each + 180.0) % 360.0 - 180.0 for each in offs[_LINEAR_AXIS_COUNT:]]
-    return all(abs(each) <= ON_PATH_MM for each in (*offs[:_LINEAR_AXIS_COUNT], *turned))
+    return all(abs(each) <= PATH_TOLERANCE_MM for each in (*offs[:_LINEAR_AXIS_COUNT], *turned))
 
 
 def _axis_positions(point: Checkpoint) -> tuple[float, ...]:

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 from core.geometry.rotation_frames import Vector, add_vectors, scale_vector
 from core.interpreter.restart.cut_record import CutRecord
 from core.interpreter.restart.path_distances import (
-    ON_PATH_MM,
-    distance_from_row,
-    distance_from_segment,
+    PATH_TOLERANCE_MM,
+    compute_distance_from_row,
+    compute_distance_from_segment,
     find_nearest_point,
 )
 from core.interpreter.restart.restart_point import Interruption, RestartPoint
@@ -76,7 +76,7 @@ class OperatorChoices:
     ``outside_speed_mm_s`` and ``inside_speed_mm_s`` are the speeds outside and inside the part.
     """
 
-    coolant: bool = True
+    uses_coolant: bool = True
     outside_speed_mm_s: float = 100 * _INCH / 60
     inside_speed_mm_s: float = 20 * _INCH / 60
 
@@ -98,7 +98,7 @@ def plan_retract_from_part(cut_record: CutRecord, present: PresentState) -> tupl
             present.axis_positions[0] - broken.machine_position[0],
             present.axis_positions[1] - broken.machine_position[1],
         )
-        <= ON_PATH_MM
+        <= PATH_TOLERANCE_MM
     ):
         found = _block_turned_mill(
             plan_retract(
@@ -146,7 +146,7 @@ def _find_stale_position(
     for each in range(row, min(row + _MAX_LATER_ROWS, len(cut_record))):
         if int(cut_record.tool_number[each]) != interruption.tool_number:
             break
-        if distance_from_row(cut_record, each, x, z) <= ON_PATH_MM:
+        if compute_distance_from_row(cut_record, each, x, z) <= PATH_TOLERANCE_MM:
             return ToolPosition(int(cut_record.block_number[each]), interruption.tool_number, x, z)
     return None
 
@@ -187,7 +187,7 @@ def _shorten_retract(retract: Retract, start: tuple[float, float], x: float, z: 
     """Return the remaining part of a retract along which the tool has already moved."""
     at = RetractLeg(*start)
     for number, hop in enumerate(retract.legs):
-        if distance_from_segment(at.x, at.z, hop.x, hop.z, x, z) <= ON_PATH_MM:
+        if compute_distance_from_segment(at.x, at.z, hop.x, hop.z, x, z) <= PATH_TOLERANCE_MM:
             return replace(retract, legs=retract.legs[number:])
         at = hop
     return Retract(ToolSituation.UNKNOWN, direction=retract.direction)
@@ -202,9 +202,9 @@ def make_lathe_start(
         modal = modal._replace(
             offset_c=_nearest_angle(point.c + modal.offset_c, present.axis_positions[2]) - point.c
         )
-    modal = modal._replace(coolant=modal.coolant and choices.coolant)
+    modal = modal._replace(coolant=modal.coolant and choices.uses_coolant)
     steps, skips = plan_lathe_approach(restart_point, present, choices), any(restart_point.skipped_lines)
-    return PassStart(point._replace(modal=modal), restart_point.line, approach=steps, skips_cuts=skips)
+    return PassStart(point._replace(modal=modal), restart_point.line_number, approach=steps, skips_cuts=skips)
 
 
 def plan_lathe_approach(
@@ -298,7 +298,7 @@ def _starts(found: RestartPoint, now: PresentState, choices: OperatorChoices) ->
         yield FunctionStep(SpindleRun(wanted.spindle * wanted.rpm, surface), text)
     for name in sorted(wanted.outputs - now.modal.outputs):
         yield FunctionStep(OutputSwitch(name, True), Message("{name} ON", name=name.upper()))
-    if wanted.coolant and choices.coolant:
+    if wanted.coolant and choices.uses_coolant:
         yield FunctionStep(CoolantSwitch(True), "M08")
 
 
@@ -398,7 +398,7 @@ class _MovePlan:
 
     @property
     def tool_axis(self) -> Vector:
-        return self.machine.tool_direction(self.axis_positions)
+        return self.machine.compute_tool_direction(self.axis_positions)
 
     def available_travel(self, start: Vector) -> float:
         """Return the possible travel from ``start`` along the tool axis away from the part, in mm.
@@ -421,11 +421,11 @@ def make_mill_start(
 ) -> PassStart:
     """Return the start of a pass at the restart line on a mill."""
     point, modal = restart_point.checkpoint, restart_point.checkpoint.modal
-    modal = modal._replace(coolant=modal.coolant and choices.coolant)
+    modal = modal._replace(coolant=modal.coolant and choices.uses_coolant)
     steps = tuple(_steps(restart_point, present, choices, kinematics))
     return PassStart(
         point._replace(modal=modal),
-        restart_point.line,
+        restart_point.line_number,
         approach=steps,
         skips_cuts=any(restart_point.skipped_lines),
     )

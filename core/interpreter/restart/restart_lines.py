@@ -16,7 +16,7 @@ _NOSE_ON, _NOSE_OFF = frozenset({41, 42}), 40
 
 
 class LineRange(NamedTuple):
-    """The lines ``first`` to ``last`` of a program, counted from 1.
+    """The lines ``first`` to ``last_line`` of a program, counted from 1.
 
     If a program cannot be restarted from these lines, ``reason`` is the template of the message. Its
     placeholders are ``line``, the restart line, and ``begin``, the line on which the contour, corner or
@@ -24,7 +24,7 @@ class LineRange(NamedTuple):
     """
 
     first: int
-    last: int
+    last_line: int
     reason: str = ""
     start_line: int = 0
 
@@ -60,7 +60,7 @@ class RestartSuitability:
                 lines_count=self.line_count,
             )
         for lines in self.unsuitable_ranges:
-            if lines.first <= line <= lines.last:
+            if lines.first <= line <= lines.last_line:
                 return lines.make_message(line)
         return "" if self._steps[line - 1] is not None else Message("Line {line} is empty.", line=line)
 
@@ -69,7 +69,7 @@ class RestartSuitability:
 
         Such a line may be executed several times or never.
         """
-        return any(each.first <= line <= each.last for each in self.repeated_ranges)
+        return any(each.first <= line <= each.last_line for each in self.repeated_ranges)
 
     def find_nearest(self, line: int, direction: int) -> int:
         """Return the nearest suitable line in one direction, or 0 without one.
@@ -81,9 +81,9 @@ class RestartSuitability:
             line = self._line_after_call(line)
         at = min(line + direction, self.line_count) if direction < 0 else line + direction
         while 1 <= at <= self.line_count:
-            lines = next((each for each in self._apart if each.first <= at <= each.last), None)
+            lines = next((each for each in self._apart if each.first <= at <= each.last_line), None)
             if lines is not None:
-                at = lines.last + 1 if direction > 0 else lines.first - 1
+                at = lines.last_line + 1 if direction > 0 else lines.first - 1
             elif self._steps[at - 1] is None:
                 at += direction
             else:
@@ -154,10 +154,10 @@ def _open(lines: ExecutableLines) -> Iterator[LineRange]:
                 yield _corner(corner, number)
                 corner = 0
             continue
-        if corner and step.moves_x_or_z:
+        if corner and step.has_x_or_z_move:
             yield _corner(corner, number)
             corner = 0
-        if step.moves_x_or_z and step.one_shot_code is None and ("R" in step.words or "C" in step.words):
+        if step.has_x_or_z_move and step.one_shot_code is None and ("R" in step.words or "C" in step.words):
             corner = number
         if step.flow_code == PLANE_FLOW:
             plane, done = _plane(step, number, plane)

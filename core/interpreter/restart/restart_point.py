@@ -65,7 +65,7 @@ class RestartPoint:
     ``skipped_lines`` are the first and last line of the cuts that the restart would skip, or (0, 0).
     """
 
-    line: int
+    line_number: int
     checkpoint: Checkpoint
     retract: Retract = field(default_factory=lambda: Retract(ToolSituation.CLEAR))
     cut_record: CutRecord | None = None
@@ -81,7 +81,7 @@ class RestartPoint:
 class RestartRefusal:
     """The reason why a restart at a line is not possible, with the nearest suitable lines (0 for none)."""
 
-    line: int
+    line_number: int
     why: str
     nearest_line_before: int = 0
     nearest_line_after: int = 0

@@ -25,7 +25,11 @@ from core.interpreter.restart.cut_record import (
     CutRecord,
     FloatArray,
 )
-from core.interpreter.restart.path_distances import ON_PATH_MM, distance_from_row, remove_detours
+from core.interpreter.restart.path_distances import (
+    PATH_TOLERANCE_MM,
+    compute_distance_from_row,
+    remove_detours,
+)
 from core.interpreter.restart.tool_retract import Retract, RetractLeg, ToolPosition, ToolSituation
 
 _END = 0.005  # mm; a row is complete within this distance of its end
@@ -71,9 +75,13 @@ def _nearest_row(cut_record: CutRecord, row: int, position: ToolPosition) -> tup
     """Return the row of the block that is nearest to the tool, and whether the tool is on that row."""
     rows = range(cut_record.find_first_row(row), row + 1)
     best = min(
-        rows, key=lambda each: (round(distance_from_row(cut_record, each, position.x, position.z), 4), -each)
+        rows,
+        key=lambda each: (
+            round(compute_distance_from_row(cut_record, each, position.x, position.z), 4),
+            -each,
+        ),
     )
-    return best, distance_from_row(cut_record, best, position.x, position.z) <= ON_PATH_MM
+    return best, compute_distance_from_row(cut_record, best, position.x, position.z) <= PATH_TOLERANCE_MM
 
 
 class _Search:
@@ -341,7 +349,7 @@ class _Search:
             unknown = isnan(segment.x0) or isnan(segment.z0)
             if other or unknown or segment.move_kind & (THREAD | STILL | FACE | SIDE):
                 return
-            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > ON_PATH_MM:
+            if before is not None and hypot(segment.x - before.x0, segment.z - before.z0) > PATH_TOLERANCE_MM:
                 return
             yield segment
             before = segment

@@ -17,7 +17,7 @@ from core.interpreter.omniturn.omniturn_program import Program, read_program
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.restart.cut_record import FACE, SIDE, CutRecord, record_all_cuts
 from core.interpreter.restart.loop_passes import LineVisits, find_line_visits
-from core.interpreter.restart.path_distances import ON_PATH_MM
+from core.interpreter.restart.path_distances import PATH_TOLERANCE_MM
 from core.interpreter.restart.restart_lines import RestartSuitability
 from core.interpreter.restart.restart_point import Interruption, LineVisit, RestartPoint, RestartRefusal
 from core.interpreter.restart.restart_retract import plan_retract
@@ -314,17 +314,26 @@ class OmniturnSearch:
 
 
 def make_lathe_restart(
-    line: int, point: Checkpoint, cut_record: CutRecord, visit: LineVisit, interruption: Interruption | None
+    line: int,
+    checkpoint: Checkpoint,
+    cut_record: CutRecord,
+    visit: LineVisit,
+    interruption: Interruption | None,
 ) -> RestartPoint | str:
     """Return the restart point with the retract from its start, or a message if no safe path exists."""
-    done = _complete_blocks(cut_record, interruption) if interruption is not None else point.blocks
-    back = _plan_retract(cut_record, point)
-    if back.situation is ToolSituation.CLEAR or (back.is_known and point.blocks <= done):
+    done = _complete_blocks(cut_record, interruption) if interruption is not None else checkpoint.blocks
+    back = _plan_retract(cut_record, checkpoint)
+    if back.situation is ToolSituation.CLEAR or (back.is_known and checkpoint.blocks <= done):
         return RestartPoint(
-            line, point, back, cut_record, visit, skipped_lines=_skipped_lines(cut_record, done, point.blocks)
+            line,
+            checkpoint,
+            back,
+            cut_record,
+            visit,
+            skipped_lines=_skipped_lines(cut_record, done, checkpoint.blocks),
         )
-    if point.blocks > done:
-        return make_skipped_cuts_message(line, *_skipped_lines(cut_record, done, point.blocks))
+    if checkpoint.blocks > done:
+        return make_skipped_cuts_message(line, *_skipped_lines(cut_record, done, checkpoint.blocks))
     how = _RETRACT_TEXTS.get(back.situation, "")
     return Message(
         "At the start of line {line}, the tool is inside the part, and a safe path to that "
@@ -366,9 +375,11 @@ def _complete_blocks(cut_record: CutRecord, interruption: Interruption) -> int:
         return interruption.last_complete_block
     x, z = interruption.machine_position[0] - off[0], interruption.machine_position[1] - off[1]
     feeds = bool(int(cut_record.move_kind[row]) & 1)
-    at_end = hypot(x - float(cut_record.x[row]), z - float(cut_record.z[row])) <= ON_PATH_MM
+    at_end = hypot(x - float(cut_record.x[row]), z - float(cut_record.z[row])) <= PATH_TOLERANCE_MM
     begin = cut_record.get_end_points(cut_record.find_first_row(row))
-    closed = hypot(begin[0] - float(cut_record.x[row]), begin[1] - float(cut_record.z[row])) <= ON_PATH_MM
+    closed = (
+        hypot(begin[0] - float(cut_record.x[row]), begin[1] - float(cut_record.z[row])) <= PATH_TOLERANCE_MM
+    )
     milled = bool(int(cut_record.move_kind[row]) & (SIDE | FACE))
     return (
         interruption.block_number - 1

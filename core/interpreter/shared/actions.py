@@ -15,9 +15,9 @@ class SpindleRun(PlainValue):
 
     __slots__ = __match_args__ = ("rpm", "surface_speed")
 
-    def __init__(self, rpm: float, surface_speed: float | None = None) -> None:
+    def __init__(self, rpm: float, surface_speed_mm_s: float | None = None) -> None:
         self.rpm: Final = rpm
-        self.surface_speed: Final = surface_speed
+        self.surface_speed: Final = surface_speed_mm_s
 
 
 class SpindleStop(PlainValue):

@@ -8,7 +8,7 @@ from math import ceil, dist
 from typing import NamedTuple
 
 from core.geometry.contour_offset import RoughingArea, ZSpan
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, intersections, min_distance
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, compute_min_distance, find_intersections
 
 _ROUNDING_TOLERANCE = 1e-6  # of a pass; tolerance for the rounding of decimal fractions
 
@@ -44,11 +44,11 @@ _CLEARANCE_TOLERANCE_MM = 0.002  # mm; tolerance of the clearance between a move
 _TOUCHING = 0.02  # mm; tolerance at the ends of moves, which end on the contour if U is 0
 
 
-MAX_ELEMENTS = 2_000
-MAX_COMPARISONS = 200_000  # elements times passes; takes a few seconds
+MAX_ELEMENT_COUNT = 2_000
+MAX_COMPARISON_COUNT = 200_000  # elements times passes; takes a few seconds
 
 
-class StartTooCloseError(Exception):
+class ContourClearanceError(Exception):
     """Error for an approach or retract that would come closer to the contour than permitted."""
 
 
@@ -96,7 +96,7 @@ class RoughingPlanner:
         """
         path = self._area.path
         if is_reversed:
-            path = [element.reversed() for element in reversed(path)]
+            path = [element.make_reversed() for element in reversed(path)]
         begun = len(self.moves)
         here = self._at
         self._approach(path[0].start, front=not is_reversed)
@@ -176,7 +176,7 @@ class RoughingPlanner:
         for move in moves:
             there = move.x, move.z
             if dist(here, there) > _SAME and self._is_too_close(here, there):
-                raise StartTooCloseError
+                raise ContourClearanceError
             here = there
 
     def _is_too_close(self, start: Point, end: Point) -> bool:
@@ -187,15 +187,16 @@ class RoughingPlanner:
         left, line = self._area.allowance_mm, Line(start, end)
         if left > _CLEARANCE_TOLERANCE_MM:
             return any(
-                min_distance(line, element) < left - _CLEARANCE_TOLERANCE_MM for element in self._area.contour
+                compute_min_distance(line, element) < left - _CLEARANCE_TOLERANCE_MM
+                for element in self._area.contour
             )
         depth, lengths = max(start[0], end[0]) - _TOUCHING, (start[1], end[1])
         if line.length <= 2 * _TOUCHING:
             return False
         if _covering(self._area.find_spans(depth), max(min(lengths), 0.0), max(lengths)):
             return False
-        inner = Line(line.point_at(_TOUCHING), line.point_at(line.length - _TOUCHING))
-        return any(intersections(inner, element) for element in self._area.contour)
+        inner = Line(line.get_point(_TOUCHING), line.get_point(line.length - _TOUCHING))
+        return any(find_intersections(inner, element) for element in self._area.contour)
 
 
 def _covering(spans: list[ZSpan], low: float, high: float) -> bool:
@@ -222,7 +223,7 @@ class ContourFrame(NamedTuple):
     def transform_contour(self, contour: Sequence[Element]) -> list[Element]:
         """Return the contour in depth and length from the start point, oriented with the tool on its left."""
         elements = [self._element(element) for element in contour]
-        return [element.reversed() for element in reversed(elements)] if self.is_reversed else elements
+        return [element.make_reversed() for element in reversed(elements)] if self.is_reversed else elements
 
     def transform_move(self, move: CycleMove) -> CycleMove:
         """Convert a motion from depth and length to the program frame."""
@@ -249,12 +250,12 @@ class ContourFrame(NamedTuple):
         return self.start[0] + point[0] * self.x_sign, self.start[1] + point[1] * self.z_sign
 
 
-def make_contour_frame(start: Point, first: Point, last: Point) -> ContourFrame:
-    """Return the frame of a contour from ``first`` to ``last``.
+def make_contour_frame(start: Point, first_point: Point, last_point: Point) -> ContourFrame:
+    """Return the frame of a contour from ``first_point`` to ``last_point``.
 
     Both points are in the same quadrant of ``start``.
     """
-    a, b = _off(start, first), _off(start, last)
+    a, b = _off(start, first_point), _off(start, last_point)
     x = 1.0 if a[0] + b[0] > 0 else -1.0
     z = 1.0 if a[1] + b[1] > 0 else -1.0
     # The tool is on the left of the contour if its first end is closer to the line along X through the start.

@@ -19,8 +19,8 @@ from core.geometry.lines_and_arcs import (
     Element,
     Line,
     Point,
+    compute_min_distance,
     make_arc,
-    min_distance,
     shift_element,
 )
 from core.interpreter.shared.actions import SpindleRun
@@ -32,7 +32,7 @@ def make_element(block: Block) -> Element:
     """Return the line or arc of a move in the program frame, including the secondary offset."""
     start, end = (block.x0, block.z0), (block.x, block.z)
     if block.kind is BlockKind.ARC:
-        return make_arc(start, end, (block.cx, block.cz), clockwise=block.clockwise)
+        return make_arc(start, end, (block.cx, block.cz), is_clockwise=block.clockwise)
     return Line(start, end)
 
 
@@ -89,19 +89,19 @@ CONTOUR_KINDS = STRAIGHT_KINDS | {BlockKind.ARC}
 
 
 CornerType = TypeVar("CornerType")
-MarkType = TypeVar("MarkType")
+MarkerType = TypeVar("MarkerType")
 
 
 @dataclass(slots=True)
-class BufferedMove(Generic[CornerType, MarkType]):
+class BufferedMove(Generic[CornerType, MarkerType]):
     """A buffered move with a corner, and the blocks between this move and the next move."""
 
     block: Block
     corner: CornerType
-    blocks_between: list[Block | MarkType] = field(default_factory=list)
+    blocks_between: list[Block | MarkerType] = field(default_factory=list)
 
 
-class CornerStage(ABC, Generic[CornerType, MarkType]):
+class CornerStage(ABC, Generic[CornerType, MarkerType]):
     """Stage that buffers a move with a corner until the next move is known, and then trims both moves.
 
     Markers can be among the blocks and are passed through unchanged.
@@ -109,18 +109,20 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
 
     def __init__(self, moves: AdjustedMoveFactory) -> None:
         self._moves = moves
-        self._held: BufferedMove[CornerType, MarkType] | None = None
+        self._held: BufferedMove[CornerType, MarkerType] | None = None
 
     @property
     def has_buffered_move(self) -> bool:
         """Return whether a move is buffered until the next move is known."""
         return self._held is not None
 
-    def discard(self) -> None:
+    def discard_move(self) -> None:
         """Discard the buffered move after an error."""
         self._held = None
 
-    def accept(self, item: Block | MarkType, corner: CornerType | None) -> Iterator[Block | MarkType]:
+    def accept_item(
+        self, item: Block | MarkerType, corner: CornerType | None
+    ) -> Iterator[Block | MarkerType]:
         """Accept a block or marker, and yield all items that later items cannot change.
 
         Raises ProgramError if the corner is not possible.
@@ -138,8 +140,8 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
             yield from self._cut(held, item, corner)
 
     def _cut(
-        self, held: BufferedMove[CornerType, MarkType], after: Block, corner: CornerType | None
-    ) -> Iterator[Block | MarkType]:
+        self, held: BufferedMove[CornerType, MarkerType], after: Block, corner: CornerType | None
+    ) -> Iterator[Block | MarkerType]:
         # Convert the second move to the frame of the first move, because an offset may have changed between
         # them.
         dx, dz = after.offset_x - held.block.offset_x, after.offset_z - held.block.offset_z
@@ -155,10 +157,10 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
                     self._moves.make_motionless_block(each, between.end) if isinstance(each, Block) else each
                 )
             after = self._moves.replace_element(after, shift_element(rest, -dx, -dz))
-        yield from self.accept(after, corner)
+        yield from self.accept_item(after, corner)
 
     def _made(
-        self, held: BufferedMove[CornerType, MarkType], after: Block, last: Element
+        self, held: BufferedMove[CornerType, MarkerType], after: Block, last: Element
     ) -> Sequence[Element] | None:
         if not self._forms_corner(held, after):
             return None
@@ -174,18 +176,20 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
         except CornerError as problem:
             raise self._make_corner_error(held, after, problem) from None
 
-    def _inserted(self, held: BufferedMove[CornerType, MarkType], between: Element) -> Block:
+    def _inserted(self, held: BufferedMove[CornerType, MarkerType], between: Element) -> Block:
         return self._moves.insert_move(held.block, between)
 
     @abstractmethod
-    def _keeps_waiting(self, buffered: BufferedMove[CornerType, MarkType], item: Block | MarkType) -> bool:
+    def _keeps_waiting(
+        self, buffered: BufferedMove[CornerType, MarkerType], item: Block | MarkerType
+    ) -> bool:
         """Return whether the corner remains open because the item is not a move.
 
         Raises ProgramError if the item is not allowed at this point.
         """
 
     @abstractmethod
-    def _forms_corner(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> bool:
+    def _forms_corner(self, buffered: BufferedMove[CornerType, MarkerType], after: Block) -> bool:
         """Return whether the next block forms a corner with the buffered move.
 
         Returns False if no corner is programmed. Raises ProgramError if the corner is not possible.
@@ -199,18 +203,18 @@ class CornerStage(ABC, Generic[CornerType, MarkType]):
         """
 
     @abstractmethod
-    def _report_straight(self, buffered: BufferedMove[CornerType, MarkType], after: Block) -> None:
+    def _report_straight(self, buffered: BufferedMove[CornerType, MarkerType], after: Block) -> None:
         """Report that both moves have the same direction."""
 
     @abstractmethod
     def _make_size_error(
-        self, buffered: BufferedMove[CornerType, MarkType], block: Block, needed_mm: float
+        self, buffered: BufferedMove[CornerType, MarkerType], block: Block, needed_mm: float
     ) -> ProgramError:
         """Return the error for a corner that needs ``needed_mm`` of the move ``block``."""
 
     @abstractmethod
     def _make_corner_error(
-        self, buffered: BufferedMove[CornerType, MarkType], after: Block, problem: CornerError
+        self, buffered: BufferedMove[CornerType, MarkerType], after: Block, problem: CornerError
     ) -> ProgramError:
         """Return the error for a corner that is not possible."""
 
@@ -238,7 +242,7 @@ def is_gouging(path: Element, contour: Iterable[Element], nose_radius_mm: float)
             else nose_radius_mm - OFFSET_TOLERANCE_MM
         )
         far += element.length
-        if min_distance(path, element) < least - SAME_POINT_TOLERANCE_MM:
+        if compute_min_distance(path, element) < least - SAME_POINT_TOLERANCE_MM:
             return True
     return False
 
@@ -287,7 +291,7 @@ class ContourStage(ABC):
 
     def _remaining_pieces(self) -> list[OffsetPiece]:
         """Return the remaining pieces after the last move. Raises ProgramError if a move cannot be offset."""
-        return self._sure(self._offset.finish())
+        return self._sure(self._offset.finish_contour())
 
     def _sure(self, pieces: Iterator[OffsetPiece]) -> list[OffsetPiece]:
         try:

@@ -64,7 +64,7 @@ class ControlFlow(Generic[FrameType]):
         """Return whether a program from another file is active."""
         return bool(self.active_frame.call_line)
 
-    def enter(self, frame: FrameType) -> None:
+    def enter_subprogram(self, frame: FrameType) -> None:
         """Continue execution in a subprogram."""
         self.active_frame.next_index = self.next_index
         self.frames.append(frame)

@@ -10,8 +10,8 @@ from dataclasses import replace
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import fill_template
 
-MAX_PER_KIND = 100
-MAX_COUNTED = 10_000
+MAX_FINDINGS_PER_KIND = 100
+MAX_REPEAT_COUNT = 10_000
 
 REPEATABLE_CODES = frozenset({"finer-than-step", "dwell-too-short", "comment-in-loop", "n-word"})
 """What is wrong in the same way in line after line: told once, where it is first, with its count."""
@@ -66,14 +66,14 @@ class DiagnosticLog:
     @property
     def is_full(self) -> bool:
         """Return whether the log contains so many errors that the pass can end."""
-        return len(self.error_findings) >= MAX_PER_KIND
+        return len(self.error_findings) >= MAX_FINDINGS_PER_KIND
 
     @property
     def is_muted(self) -> bool:
         """Return whether the log has reached its limit of warnings and notes."""
-        return self._others >= MAX_PER_KIND or self._counted >= MAX_COUNTED
+        return self._others >= MAX_FINDINGS_PER_KIND or self._counted >= MAX_REPEAT_COUNT
 
-    def add(self, finding: Diagnostic) -> None:
+    def add_finding(self, finding: Diagnostic) -> None:
         """Store a finding, unless the log already contains it or the limit of its kind is reached."""
         key = (finding.line, finding.code, finding.column)
         if key in self._known:
@@ -123,7 +123,9 @@ class DiagnosticLog:
         self._others += 1
         self.findings.append(finding)
 
-    def warn(self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object) -> None:
+    def add_warning(
+        self, line: int, column: int, code: str, text: str, hint: str = "", /, **values: object
+    ) -> None:
         """Store a warning.
 
         ``values`` are the values for the placeholders of ``text`` and ``hint``.
@@ -131,4 +133,4 @@ class DiagnosticLog:
         found = Diagnostic(
             line, column, Severity.WARNING, code, fill_template(text, values), fill_template(hint, values)
         )
-        self.add(found)
+        self.add_finding(found)

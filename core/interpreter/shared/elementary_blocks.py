@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple, overload
 import numpy as np
 import numpy.typing as npt
 
-from core.geometry.lines_and_arcs import arc_extent, arc_length
+from core.geometry.lines_and_arcs import compute_arc_extent, compute_arc_length
 from core.interpreter.shared.actions import Action, SpindleRun
 from core.interpreter.shared.modal_state import ModalState
 
@@ -125,7 +125,7 @@ class Block:
             x, z = self.modal.secondary_x, self.modal.secondary_z
             return low_x + x, high_x + x, low_z + z, high_z + z
         if self.kind is BlockKind.ARC:
-            return arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
+            return compute_arc_extent(self.x0, self.z0, self.x, self.z, self.cx, self.cz, self.clockwise)
         return self.x, self.x, self.z, self.z
 
     def compute_machine_bounds(self) -> tuple[tuple[float, float], ...]:
@@ -150,7 +150,7 @@ class Block:
             return self.travel.length
         if self.kind is BlockKind.ARC:
             ends = (self.x0, self.z0), (self.x, self.z)
-            return arc_length(*ends, (self.cx, self.cz), clockwise=self.clockwise)
+            return compute_arc_length(*ends, (self.cx, self.cz), is_clockwise=self.clockwise)
         length_mm = hypot(self.x - self.x0, self.z - self.z0) if self.plane is None else self.plane.length
         return length_mm or abs(self.c - self.c0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from core.geometry.rotation_frames import exact_cos_sin
+from core.geometry.rotation_frames import compute_exact_cos_sin
 from core.language.diagnostics import ProgramError
 from core.language.formulas import Formula, Number, Operation, Parameter
 from core.message import Message
@@ -49,7 +49,7 @@ def _undefined(formula: Operation, operands: list[float]) -> str:
 
 
 def _tangent(degrees: float) -> float:
-    cosine, sine = exact_cos_sin(degrees)
+    cosine, sine = compute_exact_cos_sin(degrees)
     return sine / cosine
 
 
@@ -75,8 +75,8 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "negative": lambda a: -a + 0.0,
     "square": lambda a: a * a,
     "square root": math.sqrt,
-    "sine": lambda a: exact_cos_sin(a)[1],
-    "cosine": lambda a: exact_cos_sin(a)[0],
+    "sine": lambda a: compute_exact_cos_sin(a)[1],
+    "cosine": lambda a: compute_exact_cos_sin(a)[0],
     "tangent": _tangent,
     "arc sine": lambda a: math.degrees(math.asin(a)),
     "arc cosine": lambda a: math.degrees(math.acos(a)),

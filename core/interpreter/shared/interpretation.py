@@ -17,11 +17,11 @@ from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.message import Message
 
-MAX_BLOCKS = 5_000_000
-MAX_LINES = 10_000_000
+MAX_BLOCK_COUNT = 5_000_000
+MAX_LINE_COUNT = 10_000_000
 """More of either is made by no program that anybody means to run."""
 
-MAX_LINES_WITHOUT_BLOCK = 200_000
+MAX_LINE_COUNT_WITHOUT_BLOCK = 200_000
 """A loop that reckons so long and moves nothing never ends."""
 
 MAX_CALL_DEPTH = 16
@@ -70,11 +70,11 @@ class InterpreterPass(ABC):
         )
 
     @abstractmethod
-    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Generate the elementary blocks of the program. Call this method only once.
 
         The blocks end at the first error. By default, the rest of the program is then checked for errors
-        before the iterator ends. With ``to_first_error``, the iterator ends immediately.
+        before the iterator ends. With ``stops_at_first_error``, the iterator ends immediately.
         """
 
     def generate_series(self) -> Iterator[Block | StraightMoveSeries]:
@@ -137,10 +137,10 @@ class InterpreterPass(ABC):
         self._stopped = True
         text = Message(
             "The program produces more than {most_blocks} blocks or executes more than {most_lines} lines.",
-            most_blocks=f"{MAX_BLOCKS:,}",
-            most_lines=f"{MAX_LINES:,}",
+            most_blocks=f"{MAX_BLOCK_COUNT:,}",
+            most_lines=f"{MAX_LINE_COUNT:,}",
         )
-        self._log.add(make_error_diagnostic(line, 0, "too-many-blocks", text, hint))
+        self._log.add_finding(make_error_diagnostic(line, 0, "too-many-blocks", text, hint))
 
 
 class RejectedPass(InterpreterPass):
@@ -152,9 +152,9 @@ class RejectedPass(InterpreterPass):
     def __init__(self, message: str, hint: str) -> None:
         super().__init__(DiagnosticLog([make_error_diagnostic(0, 0, "machine-kind", message, hint)]))
 
-    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Return an empty iterator, because the program cannot run."""
-        del to_first_error
+        del stops_at_first_error
         return iter(())
 
 
@@ -167,31 +167,31 @@ class NumberedLine(Protocol):
         ...
 
 
-Line = TypeVar("Line", bound=NumberedLine)
+LineType = TypeVar("LineType", bound=NumberedLine)
 
 
-class LinePass(InterpreterPass, Generic[Line]):
+class LinePass(InterpreterPass, Generic[LineType]):
     """Base class of passes that execute a program line by line, up to the limits of a program."""
 
     def __init__(self, log: DiagnosticLog) -> None:
         super().__init__(log)
         self._approach: Iterator[Block] = iter(())
-        self._taken: Line | None = None  # the line at which block search stopped
-        self._left = MAX_LINES
+        self._taken: LineType | None = None  # the line at which block search stopped
+        self._left = MAX_LINE_COUNT
         self._made = 0  # number of blocks so far
 
     @abstractmethod
-    def _can_stop(self, line: Line) -> bool:
+    def _can_stop(self, line: LineType) -> bool:
         """Return whether block search may stop before this line.
 
         Block search stops only before lines of the main file that have a function.
         """
 
     @abstractmethod
-    def _report_limit(self, line: Line) -> None:
+    def _report_limit(self, line: LineType) -> None:
         """Report that the program exceeds the maximum number of blocks or lines."""
 
-    def _lines(self, read_next: Callable[[], Line | None]) -> Iterator[Line]:
+    def _lines(self, read_next: Callable[[], LineType | None]) -> Iterator[LineType]:
         """Yield the lines that ``read_next`` returns, until block search stops or a limit is exceeded."""
         idle = blocks = 0
         while True:
@@ -203,7 +203,7 @@ class LinePass(InterpreterPass, Generic[Line]):
                 return
             self._left -= 1
             idle, blocks = (idle + 1, blocks) if self._made == blocks else (0, self._made)
-            if self._left < 0 or idle > MAX_LINES_WITHOUT_BLOCK or blocks >= MAX_BLOCKS:
+            if self._left < 0 or idle > MAX_LINE_COUNT_WITHOUT_BLOCK or blocks >= MAX_BLOCK_COUNT:
                 self._report_limit(line)
                 self._left = -1
                 return
@@ -211,12 +211,12 @@ class LinePass(InterpreterPass, Generic[Line]):
 
 
 def generate_lathe_approach(
-    pass_start: PassStart, modal: ModalState, start: Sequence[float], rpm_at: Callable[[float], float]
+    pass_start: PassStart, modal: ModalState, start: Sequence[float], compute_rpm: Callable[[float], float]
 ) -> Iterator[Block]:
     """Yield the blocks of the approach.
 
     The blocks are numbered so that later blocks have the same numbers as in a full run. ``start`` is the
-    present machine position. ``rpm_at`` returns the commanded spindle speed at a radius in the program
+    present machine position. ``compute_rpm`` returns the commanded spindle speed at a radius in the program
     frame.
     """
     point, offsets = pass_start.checkpoint, (modal.offset_x, modal.offset_z, modal.offset_c)
@@ -236,7 +236,7 @@ def generate_lathe_approach(
             case FunctionStep():
                 action = step.action
                 if isinstance(action, SpindleRun | SpindleStop):
-                    turning = rpm_at(at[0]) if isinstance(action, SpindleRun) else 0.0
+                    turning = compute_rpm(at[0]) if isinstance(action, SpindleRun) else 0.0
         rpm = copysign(feed / 6.0, at[2] - c0) if kind is BlockKind.ROTATE else turning
         css = modal.surface_speed if modal.css and turning else None
         yield Block(

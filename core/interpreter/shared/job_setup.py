@@ -66,10 +66,10 @@ class ZeroOffset:
 class ControlLimits:
     """Limits and capabilities of the machine, as specified in the machine file."""
 
-    max_feed: float = 300 * 25.4 / 60  # mm/s
+    max_feed_mm_s: float = 300 * 25.4 / 60  # mm/s
     max_rpm: float = 3500.0
     resolution_mm: float = 0.00005 * 25.4  # mm, radius
-    z_acceleration: float = 120 * 25.4  # mm/s² of Z; determines the run-up of a thread
+    z_acceleration_mm_s2: float = 120 * 25.4  # mm/s² of Z; determines the run-up of a thread
     can_unclamp_while_turning: bool = True
     can_start_with_collet_open: bool = False
     m_outputs: Mapping[int, tuple[str, bool]] = field(default_factory=dict)  # M code → output, state
@@ -77,10 +77,10 @@ class ControlLimits:
         frozenset()
     )  # M codes that the machine file defines but does not enable
     ignored_m_codes: frozenset[int] = frozenset()  # M codes that the machine file ignores
-    c_enabled: bool = True  # the spindle can be used as the C axis
+    is_c_enabled: bool = True  # the spindle can be used as the C axis
     has_c_feedback: bool = False  # the drive reports that C is in position
     c_max_rpm: float = 200.0
-    c_acceleration: float = 3600.0  # degrees/s²
+    c_acceleration_deg_s2: float = 3600.0  # degrees/s²
     c_resolution_deg: float = 0.02  # degrees
     is_c_modulo: bool = True  # SINUMERIK shows C from 0 to below 360, otherwise from -360 to +360
     is_c_linear: bool = False  # the third axis is linear: mm instead of degrees
@@ -113,7 +113,7 @@ class Setup:
 
     tools: Mapping[int, ToolOffset] = field(
         default_factory=dict
-    )  # by T; edges by ``tool_edges.make_edge_key``
+    )  # by T; edges by ``tool_edges.make_row_number``
     secondary: Mapping[int, SecondaryOffset] = field(default_factory=dict)
     zero: Mapping[int, ZeroOffset] = field(default_factory=dict)  # 54 to 59; missing offsets are 0
     r: Mapping[int, float] = field(default_factory=dict)  # R parameters of SINUMERIK, as set by the operator

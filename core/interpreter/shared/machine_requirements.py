@@ -89,7 +89,7 @@ def format_binding_lines(code: int) -> Message:
     )
 
 
-def find_requirements(
+def list_requirements(
     blocks: Iterable[Block], previous_block: Block | None = None
 ) -> Iterator[MachineRequirement]:
     """Yield the requirements of these blocks; ``previous_block`` precedes the first block."""

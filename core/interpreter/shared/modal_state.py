@@ -74,21 +74,21 @@ class ModalState(NamedTuple):
     # SINUMERIK: active D, 0 without a tool offset; ``tool`` is then the row of the cutting edge
     edge: int | None = None
     settable: int = 0  # SINUMERIK: 54 to 59, 0 under G500
-    settable_x: float = 0.0  # settable offset, mm; the offset of C is in offset_c
-    settable_z: float = 0.0
+    zero_offset_x: float = 0.0  # settable offset, mm; the offset of C is in offset_c
+    zero_offset_z: float = 0.0
     zero_x: float = 0.0  # SINUMERIK: TRANS and ATRANS, mm
     zero_z: float = 0.0
     is_c_linear: bool = False  # the third axis is in mm
     is_c_modulo: bool = False  # C is shown from 0 to below 360 in this program
     mill: VirtualMill | None = None  # between (~PLXC) or (~PLZC) and (END)
 
-    def format_length(self, mm: float) -> str:
+    def format_length(self, length_mm: float) -> str:
         """Return a length (mm) as text in the active unit of the program."""
-        return units.format_length(mm, metric=self.metric)
+        return units.format_length(length_mm, is_metric=self.metric)
 
-    def format_feed(self, value: float, *, per_rev: bool) -> str:
+    def format_feed(self, value: float, *, is_per_rev: bool) -> str:
         """Return a feed (mm/s or mm/rev) as text in the active unit of the program."""
-        return units.format_feed(value, per_rev=per_rev, metric=self.metric)
+        return units.format_feed(value, is_per_rev=is_per_rev, is_metric=self.metric)
 
     @property
     def active_surface_speed(self) -> float | None:
@@ -118,9 +118,9 @@ class ModalState(NamedTuple):
     @property
     def drawing_zero_x(self) -> float:
         """Return machine X of the drawing zero in mm, which is the sum of tool offset and settable offset."""
-        return self.settable_x if self.edge == 0 else self.tool_x + self.settable_x
+        return self.zero_offset_x if self.edge == 0 else self.tool_x + self.zero_offset_x
 
     @property
     def drawing_zero_z(self) -> float:
         """Return machine Z of the drawing zero in mm, which is the sum of tool offset and settable offset."""
-        return self.settable_z if self.edge == 0 else self.tool_z + self.settable_z
+        return self.zero_offset_z if self.edge == 0 else self.tool_z + self.zero_offset_z

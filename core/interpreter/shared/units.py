@@ -15,23 +15,25 @@ def get_mm_per_unit(*, is_metric: bool) -> float:
     return 1.0 if is_metric else MM_PER_INCH
 
 
-def format_length(mm: float, *, metric: bool) -> str:
+def format_length(length_mm: float, *, is_metric: bool) -> str:
     """Return a length in mm as text with its unit.
 
     The text has five decimal places in inches and four in millimeters.
     """
     return (
-        Message("{unit} mm", unit=f"{mm:.4f}") if metric else Message("{mm} in", mm=f"{mm / MM_PER_INCH:.5f}")
+        Message("{unit} mm", unit=f"{length_mm:.4f}")
+        if is_metric
+        else Message("{mm} in", mm=f"{length_mm / MM_PER_INCH:.5f}")
     )
 
 
-def format_feed(value: float, *, per_rev: bool, metric: bool) -> str:
+def format_feed(value: float, *, is_per_rev: bool, is_metric: bool) -> str:
     """Return a feed (mm/s or mm/rev) as text in the program's unit."""
-    number = value / get_mm_per_unit(is_metric=metric) * (1 if per_rev else 60)
+    number = value / get_mm_per_unit(is_metric=is_metric) * (1 if is_per_rev else 60)
     digits = f"{number:.5f}".rstrip("0").rstrip(".")
     return Message(
         "{digits} {ending}/{choice}",
         digits=digits,
-        ending="mm" if metric else "in",
-        choice="rev" if per_rev else "min",
+        ending="mm" if is_metric else "in",
+        choice="rev" if is_per_rev else "min",
     )

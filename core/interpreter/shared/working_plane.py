@@ -68,5 +68,5 @@ class PlanePosition:
     def convert_to_workpiece_system(self) -> PlanePosition:
         """Return the same position converted to the workpiece system."""
         system = self.system.make_workpiece_system()
-        end = system.transform.to_frame_point(self.machine_position)
+        end = system.transform.convert_to_frame_point(self.machine_position)
         return replace(self, start=end, end=end, system=system)

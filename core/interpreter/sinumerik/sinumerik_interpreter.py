@@ -14,7 +14,12 @@ from core.interpreter.shared.checkpoint import Checkpoint, PassStart
 from core.interpreter.shared.control_flow import ENDLESS_LOOP_CODE
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block
-from core.interpreter.shared.interpretation import MAX_BLOCKS, MAX_LINES, LinePass, generate_lathe_approach
+from core.interpreter.shared.interpretation import (
+    MAX_BLOCK_COUNT,
+    MAX_LINE_COUNT,
+    LinePass,
+    generate_lathe_approach,
+)
 from core.interpreter.shared.job_setup import Setup
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.sinumerik.consequent_faults import MissingAxes, depends_on_state
@@ -31,9 +36,9 @@ from core.interpreter.sinumerik.flow.block_search import (
     make_checkpoint,
     restore_state,
 )
-from core.interpreter.sinumerik.flow.subprogram_flow import Flow, ends_main_program
+from core.interpreter.sinumerik.flow.subprogram_flow import Flow, is_main_program_end
 from core.interpreter.sinumerik.flow.variable_assignments import set_parameters
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corner, SinumerikCornerStage, make_corner
+from core.interpreter.sinumerik.motion.chamfers_and_roundings import Corner, SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.fixed_points import make_fixed_point_move, make_home_move
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.radius_compensation import CompensationStage
@@ -59,7 +64,7 @@ from core.interpreter.sinumerik.setup.spindle_and_dwell import (
     execute_spindle_words,
     has_spindle_words,
     make_dwell_block,
-    separate_live_words,
+    separate_live_tool_words,
     switch_live_tool,
 )
 from core.interpreter.sinumerik.setup.tools_and_edges import execute_tool_words
@@ -114,7 +119,7 @@ class Interpreter(LinePass[LexedBlock]):
         """Return the modal state after the last generated block."""
         return self._state.modal
 
-    def generate_blocks(self, *, to_first_error: bool = False) -> Iterator[Block]:
+    def generate_blocks(self, *, stops_at_first_error: bool = False) -> Iterator[Block]:
         """Generate the elementary blocks of the program. Call this method only once."""
         yield from self._approach
         for block in self._pass():
@@ -122,7 +127,7 @@ class Interpreter(LinePass[LexedBlock]):
                 self._made += 1
                 block.n = self._made
                 yield block
-            elif to_first_error:
+            elif stops_at_first_error:
                 return
 
     # --- start from a saved state: MDI and block search
@@ -172,7 +177,7 @@ class Interpreter(LinePass[LexedBlock]):
         if pass_start.is_mdi_line:
             problem = check_single_block(self._source, self._setup.limits.third_axis_name)
             if problem is not None:
-                self._log.add(problem)
+                self._log.add_finding(problem)
                 self._flow.end_program()
         state = self._state
         self._approach = generate_lathe_approach(
@@ -209,7 +214,7 @@ class Interpreter(LinePass[LexedBlock]):
                 self._flow.execute_control_line(line, line.control_statement, self._state)
                 return
             statement = make_statement(line)
-            ends = ends_main_program(statement, is_in_subprogram=self._flow.is_in_subprogram)
+            ends = is_main_program_end(statement, is_in_subprogram=self._flow.is_in_subprogram)
             yield from self._blocks_with_corners(statement)
             if state_call := self._modal_call(statement):
                 yield from self._call(state_call, modal=True)
@@ -309,18 +314,18 @@ class Interpreter(LinePass[LexedBlock]):
     def _apply_stages(self, block: Block, corner: Corner | None) -> Iterator[Block]:
         """Yield the blocks that result from the corner and compensation stages of the active plane."""
         if self._active_transformation is not None:
-            yield from self._active_transformation.accept(block, corner)
+            yield from self._active_transformation.accept_block(block, corner)
             return
-        for cut in self._corners.accept(block, corner):
-            yield from self._compensation.accept(cut)
+        for cut in self._corners.accept_item(block, corner):
+            yield from self._compensation.accept_block(cut)
 
     def _flush(self) -> Iterator[Block]:
         """Yield the buffered blocks if no move follows their corner."""
         if self._active_transformation is not None:
-            yield from self._active_transformation.flush()
+            yield from self._active_transformation.flush_corner()
             return
-        for cut in self._corners.finish():
-            yield from self._compensation.accept(cut)
+        for cut in self._corners.flush_at_program_end():
+            yield from self._compensation.accept_block(cut)
 
     def _blocks(self, statement: Statement) -> Iterator[Block]:
         """Yield the blocks of a statement in the order of execution.
@@ -336,7 +341,7 @@ class Interpreter(LinePass[LexedBlock]):
             else:
                 execute_frame(state, statement)
             return
-        separate_live_words(state, statement)
+        separate_live_tool_words(state, statement)
         check_m_functions(state, statement, self._lacking)
         if statement.g_words:
             execute_modes(state, statement)
@@ -427,8 +432,8 @@ class Interpreter(LinePass[LexedBlock]):
         try:
             yield from self._flush()
             if self._active_transformation is not None:
-                yield from self._active_transformation.finish()
-            yield from self._compensation.finish()
+                yield from self._active_transformation.flush_at_program_end()
+            yield from self._compensation.check_program_end()
         except ProgramError as problem:
             self._log_error(problem.diagnostic)
 
@@ -436,21 +441,21 @@ class Interpreter(LinePass[LexedBlock]):
         """Log the error, unless it is only a consequence of an earlier error."""
         follows = self._stopped and depends_on_state(finding)
         if not follows and not self._missing_axes.is_axis_reported(finding):
-            self._log.add(self._flow.relocate_finding(finding))
+            self._log.add_finding(self._flow.relocate_finding(finding))
         self._stopped = True
         self._left = min(self._left, _LINES_AFTER_ERROR + 1)
-        self._corners.discard()
-        self._compensation.discard()
+        self._corners.discard_move()
+        self._compensation.discard_contour()
         if self._active_transformation is not None:
-            self._active_transformation.discard()
+            self._active_transformation.discard_blocks()
 
     def _report_limit(self, line: LexedBlock) -> None:
         if self._stopped and self._left < 0:
             return  # A loop with an invalid condition does not end, and its error is already reported.
         text = Message(
             "the program exceeds the limit of {most_blocks} blocks or {most_lines} executed lines.",
-            most_blocks=f"{MAX_BLOCKS:,}",
-            most_lines=f"{MAX_LINES:,}",
+            most_blocks=f"{MAX_BLOCK_COUNT:,}",
+            most_lines=f"{MAX_LINE_COUNT:,}",
         )
         hint = "Check the loops, and reduce the repeat counts of the calls."
         self._log_error(line.make_error(0, "too-many-blocks", text, hint).diagnostic)

@@ -154,8 +154,8 @@ class State:
         self.master = 1  # SETMS: with 2, S, M3 and G95 apply to the live tool
         self.live_speed_rpm = 0.0  # S of the live tool, rpm
         self.live_rpm = 0.0  # signed speed of the live tool
-        wraps = setup.limits.c_enabled and setup.limits.is_c_modulo
-        slide = setup.limits.c_enabled and setup.limits.is_c_linear
+        wraps = setup.limits.is_c_enabled and setup.limits.is_c_modulo
+        slide = setup.limits.is_c_enabled and setup.limits.is_c_linear
         self.modal = ModalState(
             absolute=True, metric=True, diameter=True, rapid_rate=0.0, is_c_modulo=wraps, is_c_linear=slide
         )
@@ -173,7 +173,7 @@ class State:
         one, other, edge = self.settable, self.programmed_frame, self.edge
         self.set_modal(
             self.modal._replace(
-                tool_x=edge.x, tool_z=edge.z, settable_x=one.x, settable_z=one.z,
+                tool_x=edge.x, tool_z=edge.z, zero_offset_x=one.x, zero_offset_z=one.z,
                 zero_x=other.shift_x, zero_z=other.shift_z, offset_c=one.c + other.shift_c,
             )
         )  # fmt: skip
@@ -236,7 +236,7 @@ class State:
         """Log a warning, once, for each R parameter without a value, which is treated as 0."""
         if finding.hint not in self.told:  # the hint identifies the parameter, independent of the line
             self.told.add(finding.hint)
-            self.log.add(replace(finding, severity=Severity.WARNING))
+            self.log.add_finding(replace(finding, severity=Severity.WARNING))
 
     def compute_rpm_at(self, x: float) -> float:
         """Return the commanded signed speed in rpm with the tip at radius ``x``.
@@ -261,7 +261,7 @@ class State:
         modal = self.modal
         if self.transformation is not None or not modal.metric:
             return None
-        if axis == self.setup.limits.third_axis_name and self.setup.limits.c_enabled:
+        if axis == self.setup.limits.third_axis_name and self.setup.limits.is_c_enabled:
             c = self.c - modal.offset_c
             return wrap_angle(c) if self.setup.limits.is_c_modulo else c
         x, z = self.programmed_frame.invert_distance(self.x - modal.offset_x, self.z - modal.offset_z)

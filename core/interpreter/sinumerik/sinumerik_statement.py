@@ -87,7 +87,7 @@ class Statement:
         axis = _axis_name(word) if word and word.name in known.AXIS_NAMES else ""
         return ProgramError(make_alarm(line.number, column, code, line.block_name, text, hint, axis=axis))
 
-    def check(
+    def check_condition(
         self, condition: object, word: Word | None, code: int | str, text: str, hint: str, /, **values: object
     ) -> None:
         """Raise the error of ``make_error`` unless ``condition`` is true."""
@@ -186,13 +186,13 @@ def _sort_g(statement: Statement, word: Word, group: str | None) -> None:
 
 
 def _check_m(statement: Statement) -> None:
-    if len(statement.m_words) > known.MAX_M_FUNCTIONS:
+    if len(statement.m_words) > known.MAX_M_FUNCTION_COUNT:
         text = Message("the block contains {m_count} M codes.", m_count=len(statement.m_words))
         raise statement.make_error(
             list(statement.m_words.values())[-1],
             "m-too-many",
             text,
-            Message("The maximum is {most_m} M codes in a block.", most_m=known.MAX_M_FUNCTIONS),
+            Message("The maximum is {most_m} M codes in a block.", most_m=known.MAX_M_FUNCTION_COUNT),
         )
     for group in ({3, 4, 5, 19, 70}, {0, 1, 2, 17, 30}, {7, 9}, {8, 9}, {40, 41, 42, 43, 44, 45}):
         found = sorted(group & statement.m_words.keys())

@@ -25,7 +25,7 @@ def _block(node: nodes.Node) -> str:
         case nodes.PathFunction():
             return _path(node)
         case nodes.PlaneBlock():
-            return _joined("PLANE", node.kind, _axes(node.words), _positioning(node.positioning))
+            return _joined("PLANE", node.definition_kind, _axes(node.words), _positioning(node.positioning))
         case nodes.MFunctionBlock():
             return _codes(node.m_functions)
         case nodes.ToolCall():
@@ -101,7 +101,9 @@ def _axes(words: tuple[klartext_words.AxisWord, ...]) -> str:
 def _feed(feed: klartext_words.FeedWord | None) -> str:
     if feed is None:
         return ""
-    return _FEEDS[feed.kind] if feed.value is None else f"F{feed.base}{_value(feed.value, plus=False)}"
+    return (
+        _FEEDS[feed.feed_kind] if feed.value is None else f"F{feed.feed_base}{_value(feed.value, plus=False)}"
+    )
 
 
 def _retract(retract: klartext_words.RetractWord | None) -> str:

@@ -98,7 +98,9 @@ def read_preset_selection(cursor: LineCursor, column: int) -> CycleDefinition:
     at, row = cursor.column, cursor.read_value("#")
     if not cursor.is_at_end:
         raise make_unsupported_error(
-            cursor.line_number, cursor.column, Message("PRESET SELECT with {rest}", rest=cursor.read_rest())
+            cursor.line_number,
+            cursor.column,
+            Message("PRESET SELECT with {rest}", rest=cursor.read_remaining_text()),
         )
     return CycleDefinition(_PRESET, (CycleParameter(_PRESET_NUMBER, row.formula, at),), column)
 
@@ -111,7 +113,7 @@ def _values(cursor: LineCursor, owner: str) -> tuple[CycleParameter, ...]:
         )
     first = _Q_VALUE.search(cursor.uppercase_text, cursor.index)
     if first is None:
-        cursor.read_rest()
+        cursor.read_remaining_text()
         return ()
     cursor.index = first.start()
     found = []
@@ -135,7 +137,7 @@ _FROM_TABLE = re.compile(r"#")
 
 def _datum(cursor: LineCursor, part: int) -> DatumShift:
     if part == 0:
-        return DatumShift(cycle_number=0, text=cursor.read_rest())
+        return DatumShift(cycle_number=0, text=cursor.read_remaining_text())
     column = cursor.column
     if cursor.match(_FROM_TABLE):
         made = DatumShift(cycle_number=part, table_row=cursor.read_value("#"), column=column)
@@ -210,7 +212,7 @@ def _line(cursor: LineCursor, number: int, part: int, column: int) -> CycleLine:
     speed: FeedWord | None = None
     turn = ""
     if part == 0 or number in _TEXT_CYCLES:
-        return CycleLine(number, part, text=cursor.read_rest(), column=column)
+        return CycleLine(number, part, text=cursor.read_remaining_text(), column=column)
     while not cursor.is_at_end:
         at = cursor.column
         if match := cursor.match(_AXIS):

@@ -25,8 +25,8 @@ EXCESSIVE_NESTING = "Excessive nesting"  # 1025
 M128_ACTIVE = "PLANE not permitted with M128"
 NOT_ALLOWED_WITH_M128 = "Not permitted with M128"
 LABEL_NOT_FOUND = "Label not found"
-LABEL_TWICE = "Label defined twice"
-Q_UNDEFINED = "Q parameter not defined"
+LABEL_REPEATED = "Label defined twice"
+Q_PARAMETER_UNDEFINED = "Q parameter not defined"
 ARC_END_INCORRECT = "Circle end point incorrect"
 DIRECTION_UNDEFINED = "Direction of rotation not defined"
 POLE_MISSING = "CC missing"
@@ -39,7 +39,7 @@ CYCLE_MISSING = "Cycle incomplete"
 PROGRAM_RAISED_ERROR = "Error raised by the program"
 TOOL_UNKNOWN = "Tool not defined"
 FILE_MISSING = "Program not found"
-M_UNDEFINED = "M function not defined"
+M_FUNCTION_UNDEFINED = "M function not defined"
 PROBE_MISSING = "No touch probe"
 CYCLE_UNKNOWN = "Cycle not defined"
 DATUM_TABLE_MISSING = "Datum table missing"
@@ -65,7 +65,7 @@ class MissingValueError(ProgramError):
         made = make_klartext_error(
             line,
             column,
-            Q_UNDEFINED,
+            Q_PARAMETER_UNDEFINED,
             Message("{name} has no value yet.", name=name),
             Message("Write {name} = … in an earlier block.", name=name),
         )

@@ -135,7 +135,7 @@ def _node(cursor: LineCursor) -> Node | None:
     if form := cursor.match(_PATHS):
         return path_block.read_path_function(cursor, " ".join(form.group().split()), column)
     if cursor.text[cursor.index] == "*":
-        return HeadingLine(cursor.read_rest()[1:].strip().removeprefix("-").strip())
+        return HeadingLine(cursor.read_remaining_text()[1:].strip().removeprefix("-").strip())
     return _by_keyword(cursor) or _by_letter(cursor)
 
 

@@ -103,7 +103,7 @@ class CornerBlock:
     The block defines a corner between the previous and the next path element.
     """
 
-    kind: str  # RND or CHF
+    function_name: str  # RND or CHF
     size: Value
     feed: FeedWord | None = None
     column: int = 1
@@ -269,7 +269,7 @@ class CycleCall:
 class PatternPart(NamedTuple):
     """One part of a pattern, such as ``ROW1 (X+10 Y+0 D+8 NUM5 ROT+0 Z+0)``."""
 
-    kind: str  # POS ROW PAT FRAME CIRC PITCHCIRC
+    pattern_kind: str  # POS ROW PAT FRAME CIRC PITCHCIRC
     words: tuple[AxisWord, ...]
     column: int
 
@@ -346,7 +346,7 @@ class CoordinateTransform:
     reset.
     """
 
-    kind: str  # MIRROR, ROTATION or SCALE
+    transformation_kind: str  # MIRROR, ROTATION or SCALE
     value: Value | None = None
     axes: str = ""  # of MIRROR
     is_incremental: bool = False
@@ -397,7 +397,7 @@ class PlaneBlock:
     The words are axis words (AXIAL), P1X… (POINTS) or SPA… (SPATIAL and RELATIV). RESET has no words.
     """
 
-    kind: str  # AXIAL POINTS SPATIAL RELATIV RESET
+    definition_kind: str  # AXIAL POINTS SPATIAL RELATIV RESET
     words: tuple[AxisWord, ...] = ()
     positioning: RotaryPositioning = RotaryPositioning()
     column: int = 0

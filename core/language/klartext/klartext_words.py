@@ -40,10 +40,10 @@ class FeedWord(NamedTuple):
     ``FU0.1`` is a feed per revolution, and ``FZ0.05`` is a feed per tooth.
     """
 
-    kind: str  # "value", "max" or "auto"
+    feed_kind: str  # "value", "max" or "auto"
     value: Value | None = None
     column: int = 0
-    base: str = ""  # U or Z; empty: a minute, under M136 a revolution
+    feed_base: str = ""  # U or Z; empty: a minute, under M136 a revolution
 
 
 class RetractWord(NamedTuple):

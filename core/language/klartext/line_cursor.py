@@ -21,7 +21,7 @@ from core.language.line_reading import (
     LineReader,
     describe_typographic_character,
     find_non_blank,
-    to_ascii_upper,
+    uppercase_ascii,
 )
 from core.message import Message
 
@@ -52,7 +52,7 @@ class LineCursor(LineReader):
     """
 
     def __init__(self, line: int, text: str, index: int = 0) -> None:
-        super().__init__(to_ascii_upper(text), index)
+        super().__init__(uppercase_ascii(text), index)
         self.line_number = line
         self.text = text
         self.skip_blanks()
@@ -90,7 +90,7 @@ class LineCursor(LineReader):
                 return words
         return None
 
-    def read_rest(self) -> str:
+    def read_remaining_text(self) -> str:
         """Read the rest of the line, as written."""
         text = self.text[self.index :].strip()
         self.index = len(self.uppercase_text)
@@ -167,7 +167,7 @@ class LineCursor(LineReader):
         The result is empty if no text remains.
         """
         self._check_no_text_parameter()
-        return self.read_rest().strip('"')
+        return self.read_remaining_text().strip('"')
 
     def _check_no_text_parameter(self) -> None:
         """Raise ProgramError if a string parameter is used as a name."""
@@ -277,9 +277,11 @@ def _axis_word(letters: str, incremental: bool) -> re.Pattern[str]:
     return re.compile(rf"({'I?' if incremental else ''})([{letters}])(?=\s*[+\-0-9.,Q])")
 
 
-def read_axis_words(cursor: LineCursor, letters: str, *, incremental: bool = True) -> tuple[AxisWord, ...]:
+def read_axis_words(
+    cursor: LineCursor, letters: str, *, allows_incremental: bool = True
+) -> tuple[AxisWord, ...]:
     """Read all axis words at the cursor. Raises ProgramError if a letter is repeated."""
-    pattern = _axis_word(letters, incremental)
+    pattern = _axis_word(letters, allows_incremental)
     found: list[AxisWord] = []
     while True:
         column, match = cursor.column, cursor.match(pattern)

@@ -19,7 +19,7 @@ from core.language.klartext.line_cursor import (
 )
 from core.message import Message
 
-MAX_M_FUNCTIONS = 4
+MAX_M_FUNCTION_COUNT = 4
 AXIS_LETTERS = "XYZABCUVW"
 # older controls write R, F and M without values
 _NOT_PROGRAMMED = re.compile(r"F(?=\s+M\s*(?:[0-9]|$))|M(?=\s*$)")
@@ -228,7 +228,7 @@ def _factor(cursor: LineCursor) -> FeedWord | None:
     Without a factor, M103 is canceled.
     """
     found = read_feed(cursor)
-    if found is not None and (found.kind != "value" or found.base):
+    if found is not None and (found.feed_kind != "value" or found.feed_base):
         text = "M103 accepts its factor only as F with a number."
         raise make_syntax_error(
             cursor.line_number, found.column, text, "Write M103 F20 for a fifth of the feed."
@@ -238,7 +238,7 @@ def _factor(cursor: LineCursor) -> FeedWord | None:
 
 def _plain_feed(cursor: LineCursor) -> FeedWord | None:
     found = read_feed(cursor)
-    if found is not None and (found.kind == "auto" or found.base):
+    if found is not None and (found.feed_kind == "auto" or found.feed_base):
         raise make_syntax_error(
             cursor.line_number,
             found.column,
@@ -258,9 +258,9 @@ def _joined(
 
 
 def _demand_few(cursor: LineCursor, codes: list[MFunction]) -> None:
-    if len(codes) > MAX_M_FUNCTIONS:
+    if len(codes) > MAX_M_FUNCTION_COUNT:
         text = Message(
-            "There are more than {most_codes} M functions in the block.", most_codes=MAX_M_FUNCTIONS
+            "There are more than {most_codes} M functions in the block.", most_codes=MAX_M_FUNCTION_COUNT
         )
         raise make_syntax_error(
             cursor.line_number, codes[-1].column, text, "Split the block into two or more blocks."

@@ -133,7 +133,7 @@ def read_fn_block(cursor: LineCursor, number: int, column: int) -> Node:
     """Read the block after ``FN n:``. Raises ProgramError for functions that TurnDesk does not support."""
     cursor.match(_COLON)
     if number in _IGNORED_FUNCTIONS:
-        cursor.read_rest()
+        cursor.read_remaining_text()
         return IgnoredBlock(
             Message("FN {number} {unheeded}", number=number, unheeded=_IGNORED_FUNCTIONS[number]), column
         )

@@ -70,7 +70,7 @@ def _name_and_unit(cursor: LineCursor, what: str) -> tuple[str, bool]:
     """
     match = _PROGRAM.match(cursor.text[cursor.index :].upper())
     if match is None and what == "END PGM":
-        return cursor.read_rest(), False
+        return cursor.read_remaining_text(), False
     if match is None:
         raise make_syntax_error(
             cursor.line_number,
@@ -79,7 +79,7 @@ def _name_and_unit(cursor: LineCursor, what: str) -> tuple[str, bool]:
             "Write the unit after the name.",
         )
     name = cursor.text[cursor.index : cursor.index + len(match.group(1) or "")]
-    cursor.read_rest()
+    cursor.read_remaining_text()
     return name, match.group(2) == "INCH"
 
 
@@ -109,12 +109,14 @@ def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | Ignored
     if cursor.read_keyword("CYLINDER"):
         return _round_blank(cursor)
     if form := cursor.read_keyword("ROTATION", "FILE"):
-        cursor.read_rest()
+        cursor.read_remaining_text()
         return IgnoredBlock(Message("BLK FORM {rest}", rest=form), column)
     part = cursor.match(_PART)
     if part is None:
         raise make_unsupported_error(
-            cursor.line_number, cursor.column, Message("BLK FORM {rest}", rest=cursor.read_rest()).strip()
+            cursor.line_number,
+            cursor.column,
+            Message("BLK FORM {rest}", rest=cursor.read_remaining_text()).strip(),
         )
     axis = ""
     if part.group(1) == "1":
@@ -124,7 +126,7 @@ def read_blank_form(cursor: LineCursor) -> BlankCorner | CylinderBlank | Ignored
                 "BLK FORM 0.1 needs the tool axis", "Write Z after BLK FORM 0.1."
             )
         axis = found.group(1)
-    corner = read_axis_words(cursor, "XYZ", incremental=part.group(1) == "2")
+    corner = read_axis_words(cursor, "XYZ", allows_incremental=part.group(1) == "2")
     _demand_all(cursor, corner)
     return BlankCorner(int(part.group(1)), corner, axis)
 
@@ -203,7 +205,7 @@ def read_tool_definition(cursor: LineCursor, column: int) -> ToolDefinition:
 # --- datum shifts and other transformations, labels, calls
 
 
-MAX_REPEATS = 65534
+MAX_REPEAT_COUNT = 65534
 _REPEAT_PATTERN = re.compile(r"/\s*[0-9]+")
 
 
@@ -278,7 +280,7 @@ def _repeats(cursor: LineCursor) -> Value:
     column = cursor.column
     if cursor.uppercase_text[cursor.index : cursor.index + 1] == "Q":
         return cursor.read_value("REP")
-    return Value(float(cursor.read_whole_number("REP", MAX_REPEATS)), column=column)
+    return Value(float(cursor.read_whole_number("REP", MAX_REPEAT_COUNT)), column=column)
 
 
 def read_program_call(cursor: LineCursor, column: int) -> ProgramCall:
@@ -343,7 +345,7 @@ def _dwell(cursor: LineCursor, column: int) -> CycleLine:
 
 def read_material(cursor: LineCursor, column: int) -> IgnoredBlock:
     """Read the material after ``WMAT``, from which older controls calculate cutting data."""
-    cursor.read_rest()
+    cursor.read_remaining_text()
     return IgnoredBlock("WMAT", column)
 
 
@@ -376,8 +378,8 @@ def read_function_block(cursor: LineCursor, column: int) -> TcpmSwitch | Ignored
         return _dwell(cursor, column)
     for words in _IGNORED_FUNCTIONS:
         if cursor.read_keyword(words):
-            cursor.read_rest()
+            cursor.read_remaining_text()
             return IgnoredBlock(Message("FUNCTION {rest}", rest=words), column)
     raise make_unsupported_error(
-        cursor.line_number, column, Message("FUNCTION {rest}", rest=cursor.read_rest()).strip()
+        cursor.line_number, column, Message("FUNCTION {rest}", rest=cursor.read_remaining_text()).strip()
     )

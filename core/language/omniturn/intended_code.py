@@ -20,7 +20,7 @@ class IntendedCode(NamedTuple):
     """A mistake in a line, with the index of its first character, diagnostic code, message and remedy."""
 
     at: int
-    code: str
+    diagnostic_code: str
     message: str
     hint: str
 

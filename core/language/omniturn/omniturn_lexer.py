@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
-from core.language.line_reading import SIGNED_NUMBER, to_ascii_upper
+from core.language.line_reading import SIGNED_NUMBER, uppercase_ascii
 from core.language.omniturn import other_controls, word_faults
 from core.language.omniturn.intended_code import find_intended_code, replace_letter_l
 from core.language.omniturn.omniturn_words import LETTERS_WITHOUT_NUMBER, LexedLine, Word
@@ -72,11 +72,13 @@ def lex_line(number: int, text: str) -> LexedLine:
         text, prose_errors = _blank_prose(number, text)
         errors += prose_errors
     written, columns, comment, comment_column = _without_comment(number, text, errors)
-    code = _Code(to_ascii_upper(written), written, columns)
+    code = _Code(uppercase_ascii(written), written, columns)
     block_delete = code.text.startswith("/")
     intent = find_intended_code(code.text)
     if intent is not None:
-        error = make_error_diagnostic(number, columns[intent.at], intent.code, intent.message, intent.hint)
+        error = make_error_diagnostic(
+            number, columns[intent.at], intent.diagnostic_code, intent.message, intent.hint
+        )
         return LexedLine(number, (), comment, comment_column, block_delete, written, (error,))
     words = _Scanner(number, code, errors).scan_words(1 if block_delete else 0)
     return LexedLine(number, words, comment, comment_column, block_delete, written, tuple(errors))
@@ -105,7 +107,9 @@ def _letter_l(number: int, text: str) -> Diagnostic | None:
     if fixed == code or lex_line(number, fixed).errors:
         return None
     at = next(i for i, (was, now) in enumerate(zip(code, fixed, strict=True)) if was != now)
-    word = next(found for found in _WORD.finditer(to_ascii_upper(fixed)) if found.start() <= at < found.end())
+    word = next(
+        found for found in _WORD.finditer(uppercase_ascii(fixed)) if found.start() <= at < found.end()
+    )
     message = Message("{code}: letter l in a number.", code=code[word.start() : word.end()])
     return make_error_diagnostic(number, at + 1, "letter-l", message, Message("Write {name}.", name=word[0]))
 
@@ -123,7 +127,7 @@ def _blank_prose(number: int, text: str) -> tuple[str, list[Diagnostic]]:
         start, end = found.span()
         if bare[start - 1 : start] == ";":  # a comment in the style of other controls
             start -= 1
-            errors.append(word_faults.make_character_error(number, start + 1, ";", after_number=False))
+            errors.append(word_faults.make_character_error(number, start + 1, ";", is_after_number=False))
         else:
             errors.append(word_faults.make_text_error(number, start + 1, found[0].strip()))
         text = text[:start] + " " * (end - start) + text[end:]
@@ -277,7 +281,9 @@ class _Scanner:
         sign = self._code.written[at]
         after_number = after_number or (at > 0 and self._code.text[at - 1] == ".")
         self._errors.append(
-            word_faults.make_character_error(self._number, self._column(at), sign, after_number=after_number)
+            word_faults.make_character_error(
+                self._number, self._column(at), sign, is_after_number=after_number
+            )
         )
         match = _TO_NEXT_LETTER.match(self._code.text, at)
         return match.end() if match else at + 1

@@ -107,9 +107,9 @@ def make_missing_number_error(line: int, column: int, letter: str, next_characte
     )
 
 
-def make_character_error(line: int, column: int, character: str, *, after_number: bool) -> Diagnostic:
+def make_character_error(line: int, column: int, character: str, *, is_after_number: bool) -> Diagnostic:
     """Return the error for a character that cannot start a word."""
-    fixed = _SIGNS.get(character) or (_AFTER_NUMBER.get(character) if after_number else None)
+    fixed = _SIGNS.get(character) or (_AFTER_NUMBER.get(character) if is_after_number else None)
     if fixed is not None:
         return make_error_diagnostic(line, column, *fixed)
     if character in "0123456789+-.":

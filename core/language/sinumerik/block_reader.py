@@ -45,7 +45,7 @@ SINUMERIK_GRAMMAR = FormulaGrammar(
     constants={"TRUE": 1.0, "FALSE": 0.0, "$PI": 3.141592653589793},
     operand_separator=",",
     negation_precedence=90,
-    allows_index=True,
+    has_index=True,
 )
 """Formulas behind ``=``, in brackets of a target, and of conditions. Comparisons bind weakest of all."""
 
@@ -80,12 +80,12 @@ class BlockReader(FormulaReader):
         """Return the remaining text without leading blanks."""
         return self.uppercase_text[self.index :].lstrip()
 
-    def match(self, pattern: re.Pattern[str], *, in_original: bool = False) -> re.Match[str] | None:
+    def match(self, pattern: re.Pattern[str], *, uses_original_text: bool = False) -> re.Match[str] | None:
         """Return the match of the pattern at this position, and move past it.
 
         Returns None without a match.
         """
-        match = pattern.match(self.original_text if in_original else self.uppercase_text, self.index)
+        match = pattern.match(self.original_text if uses_original_text else self.uppercase_text, self.index)
         if match is not None:
             self.index = match.end()
         return match

@@ -70,7 +70,7 @@ def _argument(reader: BlockReader) -> CallArgument:
     column = reader.index + 1
     if reader.uppercase_text[reader.index : reader.index + 1] in {",", ")"}:
         return CallArgument(None, None, column)
-    if quoted := reader.match(_QUOTED, in_original=True):
+    if quoted := reader.match(_QUOTED, uses_original_text=True):
         return CallArgument(None, quoted[1].strip(), column)
     if axis := reader.match(_AXIS):
         return CallArgument(None, axis[1], column)

@@ -11,7 +11,7 @@ from core.language.line_reading import (
     describe_typographic_character,
     find_comment_start,
     find_non_blank,
-    to_ascii_upper,
+    uppercase_ascii,
 )
 from core.language.sinumerik import sinumerik_words as known
 from core.language.sinumerik.block_reader import BlockReader, read_value_list
@@ -76,7 +76,7 @@ def lex_line(number: int, text: str, third_axis: str = INTERNAL_AXIS_NAME) -> Le
     """
     end = find_comment_start(text)
     code, comment = text[:end], end + 1 if end < len(text) else 0
-    upper = to_ascii_upper(code)
+    upper = uppercase_ascii(code)
     head = _HEAD.match(upper)
     assert head is not None  # The pattern always matches, because all its parts are optional.
     level, kind, count, label = head.groups()

@@ -113,7 +113,7 @@ NAMED_GROUPS: dict[str, str] = {
 }
 """Functions that have a name, by their group."""
 
-MAX_M_FUNCTIONS = 5
+MAX_M_FUNCTION_COUNT = 5
 
 ARC_WORDS = frozenset({"I", "J", "K", "CR", "AR", "I1", "K1"})
 CORNER_WORDS = frozenset({"CHF", "CHR", "RND"})

@@ -24,17 +24,17 @@ _MAY_CALL = re.compile(
 )
 
 
-class Section(NamedTuple):
+class ProgramSection(NamedTuple):
     """One program of a file, with its name and its line indices.
 
     The name of the file's main text is empty.
     """
 
     name: str
-    lines: range
+    line_range: range
 
 
-def split_sections(source: ProgramSource) -> list[Section]:
+def split_sections(source: ProgramSource) -> list[ProgramSection]:
     """Return the programs of a file, starting with the main program."""
     heads = [
         (i, match[1].upper())
@@ -42,12 +42,12 @@ def split_sections(source: ProgramSource) -> list[Section]:
         if (match := HEADER_PATTERN.fullmatch(line))
     ]
     if not heads:
-        return [Section("", range(len(source.lines)))]
+        return [ProgramSection("", range(len(source.lines)))]
     ends = [i for i, _ in heads[1:]] + [len(source.lines)]
-    found = [Section(name, range(i + 1, end)) for (i, name), end in zip(heads, ends, strict=True)]
+    found = [ProgramSection(name, range(i + 1, end)) for (i, name), end in zip(heads, ends, strict=True)]
     before = range(heads[0][0])
     holds_code = any(source.lines[i].split(";", 1)[0].strip() for i in before)
-    return [Section("", before), *found] if holds_code else found
+    return [ProgramSection("", before), *found] if holds_code else found
 
 
 def find_called_files(source: ProgramSource) -> Iterator[str]:

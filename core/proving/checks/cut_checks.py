@@ -328,7 +328,7 @@ def _feed_limit(shape: ToolShape, *, has_holder: bool) -> tuple[float, float, fl
 def _feed_message(move: TipMove, shape: ToolShape, tool: int, feed: float) -> Message:
     """Return the message for a feed that exceeds the limit of ``_feed_limit``."""
     name, text = format_edge_name(tool), move.modal.format_length
-    shown = move.modal.format_feed(feed, per_rev=True)
+    shown = move.modal.format_feed(feed, is_per_rev=True)
     if shape.kind in _DRILLS:
         return Message(
             "{name} feeds at {value}, which is too high for a diameter of {diameter}.",

@@ -219,7 +219,7 @@ class EdgeChecks:
             yield Found("past-stock", words)
 
     def _drilled(self, move: TipMove, shape: ToolShape, tool: int) -> Iterator[Found]:
-        deep = depth_from_face(move, self.stock)
+        deep = calculate_depth_from_face(move, self.stock)
         if shape.is_rotating and shape.length and deep > shape.length:
             text = move.modal.format_length
             yield Found(
@@ -311,7 +311,7 @@ def _check_edge_hollow(
         yield Found("hollow-at-edge", words)
 
 
-def depth_from_face(move: TipMove, stock: Stock | None) -> float:
+def calculate_depth_from_face(move: TipMove, stock: Stock | None) -> float:
     """Return the depth in mm of the end of a move, measured from the face of the stock."""
     return (stock.front_z_mm if stock is not None else 0.0) - min(z for z, _ in move.points)
 
@@ -343,7 +343,7 @@ def _check_cutting_side(
             ),
         )
         return
-    clears = cutter.trailing_edge_angle(forward)
+    clears = cutter.find_trailing_edge_angle(forward)
     for start, end, met, steep in _iter_steep_runs(move.points, cuts, shape, clears + _STEEPER):
         trailing_mm = met.front_z_mm - start[0] if forward < 0 else start[0] - met.back_z_mm
         faces = trailing_mm <= _FACED and not _leaves_wall(part, met, forward, abs(end[1]), cutter.side)
@@ -371,7 +371,7 @@ def _leaves_wall(part: TurnedPart, cut: Cut, forward: int, r: float, side: CutSi
     step = part.columns.step_mm
     edge = cut.front_z_mm + step if forward < 0 else cut.back_z_mm - step
     at = part.columns.find_column(edge)
-    if not 0 <= at < part.columns.number:
+    if not 0 <= at < part.columns.column_count:
         return False
     low, high = part.inner_radii[:, at], part.outer_radii[:, at]
     above = low < r if side is CutSide.BORE else high > r

@@ -28,7 +28,7 @@ from core.message import Message
 from core.proving.tip_moves import is_rigid_tap
 from core.tool_edges import format_edge_name
 
-LIVE_TOOL = "live"
+LIVE_TOOL_PREFIX = "live"
 """The names of outputs that turn a live tool begin with it in the machine file."""
 
 _QUICK = 100 * 25.4 / 60  # mm/s; a feed per minute at this speed or more is a positioning move
@@ -151,7 +151,7 @@ class CuttingChecks:
             self._no_tool(block)
         if not modal.collet_closed:
             self._check_collet(block)
-        if any(name.startswith(LIVE_TOOL) for name in modal.outputs):
+        if any(name.startswith(LIVE_TOOL_PREFIX) for name in modal.outputs):
             self._clear("live-tool-off", "spindle-off")
         elif is_rigid_tap(block):
             return
@@ -194,7 +194,7 @@ class CuttingChecks:
             self._no_tool(block)
         if self.dialect is Dialect.KLARTEXT:
             return
-        if any(name.startswith(LIVE_TOOL) for name in modal.outputs):
+        if any(name.startswith(LIVE_TOOL_PREFIX) for name in modal.outputs):
             self._clear("spindle-off")
             return
         driven = is_rigid_tap(block) or modal.c_locked or modal.spindle or block.per_rev
@@ -238,7 +238,9 @@ class CuttingChecks:
 
     def _live_tool_off(self, block: Block) -> None:
         codes = sorted(
-            code for code, (name, on) in self.machine.m_codes.items() if on and name.startswith(LIVE_TOOL)
+            code
+            for code, (name, on) in self.machine.m_codes.items()
+            if on and name.startswith(LIVE_TOOL_PREFIX)
         )
         if not codes:
             return  # this control does not switch the live tool
@@ -366,7 +368,7 @@ def _beyond(
     at = low if low < least else high
     limit = least if low < least else greatest
     scale, unit, places = (1.0, "mm", 3) if block.modal.metric else (1 / MM_PER_INCH, "in", 4)
-    if axis.rotary:
+    if axis.is_rotary:
         scale, unit, places = 1.0, "degrees", 3
     template = (
         "{axis} would move to {position} {unit} from home (X as a radius), {excess} {unit} beyond the travel "
@@ -394,7 +396,7 @@ def _beyond(
 
 
 def _hint(machine: Machine, dialect: Dialect, block: Block, axis: Axis) -> str:
-    if machine.kind != "lathe" or axis.rotary:
+    if machine.kind != "lathe" or axis.is_rotary:
         return Message("check the {axis} word and all active shifts", axis=axis.name)
     where = Message(
         "check the {axis} word and the offset of {tool}",
@@ -414,7 +416,7 @@ def check_c_motion(blocks: Sequence[Block], machine: Machine) -> Iterator[Diagno
 
     Blocks are checked only if the spindle is the C axis.
     """
-    if not machine.spindle_is_c or isinstance(blocks, StraightMoveSeries):  # a series moves only X and Z
+    if not machine.is_spindle_c_axis or isinstance(blocks, StraightMoveSeries):  # a series moves only X and Z
         return
     for block in blocks:
         if block.c != block.c0 and block.modal.spindle:

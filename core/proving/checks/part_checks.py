@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from core.language.diagnostics import Diagnostic, Severity
 
-STOCK, TOOL, KIND, HOLES = "stock", "tool", "tool type", "previously drilled holes"
+STOCK, TOOL, TOOL_KIND, EARLIER_HOLES = "stock", "tool", "tool type", "previously drilled holes"
 _ERROR, _WARNING = Severity.ERROR, Severity.WARNING
 
 
@@ -16,8 +16,8 @@ class PartCheck:
     """One check with its purpose, its condition and the remedy.
 
     ``required_data`` lists the data of stock and tools on which the check depends. If these data are not
-    specified, the finding is based on assumptions. ``KIND`` means the kind of tool, which a comment may
-    name. ``HOLES`` means the holes of drills without a diameter.
+    specified, the finding is based on assumptions. ``TOOL_KIND`` means the kind of tool, which a comment may
+    name. ``EARLIER_HOLES`` means the holes of drills without a diameter.
     """
 
     severity: Severity
@@ -187,7 +187,7 @@ PART_CHECKS: Mapping[str, PartCheck] = {
         "A boring tool enters solid material.",
         "An internal tool feeds .04 in or more into material that has no bore yet.",
         "Drill the bore first, or check the bore of the stock.",
-        (STOCK, KIND),
+        (STOCK, TOOL_KIND),
     ),
     "tap-no-hole": PartCheck(
         _ERROR,
@@ -195,7 +195,7 @@ PART_CHECKS: Mapping[str, PartCheck] = {
         "tap goes past the bottom of the hole.",
         "The thread depth that the tap cuts, measured on the radius, is greater than the pitch.",
         "Drill the tap hole, deep enough for the chamfer of the tap.",
-        (STOCK, TOOL, HOLES),
+        (STOCK, TOOL, EARLIER_HOLES),
     ),
     "wrong-spindle-direction": PartCheck(
         _ERROR,

@@ -15,7 +15,7 @@ from core.interpreter.shared.modal_state import ModalState
 from core.language.diagnostics import Diagnostic, Severity
 from core.message import Message, join_messages
 from core.part.cutter import CutSide, Cutter, NeighborTools
-from core.part.stock import Clamping, Stock, critical_rpm
+from core.part.stock import Clamping, Stock, calculate_critical_rpm
 from core.part.tool_shape import ToolKind, ToolShape
 from core.part.turned_part import NO_CUT, Cut, PartedPiece, TurnedPart
 from core.proving.checks.cut_checks import AirCutChecks
@@ -56,7 +56,7 @@ class PartFindings:
     stock: Stock | None
     clamping: Clamping | None = None
     neighbors: NeighborTools | None = None
-    threads: ThreadChecks = field(default_factory=ThreadChecks)
+    thread_checks: ThreadChecks = field(default_factory=ThreadChecks)
     find_unspecified_data: Callable[[tuple[str, ...]], tuple[str, ...]] = lambda _rests_on: ()
     silenced_checks: Mapping[str, str] = field(default_factory=dict)  # reason by check
     part_off_z: float | None = None  # Z of the deepest part-off
@@ -76,8 +76,8 @@ class PartFindings:
         self._airs = AirCutChecks(self.stock)
         if self.clamping is not None and self.clamping.diameter and self.stock is not None:
             if not self.clamping.quill_diameter:  # stock supported at both ends whirls at a much higher speed
-                self._whirls = critical_rpm(self.stock, self.clamping.stick_out)
-            self._chuck = TurnedPart(self.clamping.chuck_around(self.stock), _CHUCK_STEP)
+                self._whirls = calculate_critical_rpm(self.stock, self.clamping.stick_out)
+            self._chuck = TurnedPart(self.clamping.make_chuck_around(self.stock), _CHUCK_STEP)
         tailstock = self.clamping.tailstock if self.clamping is not None else None
         self._tailstock = TurnedPart(tailstock, _CHUCK_STEP) if tailstock is not None else None
 
@@ -98,11 +98,13 @@ class PartFindings:
     def check_move(self, move: TipMove, cutter: Cutter, part: TurnedPart, tool: int) -> None:
         """Remove the material that a move cuts, and check the result."""
         if self._leaves_thread(move, cutter):
-            self._found_by(move, self.threads.check_move(move, NO_CUT, part, self.find_shape(tool), tool))
+            self._found_by(
+                move, self.thread_checks.check_move(move, NO_CUT, part, self.find_shape(tool), tool)
+            )
             self._found_by(move, self._airs.check_rapid(move, NO_CUT, tool))
             self._before = move
             return
-        self.threads.record_material(move, part)
+        self.thread_checks.record_material(move, part)
         self._edges.record_material(move, self.find_shape(tool), part)
         inside = move.is_fast and part.enters_material(move.points, RAPID_TOLERANCE_MM)
         cuts, struck = _execute_move(move, cutter, part)
@@ -145,7 +147,7 @@ class PartFindings:
             self._found_by(
                 move, self._edges.check_feed(move, cuts, met, self.find_shape(tool), cutter, part, tool)
             )
-        self._found_by(move, self.threads.check_move(move, met, part, self.find_shape(tool), tool))
+        self._found_by(move, self.thread_checks.check_move(move, met, part, self.find_shape(tool), tool))
         self._before = move
 
     def _leaves_thread(self, move: TipMove, cutter: Cutter) -> bool:
@@ -259,7 +261,7 @@ class PartFindings:
     def finish_program(self) -> None:
         """Add the findings that are known only at the end of the program."""
         self._tell_left()
-        for check, text, at in self.threads.finish_thread():
+        for check, text, at in self.thread_checks.finish_thread():
             if at is not None:
                 self._add(check, at, text)
         for one, other in self.neighbors.coincident_tools if self.neighbors is not None else ():

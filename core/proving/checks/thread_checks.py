@@ -49,8 +49,8 @@ class DriveLimits(NamedTuple):
     The acceleration along Z is in mm/s², and the deceleration of the spindle is in rpm/s.
     """
 
-    z_acceleration: float = 0.0
-    spindle_deceleration: float = 0.0
+    z_acceleration_mm_s2: float = 0.0
+    spindle_deceleration_rpm_s: float = 0.0
 
 
 UNKNOWN_LIMITS = DriveLimits()
@@ -60,12 +60,12 @@ UNKNOWN_LIMITS = DriveLimits()
 class ThreadChecks:
     """Checks of threads, which are called with the moves in their order.
 
-    Call ``record_material`` before each cut and ``check_move`` after it. ``releases_tap`` returns, for a T
-    number, whether the tap holder reverses or releases the tap automatically.
+    Call ``record_material`` before each cut and ``check_move`` after it. ``has_releasing_holder`` returns,
+    for a T number, whether the tap holder reverses or releases the tap automatically.
     """
 
     drive_limits: DriveLimits = UNKNOWN_LIMITS
-    releases_tap: Callable[[int], bool] = lambda _: False
+    has_releasing_holder: Callable[[int], bool] = lambda _: False
     is_stock_specified: bool = False  # the stock is specified instead of assumed
     # line, first column, radii, and 1 for an outside thread
     _crest: tuple[int, int, FloatArray, float] | None = None
@@ -212,7 +212,7 @@ class ThreadChecks:
 
         The axis stops from this speed in the same distance.
         """
-        accel = self.drive_limits.z_acceleration
+        accel = self.drive_limits.z_acceleration_mm_s2
         return (move.feed_per_rev_mm * abs(move.rpm) / 60.0) ** 2 / (2.0 * accel) if accel else 0.0
 
     def _check_pass_end(self, move: TipMove) -> Iterator[Found]:
@@ -265,7 +265,7 @@ class ThreadChecks:
             fed = self._fed
             if move.points[-1][0] >= self._entry:
                 self._fed = None
-            if not self.releases_tap(tool):
+            if not self.has_releasing_holder(tool):
                 yield from self._out(move, fed, tool)
 
     def _inside(self, move: TipMove) -> bool:
@@ -322,7 +322,7 @@ class ThreadChecks:
                 file=text(out),
             )
             yield Found("tap-reversal", words)
-        slows = self.drive_limits.spindle_deceleration
+        slows = self.drive_limits.spindle_deceleration_rpm_s
         if not slows:
             return
         turns = abs(fed.rpm) / 60.0 * (_LATENCY + abs(fed.rpm) / slows / 2.0)

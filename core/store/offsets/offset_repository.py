@@ -96,14 +96,14 @@ class OffsetTable(Generic[RowT]):
         return self._store.write(lambda c: offset_history.undo(c, ChangeReason(why, who), self._kind))
 
     def undo_step(
-        self, number: int | None, step: int, why: str = "undo", *, author: str = "operator"
+        self, number: int | None, step: int, reason_text: str = "undo", *, author: str = "operator"
     ) -> Future[tuple[OffsetChange, ...]]:
         """Undo the step ``step``, as returned by ``find_undoable_changes``, and no other step.
 
         The result contains the changes that were made. The future raises StoreError if the rows of the step
         have changed since.
         """
-        reason = ChangeReason(why, author)
+        reason = ChangeReason(reason_text, author)
         return self._store.write(
             lambda c: offset_history.undo_given_step(c, reason, self._kind, number, step)
         )

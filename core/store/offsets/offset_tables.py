@@ -184,17 +184,17 @@ def change_row(
 
 def change_rows(
     connection: sqlite3.Connection,
-    wanted: Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]],
+    new_values: Mapping[OffsetKind, Mapping[int, Mapping[str, FieldValue]]],
     reason: ChangeReason,
 ) -> int:
     """Set the fields of several rows as one step, and return the number of changed rows.
 
-    ``wanted`` contains the new values by table and number. Raises StoreError, and changes nothing, for an
+    ``new_values`` contains the new values by table and number. Raises StoreError, and changes nothing, for an
     unknown number and for a value that the store does not accept. The master tool cannot be changed with
     this function.
     """
     pairs: dict[OffsetKind, ChangesByNumber] = {}
-    for kind, values in wanted.items():
+    for kind, values in new_values.items():
         rows = read_current_rows(connection, kind)
         for number in values:
             check_row_number(kind, number)
@@ -287,7 +287,7 @@ def apply_field_changes(
     fields, table = FIELDS_BY_KIND[kind], OFFSET_TABLES[kind]
     for name, value in new_values.items():
         field = fields.get(name)
-        if field is None or not field.accepts(value):
+        if field is None or not field.is_valid_value(value):
             word, shown = (field.label, _told(field, value)) if field else (name, value)
             whose = format_edge_name(number) if table.letter == "T" else f"{table.letter}{number}"
             entry_text = Message("{whose} {word} {value}", whose=whose, word=word, value=shown)

@@ -56,7 +56,7 @@ class JobRow(NamedTuple):
         )
 
     @property
-    def parts_left(self) -> int:
+    def remaining_part_count(self) -> int:
         """Return the number of parts that still have to be made."""
         return max(0, self.parts_to_make - self.parts_made)
 
@@ -131,37 +131,37 @@ def add_job(connection: sqlite3.Connection, program: str, parts_to_make: int, no
     return int(done.lastrowid or 0)
 
 
-def change_job(connection: sqlite3.Connection, job: int, parts_to_make: int, note: str) -> None:
+def change_job(connection: sqlite3.Connection, job_id: int, parts_to_make: int, note: str) -> None:
     """Change the number of parts and the note of a job.
 
     Raises StoreError if the number or the note is invalid.
     """
     _check(parts_to_make, note)
-    _demand(connection, job)
-    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (parts_to_make, note, job))
+    _demand(connection, job_id)
+    connection.execute("UPDATE jobs SET wanted = ?, note = ? WHERE id = ?", (parts_to_make, note, job_id))
 
 
-def move_job(connection: sqlite3.Connection, job: int, place: int) -> None:
-    """Move a job to the position ``place`` in the queue, counted from 1.
+def move_job(connection: sqlite3.Connection, job_id: int, position: int) -> None:
+    """Move a job to the position ``position`` in the queue, counted from 1.
 
     Raises StoreError if the job is unknown.
     """
-    _demand(connection, job)
+    _demand(connection, job_id)
     order = [number for (number,) in connection.execute("SELECT id FROM jobs ORDER BY place, id")]
-    order.remove(job)
-    order.insert(max(0, place - 1), job)
+    order.remove(job_id)
+    order.insert(max(0, position - 1), job_id)
     connection.executemany(
         "UPDATE jobs SET place = ? WHERE id = ?", [(place, each) for place, each in enumerate(order, 1)]
     )
 
 
-def remove_job(connection: sqlite3.Connection, job: int) -> None:
+def remove_job(connection: sqlite3.Connection, job_id: int) -> None:
     """Remove a job from the queue without changing part counts.
 
     Raises StoreError if the job is unknown.
     """
-    _demand(connection, job)
-    connection.execute("DELETE FROM jobs WHERE id = ?", (job,))
+    _demand(connection, job_id)
+    connection.execute("DELETE FROM jobs WHERE id = ?", (job_id,))
 
 
 def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
@@ -173,21 +173,21 @@ def clear(connection: sqlite3.Connection, *, remove_all: bool) -> int:
     return len(gone)
 
 
-def activate_job(connection: sqlite3.Connection, job: int) -> None:
+def activate_job(connection: sqlite3.Connection, job_id: int) -> None:
     """Activate a job, so that from now on parts of its program count only for this job.
 
     Raises StoreError if the job is unknown or damaged.
     """
-    _demand(connection, job)
+    _demand(connection, job_id)
     deactivate_job(connection)
-    row = next((row for row in read_jobs(connection) if row.id == job), None)
+    row = next((row for row in read_jobs(connection) if row.id == job_id), None)
     if row is None:
         raise StoreError(
             "the data of this job does not match its checksum; clear the job from the "
             "queue and enter the job again",
             "damaged-job",
         )
-    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.part_count, job))
+    connection.execute("UPDATE jobs SET base = ? WHERE id = ?", (row.part_count, job_id))
 
 
 def deactivate_job(connection: sqlite3.Connection) -> None:
@@ -208,20 +208,20 @@ def save_count_before_reset(connection: sqlite3.Connection, program: str) -> Non
             connection.execute("UPDATE jobs SET made = ?, base = 0 WHERE id = ?", (row.parts_made, row.id))
 
 
-def record_loaded_text(connection: sqlite3.Connection, program: str, text: str) -> None:
-    """Record that the program text with the record key ``text`` is loaded under the name ``program``.
+def record_loaded_text(connection: sqlite3.Connection, program: str, record_key: str) -> None:
+    """Record that the program text with the record key ``record_key`` is loaded under the name ``program``.
 
     The active job of the program retains the parts that it has made.
     """
     before = program_records.find_loaded_key(connection, program)
-    if before == text:
+    if before == record_key:
         return
     if before == program:
         program_records.assign_rows_to_text(connection, program)
     made = {
         row.id: row.parts_made for row in read_jobs(connection) if row.is_active and row.program == program
     }
-    settings.save_setting(connection, make_loaded_text_key(program), text)
+    settings.save_setting(connection, make_loaded_text_key(program), record_key)
     base = program_records.read_part_count(connection, program)
     for number, count in made.items():
         connection.execute("UPDATE jobs SET made = ?, base = ? WHERE id = ?", (count, base, number))
@@ -272,19 +272,19 @@ class JobQueue:
         """
         return self._store.write(lambda c: add_job(c, program, parts_to_make, note))
 
-    def move_job(self, job: int, place: int) -> Future[None]:
+    def move_job(self, job_id: int, position: int) -> Future[None]:
         """Move a job to a position in the queue, counted from 1.
 
         The future raises StoreError for an unknown job.
         """
-        return self._store.write(lambda c: move_job(c, job, place))
+        return self._store.write(lambda c: move_job(c, job_id, position))
 
-    def remove_job(self, job: int) -> Future[None]:
+    def remove_job(self, job_id: int) -> Future[None]:
         """Remove a job without changing part counts.
 
         The future raises StoreError for an unknown job.
         """
-        return self._store.write(lambda c: remove_job(c, job))
+        return self._store.write(lambda c: remove_job(c, job_id))
 
     def clear_jobs(self, *, remove_all: bool) -> Future[int]:
         """Remove the finished and damaged jobs, or all jobs.

@@ -112,9 +112,9 @@ def save_feature(connection: sqlite3.Connection, row: FeatureRow) -> int:
     return row.id
 
 
-def retire_feature(connection: sqlite3.Connection, feature: int) -> None:
+def retire_feature(connection: sqlite3.Connection, feature_id: int) -> None:
     """Stop measuring a feature without deleting its readings."""
-    connection.execute("UPDATE part_features SET retired = 1 WHERE id = ?", (feature,))
+    connection.execute("UPDATE part_features SET retired = 1 WHERE id = ?", (feature_id,))
 
 
 def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
@@ -140,12 +140,12 @@ def add_reading(connection: sqlite3.Connection, row: ReadingRow) -> int:
     return int(done.lastrowid or 0)
 
 
-def void_reading(connection: sqlite3.Connection, reading: int) -> None:
+def void_reading(connection: sqlite3.Connection, reading_id: int) -> None:
     """Mark a reading as deleted without removing its row.
 
     Raises StoreError if the reading does not exist or is already deleted.
     """
-    done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading,))
+    done = connection.execute("UPDATE part_readings SET void = 1 WHERE id = ? AND void = 0", (reading_id,))
     if not done.rowcount:
         raise StoreError("that reading has already been deleted", "already-removed")
 

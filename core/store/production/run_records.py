@@ -13,7 +13,7 @@ from core.store.store_rows import EventOrigin, EventRow, RunRow, get_utc_now_tex
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
-ORIGIN = "last_event"  # key of the setting with the origin of the last stored event
+LAST_ORIGIN_KEY = "last_event"  # key of the setting with the origin of the last stored event
 
 
 class LoadedTexts:
@@ -22,16 +22,16 @@ class LoadedTexts:
     def __init__(self) -> None:
         self._keys = dict[str, str]()
 
-    def add(self, name: str, key: str) -> None:
+    def record_loaded_text(self, name: str, key: str) -> None:
         """Record that the text with the record key ``key`` is loaded under ``name``."""
         self._keys[name] = key
 
-    def rename(self, old: str, new: str) -> None:
-        """Transfer the text that is loaded under the name ``old``, if any, to the name ``new``."""
-        key = self._keys.pop(old, None)
-        self._keys.pop(new, None)
+    def rename_program(self, old_name: str, new_name: str) -> None:
+        """Transfer the text that is loaded under the name ``old_name``, if any, to the name ``new_name``."""
+        key = self._keys.pop(old_name, None)
+        self._keys.pop(new_name, None)
         if key is not None:
-            self._keys[new] = key
+            self._keys[new_name] = key
 
     def find_key(self, program: str) -> str:
         """Return the record key of the text that is loaded under a name.
@@ -80,14 +80,14 @@ class RunRecords:
         return self._store.keep(lambda unwritten: unwritten.add_parts(key, count))
 
     def record_event(
-        self, event: EventRow, part_of: str = "", origin: EventOrigin | None = None
+        self, event: EventRow, counted_program: str = "", origin: EventOrigin | None = None
     ) -> Future[None]:
-        """Log an event with its origin, and count a part of the program ``part_of``.
+        """Log an event with its origin, and count a part of the program ``counted_program``.
 
-        No part is counted if ``part_of`` is empty. All this is written in one transaction. The future is
-        done when the data are on disk.
+        No part is counted if ``counted_program`` is empty. All this is written in one transaction. The
+        future is done when the data are on disk.
         """
-        key = self._loaded.find_key(part_of) if part_of else ""
+        key = self._loaded.find_key(counted_program) if counted_program else ""
 
         def keeping(unwritten: WaitingEntries) -> None:
             unwritten.add_event(event)
@@ -96,14 +96,14 @@ class RunRecords:
             if origin is not None:
                 value = list(origin)
                 unwritten.replace_operation(
-                    ("setting", ORIGIN), lambda c: settings.save_setting(c, ORIGIN, value)
+                    ("setting", LAST_ORIGIN_KEY), lambda c: settings.save_setting(c, LAST_ORIGIN_KEY, value)
                 )
 
         return self._store.keep(keeping)
 
     def read_last_origin(self) -> EventOrigin | None:
         """Return the origin of the last stored event of a control process, or None."""
-        match self._store.run_query(settings.read_setting, ORIGIN):
+        match self._store.run_query(settings.read_setting, LAST_ORIGIN_KEY):
             case [str() as control, int() as number]:
                 return EventOrigin(control, number)
             case _:
@@ -128,10 +128,10 @@ class RunRecords:
             ("end", key), lambda c: program_records.record_outcome(c, key, outcome)
         )
 
-    def end_interrupted_runs(self, outcome: str, template: str) -> Future[None]:
+    def end_interrupted_runs(self, outcome: str, warning_template: str) -> Future[None]:
         """Record ``outcome`` for all runs that have no end.
 
-        For each of these programs, a warning made from ``template`` is logged.
+        For each of these programs, a warning made from ``warning_template`` is logged.
         """
 
         def operation(connection: sqlite3.Connection) -> None:
@@ -139,7 +139,7 @@ class RunRecords:
             event_log.add_events(
                 connection,
                 (
-                    EventRow(get_utc_now_text(), "warning", Message(template, program=name))
+                    EventRow(get_utc_now_text(), "warning", Message(warning_template, program=name))
                     for name in cut_off
                 ),
             )

@@ -62,24 +62,24 @@ def configure_c_loop(file: HalFile, axis: LatheAxis, *drives: str) -> None:
     )
     file.set_pin(f"{_PID}.error-previous-target", 1)
     file.connect_positions(axis.name, [f"{_PID}.command"], ["c-degrees.out", f"{_PID}.feedback"])
-    file.connect("c-speed", f"{_PID}.output", *drives)
+    file.connect_pins("c-speed", f"{_PID}.output", *drives)
 
 
-def get_c_speed_pins(file: HalFile, speed: str, enable_pin: str) -> tuple[str, str]:
+def get_c_speed_pins(file: HalFile, speed_pin: str, enable_pin: str) -> tuple[str, str]:
     """Return the pins for the spindle speed in rpm and for the enable signal.
 
     They are the pins of the drive, or those of the selector if the drive is also the C axis.
     """
     axis = file.lathe.c_axis
     if axis is None:
-        return speed, enable_pin
+        return speed_pin, enable_pin
     configure_c_loop(file, axis, "c-rpm.in")
     file.set_pin("c-rpm.gain", 1.0 / 6.0, "converts degrees/s to rpm")
-    file.connect("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
-    file.connect("spindle-drive-rpm", f"{_CHOICE}.out", speed)
-    file.connect("spindle-drive-on", f"{_POWER}.out", enable_pin)
+    file.connect_pins("c-rpm", "c-rpm.out", f"{_CHOICE}.in1")
+    file.connect_pins("spindle-drive-rpm", f"{_CHOICE}.out", speed_pin)
+    file.connect_pins("spindle-drive-on", f"{_POWER}.out", enable_pin)
     file.connect_key(
-        _PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_POWER}.in1", f"{_PID}.enable", required=True
+        _PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_POWER}.in1", f"{_PID}.enable", is_required=True
     )
     return f"{_CHOICE}.in0", f"{_POWER}.in0"
 
@@ -94,9 +94,9 @@ def get_simulated_c_speed_pin(file: HalFile) -> str:
         return "spindle-rps.out"
     file.set_pin("c-rps.gain", 1.0 / 360.0)
     configure_c_loop(file, axis, "c-rps.in")
-    file.connect("c-rps", "c-rps.out", f"{_CHOICE}.in1")
-    file.connect("spindle-rps-cmd", "spindle-rps.out", f"{_CHOICE}.in0")
-    file.connect_key(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", required=True)
+    file.connect_pins("c-rps", "c-rps.out", f"{_CHOICE}.in1")
+    file.connect_pins("spindle-rps-cmd", "spindle-rps.out", f"{_CHOICE}.in0")
+    file.connect_key(_PATH, "spindle-is-c", f"{_CHOICE}.sel", f"{_PID}.enable", is_required=True)
     return f"{_CHOICE}.out"
 
 
@@ -118,7 +118,7 @@ def connect_mode_terminal(file: HalFile) -> None:
             terminals=file.terminal_hint,
         )
         file.findings.append(FileFinding(_PATH, name, why))
-    file.connect_key(_PATH, "spindle-is-c", f"{_PID}.enable", required=True)
+    file.connect_key(_PATH, "spindle-is-c", f"{_PID}.enable", is_required=True)
 
 
 # --- Mesa's Ethernet cards.
@@ -198,9 +198,9 @@ def load_pid_loops(file: HalFile, axes: tuple[LatheAxis, ...]) -> None:
         file.last_calls += [f"{name}.do-pid-calcs" for name in names]
 
 
-def configure_encoder(file: HalFile, pin: str, counts: float, description: str) -> None:
+def configure_encoder(file: HalFile, pin: str, counts_per_unit: float, description: str) -> None:
     """Configure a quadrature encoder with its filter enabled."""
-    file.set_pin(f"{pin}.scale", counts, description)
+    file.set_pin(f"{pin}.scale", counts_per_unit, description)
     for key in ("counter-mode", "index-invert", "index-mask"):
         file.set_pin(f"{pin}.{key}", 0)
     file.set_pin(f"{pin}.filter", 1)
@@ -211,7 +211,7 @@ def connect_spindle_encoder(file: HalFile, card: str, terminal: str) -> None:
     board = file.lathe.board_table.spindle
     pin = f"{card}.encoder.{board.encoder:02d}"
     file.start_section(f"Spindle: encoder {board.encoder}")
-    counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
+    counts = 4 * file.lathe.encoder_line_count * (-1 if board.reversed else 1)
     configure_encoder(
         file, pin, counts, "counts per revolution: 4 x encoder lines; the position increases with M03"
     )

@@ -103,14 +103,24 @@ def _terminal(name: str) -> BoardTerminal | None:
 
 def _connect_drive(file: HalFile, name: str) -> None:
     """Connect the objects of one drive to its cia402 component."""
-    file.connect(f"{name}-statusword", f"lcec.0.{name}.cia-statusword", f"cia402.{name}.statusword")
-    file.connect(f"{name}-opmode-display", f"lcec.0.{name}.opmode-display", f"cia402.{name}.opmode-display")
-    file.connect(f"{name}-drv-pos", f"lcec.0.{name}.actual-position", f"cia402.{name}.drv-actual-position")
-    file.connect(f"{name}-drv-vel", f"lcec.0.{name}.actual-velocity", f"cia402.{name}.drv-actual-velocity")
-    file.connect(f"{name}-controlword", f"cia402.{name}.controlword", f"lcec.0.{name}.cia-controlword")
-    file.connect(f"{name}-opmode", f"cia402.{name}.opmode", f"lcec.0.{name}.opmode")
-    file.connect(f"{name}-target-pos", f"cia402.{name}.drv-target-position", f"lcec.0.{name}.target-position")
-    file.connect(f"{name}-target-vel", f"cia402.{name}.drv-target-velocity", f"lcec.0.{name}.target-velocity")
+    file.connect_pins(f"{name}-statusword", f"lcec.0.{name}.cia-statusword", f"cia402.{name}.statusword")
+    file.connect_pins(
+        f"{name}-opmode-display", f"lcec.0.{name}.opmode-display", f"cia402.{name}.opmode-display"
+    )
+    file.connect_pins(
+        f"{name}-drv-pos", f"lcec.0.{name}.actual-position", f"cia402.{name}.drv-actual-position"
+    )
+    file.connect_pins(
+        f"{name}-drv-vel", f"lcec.0.{name}.actual-velocity", f"cia402.{name}.drv-actual-velocity"
+    )
+    file.connect_pins(f"{name}-controlword", f"cia402.{name}.controlword", f"lcec.0.{name}.cia-controlword")
+    file.connect_pins(f"{name}-opmode", f"cia402.{name}.opmode", f"lcec.0.{name}.opmode")
+    file.connect_pins(
+        f"{name}-target-pos", f"cia402.{name}.drv-target-position", f"lcec.0.{name}.target-position"
+    )
+    file.connect_pins(
+        f"{name}-target-vel", f"cia402.{name}.drv-target-velocity", f"lcec.0.{name}.target-velocity"
+    )
 
 
 def _axis(file: HalFile, axis: LatheAxis) -> None:
@@ -119,7 +129,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.start_section(f"Axis {axis.name}: slave {board.channel}, cyclic synchronous position")
     file.set_pin(f"{pin}.csp-mode", 1)
     sign = -1.0 if board.reversed else 1.0
-    file.set_pin(f"{pin}.pos-scale", sign / axis.count, f"increments per {axis.unit}: 1 / count")
+    file.set_pin(f"{pin}.pos-scale", sign / axis.travel_per_count, f"increments per {axis.unit}: 1 / count")
     file.set_pin(
         f"{pin}.auto-fault-reset",
         1,
@@ -138,21 +148,21 @@ def _spindle(file: HalFile) -> None:
     file.set_pin(
         f"{pin}.velo-scale", sign * board.velocity_per_rpm, "value of objects 60FF and 606C at 1 rpm"
     )
-    if file.lathe.encoder_lines:
+    if file.lathe.encoder_line_count:
         file.set_pin(
             f"{pin}.pos-scale",
-            sign * 4 * file.lathe.encoder_lines,
+            sign * 4 * file.lathe.encoder_line_count,
             "increments of object 6064 per revolution: 4 x encoder lines",
         )
         further = get_c_turn_pins(file)
         file.connect_key("hal.spindle.position", "spindle-turns", f"{pin}.pos-fb", *further, label=place)
     _connect_drive(file, "spindle")
     file.set_pin("spindle-per-s.gain", 1.0 / 60.0)
-    file.connect("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
+    file.connect_pins("spindle-rpm-fb", f"{pin}.velocity-fb", "spindle-per-s.in")
     file.connect_key("hal.spindle.velocity", "spindle-rps", "spindle-per-s.out", label=place)
     speed, on = get_c_speed_pins(file, f"{pin}.velocity-cmd", f"{pin}.enable")
-    file.connect_key("hal.spindle.speed", "spindle-rpm-cmd", speed, label=place, required=True)
-    file.connect_key("hal.spindle.on", "spindle-on", on, label=place, required=True)
+    file.connect_key("hal.spindle.speed", "spindle-rpm-cmd", speed, label=place, is_required=True)
+    file.connect_key("hal.spindle.on", "spindle-on", on, label=place, is_required=True)
     file.connect_key("hal.spindle.fault", "spindle-fault", f"{pin}.drv-fault", label=place)
 
 

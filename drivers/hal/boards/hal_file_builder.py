@@ -13,7 +13,7 @@ from core.message import Message
 from core.table_schema import FileFinding, format_toml_value
 from drivers.hal.boards.board_table import BoardTable
 
-TURNDESK_MARK = "#turndesk"
+TURNDESK_COMMENT = "#turndesk"
 C_AXIS = "C"
 _WIDTH = 110
 
@@ -22,11 +22,11 @@ _WIDTH = 110
 class LatheAxis:
     """One axis that HAL moves.
 
-    Units are mm or degrees, and seconds. ``count`` is the travel per count or step.
+    Units are mm or degrees, and seconds. ``travel_per_count`` is the travel per count or step.
     """
 
     name: str
-    count: float
+    travel_per_count: float
     vmax: float
     amax: float
 
@@ -50,16 +50,16 @@ class LatheData:
     servo_thread: str
     period_s: float
     axes: tuple[LatheAxis, ...]
-    rpm_max: float
-    rpm_accel: float
-    encoder_lines: int
+    max_rpm: float
+    acceleration_rpm_s: float
+    encoder_line_count: int
     terminal_names: Mapping[str, str]
-    spindle_is_c: bool = False  # C is the spindle drive.
+    is_spindle_c_axis: bool = False  # C is the spindle drive.
 
     @property
     def c_axis(self) -> LatheAxis | None:
         """Return the C axis if it is the spindle drive, otherwise None."""
-        return next((axis for axis in self.axes if axis.name == C_AXIS and self.spindle_is_c), None)
+        return next((axis for axis in self.axes if axis.name == C_AXIS and self.is_spindle_c_axis), None)
 
     @property
     def driven_axes(self) -> tuple[LatheAxis, ...]:
@@ -153,37 +153,39 @@ class HalFile:
         line = f"setp {pin} {value:.10g}"
         self.sections[-1].lines.append(f"{line:<58} # {comment}" if comment else line)
 
-    def connect(self, signal: str, *pins: str) -> None:
+    def connect_pins(self, signal: str, *pins: str) -> None:
         """Connect pins to a signal, with the source pin first."""
         self.sections[-1].lines.append(f"net {signal} {' '.join(pins)}")
 
-    def connect_key(self, path: str, signal: str, *pins: str, label: str = "", required: bool = False) -> str:
+    def connect_key(
+        self, key: str, signal: str, *pins: str, label: str = "", is_required: bool = False
+    ) -> str:
         """Connect the pins of the key ``path``, and return their signal.
 
         The machine file may specify the signal, one of the pins, or a terminal of the board. A terminal is
         connected to the pins.
         """
-        self._done.add(path)
-        name = self.lathe.terminal_names.get(path, "")
-        drives = not _READ_FUNCTIONS.fullmatch(path)
+        self._done.add(key)
+        name = self.lathe.terminal_names.get(key, "")
+        drives = not _READ_FUNCTIONS.fullmatch(key)
         if not name:
-            if required:
+            if is_required:
                 why = Message("missing; expected a signal ({signal}) or a pin", signal=signal)
-                self.findings.append(FileFinding(path, "", why))
+                self.findings.append(FileFinding(key, "", why))
             return signal
         if "." not in name:
-            return self._on_signal(path, name, pins, label)
+            return self._on_signal(key, name, pins, label)
         on = pins
         if name not in pins:
             found = self.find_terminal(name)
             if found is None or found.is_output is not drives:
-                self.findings.append(FileFinding(path, format_toml_value(name), self._expected(pins, found)))
+                self.findings.append(FileFinding(key, format_toml_value(name), self._expected(pins, found)))
                 return signal
             label = label or found.label
             if drives:
-                self.claim_terminal(name, path)
+                self.claim_terminal(name, key)
             on = (*pins, name) if drives else (name, *pins)
-        self._add_wiring_row(path, signal, on, label, name)
+        self._add_wiring_row(key, signal, on, label, name)
         return signal
 
     def connect_positions(
@@ -191,8 +193,8 @@ class HalFile:
     ) -> None:
         """Connect the pins of the commanded and the measured position of an axis."""
         path, name = f"hal.axes.{axis}", axis.lower()
-        self.connect_key(f"{path}.command", f"{name}-pos-cmd", *command, label=label, required=True)
-        self.connect_key(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, required=True)
+        self.connect_key(f"{path}.command", f"{name}-pos-cmd", *command, label=label, is_required=True)
+        self.connect_key(f"{path}.feedback", f"{name}-pos-fb", *feedback, label=label, is_required=True)
 
     def connect_terminal(
         self, path: str, signal: str, name: str, pin: str, *, is_output: bool = True
@@ -204,7 +206,7 @@ class HalFile:
             return
         if is_output:
             self.claim_terminal(name, path)
-        self.connect(signal, *((pin, name) if is_output else (name, pin)))
+        self.connect_pins(signal, *((pin, name) if is_output else (name, pin)))
         self.wiring_rows.append(WiringRow(found.label, name, signal, (path,)))
 
     def add_signal(self, path: str, name: str) -> None:
@@ -236,17 +238,17 @@ class HalFile:
                 continue
             self.wiring_rows.append(WiringRow(found.label if found else "", name, "machine-on", (path,)))
         if named and "hal.machine_on" not in self.lathe.terminal_names:
-            self.connect("machine-on", *pins)
+            self.connect_pins("machine-on", *pins)
         else:
-            self.connect_key("hal.machine_on", "machine-on", *pins, required=True)
+            self.connect_key("hal.machine_on", "machine-on", *pins, is_required=True)
 
-    def connect_link_fault(self, gate: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
+    def connect_link_fault(self, gate_kind: str, *pins: str, extra_pins: tuple[str, ...] = ()) -> None:
         """Connect hal.link_fault to the output of a gate.
 
         The gate is "or" for pins that report a fault, and "nand" for pins that report health. The pins
         ``extra_pins`` of the file are on the same signal.
         """
-        personality = {"or": 0x200, "nand": 0x800}[gate] + len(pins)
+        personality = {"or": 0x200, "nand": 0x800}[gate_kind] + len(pins)
         self.add_load(
             f"loadrt logic names=board-link personality={personality:#x}",
             "inputs retain their last value while the board does not respond; this component "
@@ -255,8 +257,10 @@ class HalFile:
         self.first_calls.append("board-link")
         self.start_section("Board connection: a connection fault opens the E-stop chain")
         for number, pin in enumerate(pins):
-            self.connect(f"board-link-{number}", pin, f"board-link.in-{number:02d}")
-        self.connect_key("hal.link_fault", "link-fault", f"board-link.{gate}", *extra_pins, required=True)
+            self.connect_pins(f"board-link-{number}", pin, f"board-link.in-{number:02d}")
+        self.connect_key(
+            "hal.link_fault", "link-fault", f"board-link.{gate_kind}", *extra_pins, is_required=True
+        )
 
     def claim_terminal(self, pin: str, path: str) -> None:
         """Reserve a driven terminal, and add a finding if it is already used."""
@@ -291,7 +295,7 @@ class HalFile:
             if wire.pin == pin:
                 self.wiring_rows[index] = wire._replace(names=(*wire.names, path))
                 return
-        self.connect(signal, *pins)
+        self.connect_pins(signal, *pins)
         self.wiring_rows.append(WiringRow(label, pin, signal, (path,)))
 
     def _expected(self, pins: tuple[str, ...], found: BoardTerminal | None) -> str:
@@ -365,7 +369,7 @@ def _body(file: HalFile) -> Iterator[str]:
         "",
         "# 2. Setpoints, gear, E-stop chain: TurnDesk replaces the next line with its own functions.",
     )
-    yield from (TURNDESK_MARK, "", "# 3. Functions that drive the machine run last.")
+    yield from (TURNDESK_COMMENT, "", "# 3. Functions that drive the machine run last.")
     yield from (f"addf {call} {thread}" for call in file.last_calls)
     for section in file.sections:
         if section.lines:

@@ -49,7 +49,7 @@ def build_mesa_servo_file(lathe: LatheData) -> HalFile:
             "the axis stays at rest"
         ),
     ]
-    turns = bool(lathe.encoder_lines and lathe.terminal_names.get("hal.spindle.position"))
+    turns = bool(lathe.encoder_line_count and lathe.terminal_names.get("hal.spindle.position"))
     spindle = lathe.board_table.spindle
     channels = [board.channel for board in lathe.board_table.axes.values()] + [spindle.channel]
     encoders = 1 + max((*channels[:-1], spindle.encoder if turns else -1))
@@ -107,7 +107,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     full = _DEGREES_RPM * board.full_rpm if axis.name == C_AXIS else board.full_speed
     _analog(file, out, full, f"{axis.unit}/s at 10 V")
     sign = -1.0 if board.reversed else 1.0
-    configure_encoder(file, counter, sign / axis.count, f"counts per {axis.unit}: 1 / count")
+    configure_encoder(file, counter, sign / axis.travel_per_count, f"counts per {axis.unit}: 1 / count")
     for key, value in (("Pgain", board.p), ("Igain", board.i), ("Dgain", board.d), ("FF0", 0.0)):
         file.set_pin(f"{pid}.{key}", value)
     file.set_pin(f"{pid}.FF1", 1.0, "FF1 = 1 passes the commanded speed through unchanged")
@@ -117,7 +117,7 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
     file.connect_positions(axis.name, [f"{pid}.command"], [f"{counter}.position", f"{pid}.feedback"], place)
     index = f"hal.axes.{axis.name}.index_enable"
     file.connect_key(index, f"{name}-index", f"{counter}.index-enable", f"{pid}.index-enable", label=place)
-    file.connect(f"{name}-output", f"{pid}.output", f"{out}.value")
+    file.connect_pins(f"{name}-output", f"{pid}.output", f"{out}.value")
 
 
 def _speed(file: HalFile) -> None:
@@ -127,5 +127,5 @@ def _speed(file: HalFile) -> None:
     _analog(file, pin, board.full_speed, "spindle speed at 10 V, in rpm")
     speed = "speed" if file.lathe.terminal_names.get("hal.spindle.speed") else "speed_abs"
     value, enable = get_c_speed_pins(file, f"{pin}.value", f"{pin}.enable")
-    file.connect_key(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, label=place, required=True)
-    file.connect_key("hal.spindle.on", "spindle-on", enable, label=f"enable of {place}", required=True)
+    file.connect_key(f"hal.spindle.{speed}", "spindle-rpm-cmd", value, label=place, is_required=True)
+    file.connect_key("hal.spindle.on", "spindle-on", enable, label=f"enable of {place}", is_required=True)

@@ -45,7 +45,7 @@ def build_mesa_step_file(lathe: LatheData) -> HalFile:
             "--addr ADDRESS --readhmid"
         ),
     ]
-    encoder = bool(lathe.encoder_lines and lathe.terminal_names.get("hal.spindle.position"))
+    encoder = bool(lathe.encoder_line_count and lathe.terminal_names.get("hal.spindle.position"))
     steps = 1 + max((board.channel for board in lathe.board_table.axes.values()), default=0)
     load_card(
         file,
@@ -82,8 +82,8 @@ def _configure_field_io(file: HalFile) -> None:
     file.add_load("loadrt wcomp names=field-lost")
     file.first_calls[1:1] = ["field-errors", "field-lost"]
     file.start_section("Field I/O: the serial link to the card can fail while the card itself still works")
-    file.connect("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
-    file.connect("field-error-level", "field-errors.out", "field-lost.in")
+    file.connect_pins("field-error-count", f"{_CARD}.sserial.port-0.fault-count", "field-errors.in")
+    file.connect_pins("field-error-level", "field-errors.out", "field-lost.in")
     file.set_pin("field-lost.min", -1)
     file.set_pin(
         "field-lost.max",
@@ -139,7 +139,7 @@ def _configure_steps(file: HalFile, axis: LatheAxis) -> str:
     board = file.lathe.board_table.axes[axis.name]
     pin = f"{_CARD}.stepgen.{board.channel:02d}"
     sign = -1.0 if board.reversed else 1.0
-    file.set_pin(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
+    file.set_pin(f"{pin}.position-scale", sign / axis.travel_per_count, f"steps per {axis.unit}: 1 / count")
     for key, value in (
         ("steplen", "step"),
         ("stepspace", "space"),
@@ -193,12 +193,12 @@ def _axis(file: HalFile, axis: LatheAxis) -> None:
         ("FF2", board.ff2),
     ):
         file.set_pin(f"pid.{name}.{key}", gain)
-    file.set_pin(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.count), axis.unit)
+    file.set_pin(f"pid.{name}.maxerror", max(_MOST_ERROR, 2.0 * axis.travel_per_count), axis.unit)
     file.set_pin(f"pid.{name}.maxoutput", 1.5 * axis.vmax, f"{axis.unit}/s")
     file.set_pin(f"pid.{name}.error-previous-target", 1)
     measured = f"{pin}.position-fb", f"pid.{name}.feedback"
     file.connect_positions(axis.name, [f"pid.{name}.command"], measured, place)
-    file.connect(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
+    file.connect_pins(f"{name}-vel-cmd", f"pid.{name}.output", f"{pin}.velocity-cmd")
 
 
 def _connect_spindle(file: HalFile) -> None:
@@ -209,9 +209,11 @@ def _connect_spindle(file: HalFile) -> None:
     file.start_section("Spindle: analog output 0…10 V, enable and direction of the 7I76E")
     file.set_pin(f"{_FIELD}.spinout-scalemax", full, "spindle speed at 10 V, in rpm")
     file.set_pin(f"{_FIELD}.spinout-minlim", 0)
-    file.set_pin(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.rpm_max), "rpm")
+    file.set_pin(f"{_FIELD}.spinout-maxlim", min(full, file.lathe.max_rpm), "rpm")
     file.connect_key(
-        "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", label="TB4 SPINOUT", required=True
+        "hal.spindle.speed_abs", "spindle-rpm-abs", f"{_FIELD}.spinout", label="TB4 SPINOUT", is_required=True
     )
-    file.connect_key("hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", label="TB4 SPINENA", required=True)
+    file.connect_key(
+        "hal.spindle.on", "spindle-on", f"{_FIELD}.spinena", label="TB4 SPINENA", is_required=True
+    )
     file.connect_key("hal.spindle.reverse", "spindle-reverse", f"{_FIELD}.spindir", label="TB4 SPINDIR")

@@ -42,7 +42,7 @@ def build_parallel_port_file(lathe: LatheData) -> HalFile:
             "computer hangs"
         ),
     ]
-    encoder = bool(lathe.encoder_lines and lathe.terminal_names.get("hal.spindle.position"))
+    encoder = bool(lathe.encoder_line_count and lathe.terminal_names.get("hal.spindle.position"))
     _load(file, encoder=encoder)
     for channel, axis in enumerate(lathe.axes):
         _axis(file, channel, axis)
@@ -94,7 +94,7 @@ def _axis(file: HalFile, channel: int, axis: LatheAxis) -> None:
     pin = f"stepgen.{channel}"
     file.start_section(f"Axis {axis.name}: step generator {channel}")
     sign = -1.0 if board.reversed else 1.0
-    file.set_pin(f"{pin}.position-scale", sign / axis.count, f"steps per {axis.unit}: 1 / count")
+    file.set_pin(f"{pin}.position-scale", sign / axis.travel_per_count, f"steps per {axis.unit}: 1 / count")
     file.set_pin(
         f"{pin}.maxvel",
         1.5 * axis.vmax,
@@ -134,15 +134,15 @@ def _speed(file: HalFile) -> None:
     file.start_section("Spindle: PWM speed signal, which a converter changes to 0…10 V")
     file.set_pin("pwmgen.0.scale", board.full_speed, "spindle speed at 10 V, in rpm")
     file.set_pin("pwmgen.0.pwm-freq", board.pwm_hz, "Hz")
-    file.connect_key("hal.spindle.speed_abs", "spindle-rpm-abs", "pwmgen.0.value", required=True)
-    file.connect_key("hal.spindle.on", "spindle-on", "pwmgen.0.enable", required=True)
+    file.connect_key("hal.spindle.speed_abs", "spindle-rpm-abs", "pwmgen.0.value", is_required=True)
+    file.connect_key("hal.spindle.on", "spindle-on", "pwmgen.0.enable", is_required=True)
     file.connect_terminal("board.spindle.pwm", "spindle-pwm", board.pwm, "pwmgen.0.pwm")
 
 
 def _encoder(file: HalFile) -> None:
     board = file.lathe.board_table.spindle
     file.start_section("Spindle encoder")
-    counts = 4 * file.lathe.encoder_lines * (-1 if board.reversed else 1)
+    counts = 4 * file.lathe.encoder_line_count * (-1 if board.reversed else 1)
     file.set_pin("encoder.0.position-scale", counts, "counts per revolution: 4 x encoder lines")
     for phase, port in (("A", board.phase_a), ("B", board.phase_b), ("Z", board.phase_z)):
         if port:

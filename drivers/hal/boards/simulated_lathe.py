@@ -54,20 +54,20 @@ def _terminal(name: str) -> BoardTerminal | None:
 def _slide(file: HalFile, axis: str) -> None:
     name, path = axis.lower(), f"hal.axes.{axis}"
     file.set_pin(f"{name}-servo.gain", _FOLLOWING_FRACTION)
-    file.connect_key(f"{path}.command", f"{name}-pos-cmd", f"{name}-servo.in", required=True)
-    file.connect(f"{name}-servo-out", f"{name}-servo.out", f"{name}-motor.in1")
+    file.connect_key(f"{path}.command", f"{name}-pos-cmd", f"{name}-servo.in", is_required=True)
+    file.connect_pins(f"{name}-servo-out", f"{name}-servo.out", f"{name}-motor.in1")
     file.connect_key(
-        f"{path}.feedback", f"{name}-pos-fb", f"{name}-motor.out", f"{name}-motor.in0", required=True
+        f"{path}.feedback", f"{name}-pos-fb", f"{name}-motor.out", f"{name}-motor.in0", is_required=True
     )
 
 
 def _spindle(file: HalFile) -> None:
     file.start_section("Spindle: ramped speed in rpm, speed in rev/s, position in revolutions")
-    file.set_pin("spindle-ramp.maxv", file.lathe.rpm_accel, "rpm/s")
+    file.set_pin("spindle-ramp.maxv", file.lathe.acceleration_rpm_s, "rpm/s")
     file.set_pin("spindle-rps.gain", 1.0 / 60.0)
     file.set_pin("spindle.scale", 1.0)
     file.connect_key("hal.spindle.speed", "spindle-rpm-cmd", "spindle-ramp.in")
-    file.connect("spindle-rpm", "spindle-ramp.out", "spindle-rps.in")
+    file.connect_pins("spindle-rpm", "spindle-ramp.out", "spindle-rps.in")
     file.connect_key(
         "hal.spindle.velocity", "spindle-rps", get_simulated_c_speed_pin(file), "spindle.velocity-cmd"
     )
@@ -93,6 +93,6 @@ def _add_manual_signals(file: HalFile) -> None:
         file.add_comment("The collet switch follows the collet valve; the collet is clamped at startup.")
         for delay in ("on-delay", "off-delay"):
             file.set_pin(f"collet-switch.{delay}", _SWITCHES)
-        file.connect(collet, "collet-switch.in")
+        file.connect_pins(collet, "collet-switch.in")
         file.sections[-1].lines.append(f"sets {collet} 1")
     file.connect_remaining()

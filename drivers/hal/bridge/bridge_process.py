@@ -97,7 +97,7 @@ def _create_component(hal: Any, settings: Mapping[str, Any]) -> Any | None:
     for each in wanted:  # The start of a session, like an E-stop, does not change these outputs.
         output = each.path.removeprefix("io.out.")
         if output in settings["bridge"]["outputs"] and settings["bridge"]["outputs"][output] is None:
-            component[f"out.{output}"] = hal_pins.is_on(each.pin, pins, signals)
+            component[f"out.{output}"] = hal_pins.is_pin_on(each.pin, pins, signals)
     return component
 
 

@@ -138,7 +138,7 @@ class HalBridge:
         self._update_power(now)
         self._without_driver(now)
         self._fill(now)
-        self.setpoint_player.queue.discard_before(now - _HISTORY_S)
+        self.setpoint_player.queue.discard_pieces_before(now - _HISTORY_S)
 
     def encode_report(self) -> bytes:
         """Return a packet with the complete state and the samples since the last report."""
@@ -193,7 +193,7 @@ class HalBridge:
             row = int(sample[0])
             if row == self.row_streams.played_row_number and row and self._on:
                 self._dry += 1
-            t = self.row_streams.record_played(row)
+            t = self.row_streams.record_played_row(row)
             command, actual = sample[1:axes:2], sample[2:axes:2]
             self._place = tuple(actual)
             if self.config.turns:
@@ -317,12 +317,12 @@ class HalBridge:
         if not self._on or not pieces or self._off_at < INFINITY:
             return
         t = pieces[0].start_time_s
-        if self.row_streams.first_recallable_row(t) is None:
+        if self.row_streams.find_first_recallable_row(t) is None:
             if not self.row_streams.matches_locked_rows(t, make_row_function(pieces)):
                 self._trip("setpoints arrived too late to be executed", "late")
                 return
-            t = self.row_streams.earliest_recall_time()
-        self.setpoint_player.splice(pieces)
+            t = self.row_streams.find_earliest_recall_time()
+        self.setpoint_player.splice_pieces(pieces)
         self._recall(t)
 
     def _mesh(self, head: PacketHead, numbers: Sequence[float]) -> None:
@@ -335,10 +335,10 @@ class HalBridge:
         zero, sign, t = (
             number(head, "zero"),
             number(head, "sign", 1.0),
-            self.row_streams.earliest_recall_time(),
+            self.row_streams.find_earliest_recall_time(),
         )
         left = pieces[0].start_time_s - sign * (
-            self.setpoint_player.spindle_predictor.predict(t) - zero
+            self.setpoint_player.spindle_predictor.predict_revolutions(t) - zero
         )  # turns
         if left < 0.0:
             if self.setpoint_player.is_cam_inactive:
@@ -354,7 +354,7 @@ class HalBridge:
 
     def _brake_axes(self) -> float:
         """Brake to rest on the path as soon as rows can be recalled, and return the end time in seconds."""
-        t = self.row_streams.earliest_recall_time()
+        t = self.row_streams.find_earliest_recall_time()
         pieces = self.setpoint_player.brake_to_rest(t, [axis.amax for axis in self.config.axes])
         self._braked = list(
             flatten_pieces(
@@ -377,7 +377,7 @@ class HalBridge:
         if self.fault or self._on:
             return
         self.setpoint_player.reset_to(self._place)
-        self._recall(self.row_streams.earliest_recall_time())
+        self._recall(self.row_streams.find_earliest_recall_time())
         self._on, self._off_at = True, INFINITY
         self._following_monitor.reset()
         self._grant_at = self.row_streams.last_row_due_s
@@ -428,7 +428,7 @@ class HalBridge:
                 if axis.is_spindle:
                     place[index] = self.spindle_pins.c_position = self._place[index]
             self.setpoint_player.reset_to(place)
-            self._recall(self.row_streams.earliest_recall_time())
+            self._recall(self.row_streams.find_earliest_recall_time())
             self.spindle_pins.request_position_mode(self.row_streams.last_row_due_s)
 
     def _handle_home(self, head: PacketHead, _numbers: Sequence[float]) -> None:

@@ -118,7 +118,7 @@ def describe_pin_error(
     return ""
 
 
-def is_on(pin_name: str, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]) -> bool:
+def is_pin_on(pin_name: str, pins: Mapping[str, HalPin], signals: Mapping[str, HalSignal]) -> bool:
     """Return whether a pin or signal is on."""
     found = signals[pin_name] if pin_name in signals else pins[pin_name]
     return found.value == "TRUE"

@@ -49,23 +49,25 @@ def flatten_pieces(pieces: Iterable[MotionPiece]) -> Iterable[float]:
         )
 
 
-def parse_pieces(numbers: Sequence[float], axes: int) -> list[MotionPiece]:
+def parse_pieces(numbers: Sequence[float], axis_count: int) -> list[MotionPiece]:
     """Return the pieces that a sequence of numbers contains."""
-    width = 2 + 3 * axes
+    width = 2 + 3 * axis_count
     made = []
     for at in range(0, len(numbers), width):
         row = tuple(numbers[at : at + width])
-        p, v, a = row[2 : 2 + axes], row[2 + axes : 2 + 2 * axes], row[2 + 2 * axes :]
+        p, v, a = row[2 : 2 + axis_count], row[2 + axis_count : 2 + 2 * axis_count], row[2 + 2 * axis_count :]
         made.append(MotionPiece(row[0], row[1], p, v, a))
     return made
 
 
-def build_packets(head: Mapping[str, object], pieces: Sequence[MotionPiece], axes: int) -> Iterable[bytes]:
+def build_packets(
+    head: Mapping[str, object], pieces: Sequence[MotionPiece], axis_count: int
+) -> Iterable[bytes]:
     """Yield packets for any number of pieces.
 
     The head of every packet except the last contains ``more``.
     """
-    most = MAX_PACKET_NUMBERS // (2 + 3 * axes)
+    most = MAX_PACKET_NUMBERS // (2 + 3 * axis_count)
     for first in range(0, len(pieces), most):
         part = pieces[first : first + most]
         more = {"more": True} if first + most < len(pieces) else {}

@@ -22,7 +22,7 @@ class RowStream(Protocol):
     """The methods of ``hal.stream`` that the bridge uses."""
 
     @property
-    def depth(self) -> int:
+    def row_count(self) -> int:
         """Return the number of rows that are buffered in the stream."""
         ...
 
@@ -89,33 +89,33 @@ class RowStreams:
         """Return the number of rows that have been written but not played yet."""
         return self.last_row_number - self.played_row_number
 
-    def write_row(self, t: float, values: tuple[float, ...]) -> bool:
+    def write_row(self, due_time_s: float, values: tuple[float, ...]) -> bool:
         """Write one row that is due at ``t``, and return False if the stream is full."""
         stream = self._streams[self._active if self._change is None else 1 - self._active]
         if not stream.writable:
             return False
         self.last_row_number += 1
-        self.last_row_due_s = t
+        self.last_row_due_s = due_time_s
         stream.write((float(self.last_row_number), *values))
-        self._due.append(_PendingRow(self.last_row_number, t, values))
+        self._due.append(_PendingRow(self.last_row_number, due_time_s, values))
         return True
 
-    def record_played(self, row: int) -> float:
+    def record_played_row(self, row_number: int) -> float:
         """Record that the servo thread plays this row, and return its due time in seconds."""
-        while self._due and self._due[0].row <= row:
+        while self._due and self._due[0].row <= row_number:
             self._past.append(self._due.popleft())
             self.played_row_number, self.played_row_due_s = self._past[-1].row, self._past[-1].t
         return self.played_row_due_s
 
-    def first_recallable_row(self, t: float) -> int | None:
+    def find_first_recallable_row(self, time_s: float) -> int | None:
         """Return the first row due at ``t`` or later that can be recalled, or None if it is too late."""
         soonest = self.played_row_number + _MARGIN
         for each in self._due:
-            if each.t >= t - 1e-9:
+            if each.t >= time_s - 1e-9:
                 return each.row if each.row >= soonest else None
         return self.last_row_number + 1
 
-    def matches_locked_rows(self, t: float, make_row: RowFunction) -> bool:
+    def matches_locked_rows(self, time_s: float, make_row: RowFunction) -> bool:
         """Return whether the rows that can no longer be recalled equal those of ``make_row``.
 
         Only the rows from ``t`` on are compared.
@@ -124,11 +124,11 @@ class RowStreams:
         rows = [each for each in (*self._past, *self._due) if each.row <= until]
         return (
             bool(rows)
-            and rows[0].t <= t
-            and all(_same(e.values, make_row(e.t)) for e in rows if e.t >= t - 1e-9)
+            and rows[0].t <= time_s
+            and all(_same(e.values, make_row(e.t)) for e in rows if e.t >= time_s - 1e-9)
         )
 
-    def earliest_recall_time(self) -> float:
+    def find_earliest_recall_time(self) -> float:
         """Return the due time in seconds from which rows can be recalled."""
         for each in self._due:
             if each.row >= self.played_row_number + _MARGIN + 1:
@@ -140,12 +140,12 @@ class RowStreams:
         """Return whether a pending change between the streams is too close to be modified."""
         return self._change is not None and self.played_row_number + _MARGIN >= self._change
 
-    def recall_rows(self, t: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
+    def recall_rows(self, time_s: float, make_row: RowFunction, unchanged_until: float = -math.inf) -> bool:
         """Replace all rows from ``t`` on, and return False without a change if it is too late.
 
         Until ``unchanged_until`` seconds, the replacement is the same path.
         """
-        first = self.first_recallable_row(t)
+        first = self.find_first_recallable_row(time_s)
         if first is None or self.is_changing:
             return False
         if self._change is not None:  # The pending change is included in this one.
@@ -186,12 +186,12 @@ class RowStreams:
         self._pins["play-b"] = 1 - self._active
         self._pins["switch-at"] = float(first - 1)
 
-    def finish_change(self, second_plays: bool) -> bool:
+    def finish_change(self, is_second_playing: bool) -> bool:
         """Complete a change according to the stream that is played.
 
         Returns False if this is not the requested stream.
         """
-        plays = int(second_plays)
+        plays = int(is_second_playing)
         if self._change is None or self.played_row_number < self._change:
             unasked = self._change is None and plays != self._active
             self._active = plays if unasked else self._active

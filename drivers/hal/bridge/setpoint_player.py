@@ -16,13 +16,13 @@ MotionState = tuple[tuple[float, ...], tuple[float, ...]]
 def make_row_function(pieces: list[MotionPiece]) -> Callable[[float], SetpointRow]:
     """Return a function that returns the row of setpoints at a given time, without the spindle."""
     queue = PieceQueue(pieces[0].positions)
-    queue.replace_from(pieces[0].start_time_s, pieces)
+    queue.replace_pieces_from(pieces[0].start_time_s, pieces)
     return lambda t: _rest_row(queue, t)
 
 
 def _rest_row(queue: PieceQueue, t: float) -> SetpointRow:
     """Return the row with the position of each axis and with zero travel per revolution."""
-    return tuple([each for p in queue.commanded_state_at(t)[0] for each in (p, 0.0)])
+    return tuple([each for p in queue.get_commanded_state(t)[0] for each in (p, 0.0)])
 
 
 class SpindlePredictor:
@@ -32,23 +32,23 @@ class SpindlePredictor:
         self._seen: deque[tuple[float, float]] = deque()
         self.speed_rev_per_s = 0.0  # turns/s
 
-    def add_reading(self, t: float, turns: float) -> None:
+    def add_reading(self, time_s: float, revolutions: float) -> None:
         """Add a reading of the spindle position, in revolutions."""
         seen = self._seen
-        if seen and t <= seen[-1][0]:
+        if seen and time_s <= seen[-1][0]:
             return
-        seen.append((t, turns))
-        while len(seen) > 2 and seen[1][0] <= t - _SPEED_WINDOW_S:
+        seen.append((time_s, revolutions))
+        while len(seen) > 2 and seen[1][0] <= time_s - _SPEED_WINDOW_S:
             seen.popleft()
-        since = t - seen[0][0]
-        self.speed_rev_per_s = (turns - seen[0][1]) / since if since > 0.0 else 0.0
+        since = time_s - seen[0][0]
+        self.speed_rev_per_s = (revolutions - seen[0][1]) / since if since > 0.0 else 0.0
 
-    def predict(self, t: float) -> float:
+    def predict_revolutions(self, time_s: float) -> float:
         """Return the predicted revolutions at ``t``."""
         if not self._seen:
             return 0.0
         then, turns = self._seen[-1]
-        return turns + self.speed_rev_per_s * (t - then)
+        return turns + self.speed_rev_per_s * (time_s - then)
 
 
 class PlayerCam(NamedTuple):
@@ -80,17 +80,17 @@ class SetpointPlayer:
         self.cam = self.cam_end_time_s = None
         self.queue.reset_to(position)
 
-    def splice(self, pieces: list[MotionPiece]) -> None:
+    def splice_pieces(self, pieces: list[MotionPiece]) -> None:
         """Play the given pieces by time from their start on, and end the cam."""
         if self.cam is not None:
             self.queue.reset_to(pieces[0].positions)
         self.cam = self.cam_end_time_s = None
-        self.queue.replace_from(pieces[0].start_time_s, pieces)
+        self.queue.replace_pieces_from(pieces[0].start_time_s, pieces)
 
     def engage_cam(
         self,
         start_revolutions: float,
-        sign: float,
+        direction_sign: float,
         pieces: list[MotionPiece],
         following_pieces: Sequence[MotionPiece],
     ) -> None:
@@ -101,26 +101,29 @@ class SetpointPlayer:
         path_queue = PieceQueue(pieces[0].positions)
         if self.cam is not None and (self.cam.start_revolutions, self.cam.direction_sign) == (
             start_revolutions,
-            sign,
+            direction_sign,
         ):
             path_queue = self.cam.path_queue
-        path_queue.replace_from(pieces[0].start_time_s, pieces)
-        self.cam, self.cam_end_time_s = PlayerCam(start_revolutions, sign, path_queue, following_pieces), None
+        path_queue.replace_pieces_from(pieces[0].start_time_s, pieces)
+        self.cam, self.cam_end_time_s = (
+            PlayerCam(start_revolutions, direction_sign, path_queue, following_pieces),
+            None,
+        )
 
-    def brake_to_rest(self, t: float, deceleration: Sequence[float]) -> list[MotionPiece]:
+    def brake_to_rest(self, time_s: float, deceleration: Sequence[float]) -> list[MotionPiece]:
         """Brake straight to rest from ``t`` on, and return the pieces of the deceleration.
 
         No pieces are returned at rest.
         """
-        state = self.get_motion_at(t)
+        state = self.get_motion_at(time_s)
         if self.cam is not None:
             self.reset_to(state[0])
         took = max((abs(v) / a for v, a in zip(state[1], deceleration, strict=True)), default=0.0)
         if took <= 0.0:
             self.queue.reset_to(state[0])
             return []
-        piece = MotionPiece(t, took, *state, tuple(-v / took for v in state[1]))
-        self.queue.replace_from(t, [piece])
+        piece = MotionPiece(time_s, took, *state, tuple(-v / took for v in state[1]))
+        self.queue.replace_pieces_from(time_s, [piece])
         return [piece]
 
     @property
@@ -128,31 +131,31 @@ class SetpointPlayer:
         """Return whether no axis follows the spindle."""
         return self.cam is None or self.cam_end_time_s is not None
 
-    def get_end_time(self, t: float) -> float:
+    def get_end_time(self, time_s: float) -> float:
         """Return the end time of the motion, or inf while an axis follows the spindle."""
-        return self.queue.queue_end(t) if self.is_cam_inactive else INFINITY
+        return self.queue.get_end_time(time_s) if self.is_cam_inactive else INFINITY
 
-    def get_motion_at(self, t: float) -> MotionState:
+    def get_motion_at(self, time_s: float) -> MotionState:
         """Return the position and the velocity at ``t``, which are predicted for a cam."""
-        if self.cam is None or (self.cam_end_time_s is not None and t >= self.cam_end_time_s):
-            return self.queue.commanded_state_at(t)
-        p, per_turn = self.cam.path_queue.commanded_state_at(self._cam_turns(self.cam, t))
+        if self.cam is None or (self.cam_end_time_s is not None and time_s >= self.cam_end_time_s):
+            return self.queue.get_commanded_state(time_s)
+        p, per_turn = self.cam.path_queue.get_commanded_state(self._cam_turns(self.cam, time_s))
         speed = max(self.cam.direction_sign * self.spindle_predictor.speed_rev_per_s, 0.0)
         return p, tuple([v * speed for v in per_turn])
 
-    def get_row_at(self, t: float) -> SetpointRow:
+    def get_row_at(self, time_s: float) -> SetpointRow:
         """Return the row for HAL at ``t``.
 
         The row contains the position and the travel per revolution of each axis in sequence.
         """
         cam = self.cam
-        if cam is not None and (self.cam_end_time_s is None or t < self.cam_end_time_s):
-            u = self._cam_turns(cam, t)
-            if u < cam.path_queue.queue_end(-INFINITY):
+        if cam is not None and (self.cam_end_time_s is None or time_s < self.cam_end_time_s):
+            u = self._cam_turns(cam, time_s)
+            if u < cam.path_queue.get_end_time(-INFINITY):
                 return self._geared_row(cam, u)
             if self.cam_end_time_s is None:
-                self._leave_cam(cam, t)
-        return _rest_row(self.queue, t)
+                self._leave_cam(cam, time_s)
+        return _rest_row(self.queue, time_s)
 
     def read_gear_state(self) -> tuple[float, float] | None:
         """Return the direction and speed of the spindle on the cam, or None without an active cam."""
@@ -161,14 +164,14 @@ class SetpointPlayer:
         return self.cam.direction_sign, self.cam.direction_sign * self.spindle_predictor.speed_rev_per_s
 
     def _cam_turns(self, cam: PlayerCam, t: float) -> float:
-        return cam.direction_sign * (self.spindle_predictor.predict(t) - cam.start_revolutions)
+        return cam.direction_sign * (self.spindle_predictor.predict_revolutions(t) - cam.start_revolutions)
 
     def _geared_row(self, cam: PlayerCam, u: float) -> SetpointRow:
         """Return the row with the tangent of the cam at the predicted revolutions.
 
         HAL calculates the position from this tangent.
         """
-        place, per_turn = cam.path_queue.commanded_state_at(u)
+        place, per_turn = cam.path_queue.get_commanded_state(u)
         start = cam.start_revolutions + cam.direction_sign * u
         return tuple(
             [
@@ -180,10 +183,10 @@ class SetpointPlayer:
 
     def _leave_cam(self, cam: PlayerCam, t: float) -> None:
         """End the cam: rest, or continue by time if pieces follow the cam."""
-        rest, _ = cam.path_queue.commanded_state_at(INFINITY)
+        rest, _ = cam.path_queue.get_commanded_state(INFINITY)
         self.cam_end_time_s = t
         self.queue.reset_to(rest)
         if cam.following_pieces:
-            self.queue.replace_from(
+            self.queue.replace_pieces_from(
                 t, [piece._replace(start_time_s=piece.start_time_s + t) for piece in cam.following_pieces]
             )

@@ -9,40 +9,53 @@ import shutil
 import sys
 from pathlib import Path
 
-from resources.setup.bundle import platforms, run
-from resources.setup.licences import PAGE
-from resources.setup.lock import HERE, HOUSE, locked_file
+from resources.setup.bundle import list_platform_options, run
+from resources.setup.licences import PAGE_PATH
+from resources.setup.lock import PROJECT_FOLDER, SETUP_FOLDER, get_locked_file
 
-DEBIAN = HERE / "debian"
+DEBIAN_FOLDER = SETUP_FOLDER / "debian"
 _NEEDLESS = ("bin", "share/man", "share/doc")
 """Parts of the packages that TurnDesk does not use: their commands and manual pages."""
 
 
-def make_environment_folder(folder: Path, wheel: Path, python: str, machine: str, wheels: Path) -> None:
+def make_environment_folder(
+    folder: Path, wheel: Path, python_version: str, machine: str, wheel_folder: Path
+) -> None:
     """Fill a folder for a Python version, such as ``3.11``.
 
-    ``wheels`` is the folder with all wheels that TurnDesk needs. Raises BundleError if a package cannot be
-    installed.
+    ``wheel_folder`` is the folder with all wheels that TurnDesk needs. Raises BundleError if a package
+    cannot be installed.
     """
-    packages = folder / "lib" / f"python{python}" / "site-packages"
+    packages = folder / "lib" / f"python{python_version}" / "site-packages"
     packages.mkdir(parents=True)
-    words = ["--quiet", "--disable-pip-version-check", "--no-index", f"--find-links={wheels}", "--no-compile"]
-    words += ["--no-deps", "--only-binary=:all:", f"--python-version={python}", *platforms(machine)]
+    words = [
+        "--quiet",
+        "--disable-pip-version-check",
+        "--no-index",
+        f"--find-links={wheel_folder}",
+        "--no-compile",
+    ]
+    words += [
+        "--no-deps",
+        "--only-binary=:all:",
+        f"--python-version={python_version}",
+        *list_platform_options(machine),
+    ]
     words += ["--implementation=cp", f"--target={packages}", "--no-warn-conflicts"]
-    run(sys.executable, "-m", "pip", "install", *words, "--require-hashes", "-r", locked_file("desk"))
+    run(sys.executable, "-m", "pip", "install", *words, "--require-hashes", "-r", get_locked_file("desk"))
     run(sys.executable, "-m", "pip", "install", *words, wheel)
     for name in _NEEDLESS:
         shutil.rmtree(packages / name, ignore_errors=True)
     _without_traces(packages)
     commands = folder / "bin"
     commands.mkdir()
-    (commands / "python").symlink_to(f"/usr/bin/python{python}")
-    (commands / "turndesk").write_bytes((DEBIAN / "turndesk").read_bytes())
+    (commands / "python").symlink_to(f"/usr/bin/python{python_version}")
+    (commands / "turndesk").write_bytes((DEBIAN_FOLDER / "turndesk").read_bytes())
     (commands / "turndesk").chmod(0o755)
-    (folder / "pyvenv.cfg").write_text(f"home = /usr/bin\nversion = {python}\n", encoding="utf-8")
+    (folder / "pyvenv.cfg").write_text(f"home = /usr/bin\nversion = {python_version}\n", encoding="utf-8")
     (folder / "licences").mkdir()
-    shutil.copy(HOUSE / "LICENSE", folder / "licences" / "TurnDesk")
-    shutil.copy(PAGE, folder / "licences.md")
+    shutil.copy(PROJECT_FOLDER / "LICENSE", folder / "licences" / "TurnDesk")
+    shutil.copy(PAGE_PATH, folder / "licences.md")
 
 
 def _without_traces(packages: Path) -> None:

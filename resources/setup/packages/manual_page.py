@@ -9,13 +9,13 @@ from collections.abc import Iterator
 
 from app import VERSION
 from app.cli.main import build_parser
-from resources.setup.packages.same_bytes import epoch
+from resources.setup.packages.reproducible_archives import get_release_time
 
 
-def manual_page() -> str:
+def format_manual_page() -> str:
     """Return the manual page in the format of ``man``."""
     parser = build_parser()
-    day = time.strftime("%Y-%m-%d", time.gmtime(epoch()))
+    day = time.strftime("%Y-%m-%d", time.gmtime(get_release_time()))
     return "\n".join(
         [
             f'.TH TURNDESK 1 "{day}" "turndesk {VERSION}" "User Commands"',
@@ -25,7 +25,7 @@ def manual_page() -> str:
             r".B turndesk",
             r"[\fIOPTION\fR]... [\fICOMMAND\fR [\fIARGUMENT\fR]...]",
             ".SH DESCRIPTION",
-            escaped(parser.description or ""),
+            escape_text(parser.description or ""),
             r"TurnDesk has not yet driven a real machine.",
             ".SH OPTIONS",
             *_options(parser),
@@ -52,8 +52,8 @@ def _commands(parser: argparse.ArgumentParser, name: str) -> Iterator[str]:
         if isinstance(action, argparse._SubParsersAction):
             helps = {each.dest: each.help or "" for each in action._choices_actions}
             for word, below in action.choices.items():
-                yield f".SS {escaped(f'{name} {word}')}"
-                yield escaped(helps.get(word, ""))
+                yield f".SS {escape_text(f'{name} {word}')}"
+                yield escape_text(helps.get(word, ""))
                 yield from _options(below)
                 yield from _commands(below, f"{name} {word}")
 
@@ -63,20 +63,20 @@ def _options(parser: argparse.ArgumentParser) -> Iterator[str]:
         if isinstance(action, argparse._SubParsersAction) or action.help == argparse.SUPPRESS:
             continue
         value = "" if action.nargs == 0 else _value_of(action)
-        names = ", ".join(rf"\fB{escaped(each)}\fR" for each in action.option_strings)
+        names = ", ".join(rf"\fB{escape_text(each)}\fR" for each in action.option_strings)
         yield ".TP"
         yield f"{names} {value}".strip()
-        yield escaped((action.help or "").replace("%(default)s", str(action.default)).replace("%%", "%"))
+        yield escape_text((action.help or "").replace("%(default)s", str(action.default)).replace("%%", "%"))
 
 
 def _value_of(action: argparse.Action) -> str:
     name = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
     if action.choices and not isinstance(action.metavar, str):
         name = "|".join(map(str, action.choices))
-    return rf"\fI{escaped(name)}\fR"
+    return rf"\fI{escape_text(name)}\fR"
 
 
-def escaped(text: str) -> str:
+def escape_text(text: str) -> str:
     """Return a text in which all commands and special characters of ``man`` are escaped."""
     text = text.replace("\\", r"\e").replace("-", r"\-")
     return re.sub(r"^(?=[.'])", r"\\&", text)

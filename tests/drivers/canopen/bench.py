@@ -12,7 +12,7 @@ import can.interfaces.virtual
 from can.interfaces.virtual import VirtualBus
 
 import resources
-from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_simulated_devices
 from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
 from drivers.canopen.canopen_machine import CanopenMachine
@@ -22,7 +22,7 @@ from drivers.wakeups import ManualClock
 
 TICK = 0.005
 _channels = itertools.count()
-SHIPPED = resources.machine_file("gt75-canopen.toml")
+SHIPPED = resources.read_machine_file("gt75-canopen.toml")
 
 
 def _without_locks(_maxsize: int = 0) -> queue.SimpleQueue[can.Message]:
@@ -105,7 +105,7 @@ class CanBench:
     def __init__(self, machine: Machine | None = None) -> None:
         self.model = machine or can_machine()
         self.clock = ManualClock()
-        self.peers: CanopenDevices = create_canopen_peers(self.model, self.clock)
+        self.peers: CanopenDevices = create_simulated_devices(self.model, self.clock)
         try:
             self.machine: CanopenMachine = connect_canopen_machine(
                 self.model, self.clock, self.peers.process_frames

@@ -20,7 +20,7 @@ def test_the_drives_are_never_asked_for_more_than_the_slides_can(
     seed: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     dice, seen = random.Random(seed), [0.0, 0.0]
-    step = AxisDrive.step
+    step = AxisDrive.advance
 
     def watched(drive: AxisDrive, dt: float) -> None:
         before, playing = drive.setpoint_velocity, drive.is_playing
@@ -29,7 +29,7 @@ def test_the_drives_are_never_asked_for_more_than_the_slides_can(
             seen[0] = max(seen[0], abs(drive.setpoint_velocity))
             seen[1] = max(seen[1], abs(drive.setpoint_velocity - before))
 
-    monkeypatch.setattr(AxisDrive, "step", watched)
+    monkeypatch.setattr(AxisDrive, "advance", watched)
     rig = BusRig(can_machine(("two_hand_start = true", "two_hand_start = false")))
     rig.start(PART)
     for _ in range(12):

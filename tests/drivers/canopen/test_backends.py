@@ -69,7 +69,9 @@ def test_a_machine_with_buttons_has_none_on_the_screen() -> None:
 
 
 def test_the_simulated_machine_through_the_driver_host_has_all_ports() -> None:
-    text = resources.machine_file("gt75.toml").replace('backend = "sim"', 'backend = "sim"\nfeeder = true')
+    text = resources.read_machine_file("gt75.toml").replace(
+        'backend = "sim"', 'backend = "sim"\nfeeder = true'
+    )
     connected = connect_machine(parse_machine(text, "fed.toml"), ManualClock())
     assert connected.ports.gear is not None
     assert connected.on_screen_station is not None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.faults import get_fault_code
-from core.ports import Segments, StopMode
+from core.ports import MotionSegments, StopMode
 from drivers.canopen import canopen_objects as od
 from drivers.canopen.position_modes import SyncSchedule
 from tests.drivers.canopen.bench import CanBench, cyclic
@@ -77,7 +77,7 @@ def test_sync_goes_on_while_a_long_path_is_taken_in(bench: CanBench, monkeypatch
     zero = np.zeros((count, rest.shape[1]))
     start = bench.clock.now() + 0.2
     t = start + 0.002 * np.arange(count, dtype=np.float64)
-    axes.splice(Segments(t, np.full(count, 0.002), np.repeat(rest, count, 0), zero, zero))
+    axes.splice(MotionSegments(t, np.full(count, 0.002), np.repeat(rest, count, 0), zero, zero))
     assert len(syncs) == pytest.approx(25, abs=1)
     assert np.diff(syncs) == pytest.approx(0.004, abs=1e-6)
     run(bench, 0.1)

@@ -6,7 +6,7 @@ import pytest
 
 import resources
 from app.compose.machine.machine_files import parse_machine
-from core.ports import Segments
+from core.ports import MotionSegments
 from core.table_schema import FileFinding, MachineFileError
 from drivers.canopen.canopen_config import AxisConfig
 from drivers.canopen.canopen_objects import build_drive_dictionary
@@ -55,12 +55,12 @@ def axis(family: str, counts_per_rev: int) -> AxisConfig:
 
 def test_speeds_go_out_in_the_drives_units() -> None:
     """25.4 mm/s are 20 000 counts/s, five turns of 4000 a second; 3048 mm/s² are 2.4 million counts/s²."""
-    assert axis("cia402", 0).velocity(25.4) == pytest.approx(20000.0)
-    assert axis("epos4", 4000).velocity(25.4) == pytest.approx(300.0)
-    assert axis("cia402", 0).acceleration(3048.0) == 2_400_000
-    assert axis("epos4", 4000).acceleration(3048.0) == 36_000
-    assert axis("cia402", 4000).acceleration(3048.0) == 2_400_000
-    assert axis("epos4", 4000).acceleration(0.0) == 1
+    assert axis("cia402", 0).convert_speed(25.4) == pytest.approx(20000.0)
+    assert axis("epos4", 4000).convert_speed(25.4) == pytest.approx(300.0)
+    assert axis("cia402", 0).convert_acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).convert_acceleration(3048.0) == 36_000
+    assert axis("cia402", 4000).convert_acceleration(3048.0) == 2_400_000
+    assert axis("epos4", 4000).convert_acceleration(0.0) == 1
 
 
 def test_a_segment_of_copley_by_its_bytes() -> None:
@@ -83,9 +83,9 @@ def test_copleys_queue_goes_the_same_path() -> None:
     sample = axes.sample()
     assert sample.fault == ""
     assert sample.actual[0] == pytest.approx(60.0 * 0.42, abs=0.0013)
-    segments: Segments = ramp(bench.clock.now() + 0.14, (60.0 * 0.42, 0.0, 0.0), -60.0, 0.4)
+    segments: MotionSegments = ramp(bench.clock.now() + 0.14, (60.0 * 0.42, 0.0, 0.0), -60.0, 0.4)
     bench.run(1.0)
-    axes.splice(segments._replace(t=segments.t + 1.0))
+    axes.splice(segments._replace(start_times_s=segments.start_times_s + 1.0))
     bench.run(1.5)
     assert axes.sample().fault == ""
     assert axes.sample().actual[0] == pytest.approx(0.0, abs=0.0013)
@@ -105,7 +105,7 @@ def test_load_of_the_bus_by_hand() -> None:
 
 
 def refused(*changes: tuple[str, str]) -> FileFinding:
-    text = resources.machine_file("gt75-canopen.toml")
+    text = resources.read_machine_file("gt75-canopen.toml")
     for old, new in (('mode = "pvt"', 'mode = "csp"'), ('drive = "epos2"', 'drive = "epos4"'), *changes):
         assert old in text
         text = text.replace(old, new)
@@ -119,20 +119,20 @@ def test_a_bus_without_room_is_refused_with_the_interval_that_fits() -> None:
     slow = refused(("sync_ms = 10 ", "sync_ms = 1 "), ("bitrate = 1000000\n", "bitrate = 500000\n"))
     assert (slow.path, slow.value) == ("canopen.sync_ms", "1")
     for value in ("2 axis drives", "127%", "500000 bit/s", "sync_ms to at least 2"):
-        assert value in slow.expected
+        assert value in slow.expected_value
 
 
 def test_setpoints_come_in_whole_milliseconds_and_ahead_of_their_time() -> None:
     broken = refused(("sync_ms = 10 ", "sync_ms = 2.5 "))
     assert (broken.path, broken.value) == ("canopen.sync_ms", "2.5")
-    assert "60C2" in broken.expected
+    assert "60C2" in broken.expected_value
     late = refused(
         ("sync_ms = 10 ", "sync_ms = 2 "),
         ("commit_ms = 140", "commit_ms = 19"),
         ("lease_ms = 200", "lease_ms = 90"),
     )
     assert (late.path, late.value) == ("machine.commit_ms", "19")
-    assert "20" in late.expected
+    assert "20" in late.expected_value
 
 
 def test_a_family_is_that_of_the_node_before_that_of_all() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.compose.backends.canopen_backend import create_canopen_config, create_canopen_peers
+from app.compose.backends.canopen_backend import create_canopen_config, create_simulated_devices
 from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
@@ -85,7 +85,7 @@ def test_a_spindle_that_stands_has_no_speed(stand: EncoderBench) -> None:
     stand.run(1.0)
     stand.turn(0.0)
     stand.run(1.0)
-    assert stand.encoder.measured_rpm() == 0.0
+    assert stand.encoder.measure_rpm() == 0.0
 
 
 def test_it_counts_on_when_its_range_is_over() -> None:
@@ -105,9 +105,9 @@ def test_it_counts_on_when_its_range_is_over() -> None:
 
 
 def test_it_turns_nothing(own: EncoderBench) -> None:
-    own.machine.ports.spindle.run_at(0.0)
+    own.machine.ports.spindle.set_speed(0.0)
     with raises_code(DriverError, "spindle-off") as told:
-        own.machine.ports.spindle.run_at(100.0)
+        own.machine.ports.spindle.set_speed(100.0)
     assert told.value.reason == "no-drive"
 
 
@@ -176,7 +176,7 @@ def test_a_restart_is_told_of(own: EncoderBench) -> None:
     own.machine.axes.clear_fault()
     own.turn(600.0)
     own.run(1.5)
-    assert own.encoder.measured_rpm() == pytest.approx(600.0, abs=2.0)
+    assert own.encoder.measure_rpm() == pytest.approx(600.0, abs=2.0)
 
 
 def test_counts_that_leap_are_no_turning(own: EncoderBench) -> None:
@@ -197,10 +197,10 @@ def test_an_emergency_of_the_node_is_told_of(own: EncoderBench) -> None:
 
 def test_the_survey_of_a_bus_asks_the_encoder_too() -> None:
     clock, machine = ManualClock(), can_machine(*OWN)
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     found = {
         one.name: one for one in identify_nodes(create_canopen_config(machine), clock, peers.process_frames)
     }
     peers.close()
-    assert (found["turns"].node, found["turns"].error_text) == (20, "")
+    assert (found["turns"].node_id, found["turns"].error_text) == (20, "")
     assert "CiA 406" in found["turns"].detail

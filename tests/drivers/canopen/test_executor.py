@@ -88,7 +88,7 @@ def test_homing_in_the_order_of_the_machine_file_and_a_cycle_only_afterwards() -
 
     rig.watch.append(note)
     rig.post(HomeAxes(""))
-    rig.until(MachineState.HOME)
+    rig.until(MachineState.HOMING)
     rig.until(MachineState.IDLE, limit=20.0)
     assert order == ["Z", "X"]
     assert rig.shot.homed[:2] == (True, True)
@@ -106,7 +106,7 @@ def test_feed_hold_ends_a_homing_and_jogs_go_on_from_there() -> None:
     rig.bench.peers.plant.servos[1].switch = 60.0
     rig.ready()
     rig.post(HomeAxes("Z"))
-    rig.until(MachineState.HOME)
+    rig.until(MachineState.HOMING)
     rig.run(0.8)
     rig.post(FeedHold())
     rig.until(MachineState.IDLE)

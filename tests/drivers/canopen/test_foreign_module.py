@@ -91,10 +91,10 @@ def make() -> Iterator[MakeBench]:
 def test_outputs_go_out_and_come_back_off(make: MakeBench) -> None:
     bench = make()
     bench.start()
-    bench.io.write("coolant", on=True)
+    bench.io.write("coolant", is_on=True)
     assert bench.run(0.05) == ""
     assert bench.module.objects.read(0x6200, 1) == 0b01
-    bench.io.write("collet", on=True)
+    bench.io.write("collet", is_on=True)
     bench.io.switch_to_safe_state()
     bench.run(0.05)
     assert bench.module.objects.read(0x6200, 1) == 0b10  # coolant is off, the collet keeps its state
@@ -168,7 +168,7 @@ def test_a_module_that_falls_silent_is_told(make: MakeBench, inputs: int, why: s
     bench.module.node.tpdo[0].enable = False
     assert why in bench.run(0.5)
     with raises_code(DriverError, "output", "coolant", "io: "):
-        bench.io.write("coolant", on=True)
+        bench.io.write("coolant", is_on=True)
 
 
 def test_a_mapping_that_cannot_be_changed_will_do_when_it_is_the_right_one(make: MakeBench) -> None:

@@ -9,7 +9,7 @@ import canopen
 import pytest
 from canopen.profiles.p402 import BaseNode402
 
-from app.compose.backends.canopen_backend import create_canopen_peers
+from app.compose.backends.canopen_backend import create_simulated_devices
 from drivers.canopen.canopen_objects import build_drive_dictionary
 from drivers.canopen.canopen_table import CanopenTable
 from drivers.simulators.canopen_devices import CanopenDevices
@@ -41,7 +41,7 @@ def shop() -> Iterator[tuple[CanopenDevices, BaseNode402]]:
     machine = can_machine()
     bus = machine.hardware.find_driver_table(CanopenTable)
     assert bus is not None
-    peers, ended = create_canopen_peers(machine, RealClock()), threading.Event()
+    peers, ended = create_simulated_devices(machine, RealClock()), threading.Event()
 
     def play() -> None:
         while not ended.is_set():

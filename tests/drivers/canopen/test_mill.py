@@ -10,7 +10,7 @@ import pytest
 import resources
 from app.compose.machine.machine_files import parse_machine
 from core.machine.machine_model import Machine
-from core.ports import Segments
+from core.ports import MotionSegments
 from tests.drivers.canopen.bench import CanBench
 
 BUS = """
@@ -32,7 +32,7 @@ io = { id = 10, profile = 401 }
 
 def mill() -> Machine:
     """The shipped table mill with CiA 402 drives instead of simulated ones."""
-    text = resources.machine_file("ac-table-mill.toml").replace('backend = "sim"', 'backend = "canopen"')
+    text = resources.read_machine_file("ac-table-mill.toml").replace('backend = "sim"', 'backend = "canopen"')
     text = text.replace("commit_ms = 30", "commit_ms = 140").replace(
         "low_water_ms = 80", "low_water_ms = 200"
     )
@@ -63,7 +63,7 @@ def test_five_axes_arrive_together_on_one_line() -> None:
     p[1], p[2] = 0.5 * speed * up, 0.5 * speed * up + speed * cruise
     v = np.vstack([np.zeros(5), speed, speed])
     a = np.vstack([speed / up, np.zeros(5), -speed / up])
-    axes.splice(Segments(at + np.array([0.0, up, up + cruise]), np.array([up, cruise, up]), p, v, a))
+    axes.splice(MotionSegments(at + np.array([0.0, up, up + cruise]), np.array([up, cruise, up]), p, v, a))
     worst = 0.0
     for _ in range(200):
         bench.tick()

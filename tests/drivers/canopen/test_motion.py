@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from core.ports import DriverError, Segments, StopMode
+from core.ports import DriverError, MotionSegments, StopMode
 from tests.coded import raises_code
 from tests.drivers.canopen.bench import CanBench, can_machine
 from tests.drivers.machines import ramp
@@ -87,7 +87,7 @@ def test_hold_at_a_turning_point_does_not_go_on(bench: CanBench) -> None:
     axes = bench.machine.axes
     axes.enable(True)
     there = ramp(bench.clock.now() + 0.14, ZERO, 60.0, 0.2)
-    end = there.t[-1] + there.dt[-1]
+    end = there.start_times_s[-1] + there.durations_s[-1]
     back = ramp(end, (60.0 * 0.22, 0.0, 0.0), -60.0, 0.2)
     both = type(there)(*(np.concatenate(pair) for pair in zip(there, back, strict=True)))
     axes.splice(both)
@@ -169,10 +169,10 @@ def test_a_path_of_the_shortest_records_never_overfills_the_drives() -> None:
     step = v * 0.003 + a * 0.003**2 / 2
     p = np.vstack([np.zeros(3), np.cumsum(step, axis=0)[:-1]])
     t = np.asarray(bench.clock.now() + 0.21 + 0.003 * np.arange(n), dtype=np.float64)
-    axes.splice(Segments(t, np.full(n, 0.003), p, v, a))
+    axes.splice(MotionSegments(t, np.full(n, 0.003), p, v, a))
     for _ in range(400):
         bench.tick()
-        most = max(most, len(drive.queue))
+        most = max(most, len(drive.record_queue))
     assert 40 < most <= 60
     assert axes.sample().fault == ""
     assert not axes.sample().moving

@@ -150,7 +150,7 @@ def test_a_module_that_is_silent_stops_everything(make: Callable[..., BusRig]) -
     rig.until(MachineState.FAULT, limit=0.6)
     assert "io: " in rig.shot.alarms[-1].cause
     rig.run(1.0)
-    assert not rig.bench.peers.plant.terminals.outputs["coolant"]
+    assert not rig.bench.peers.plant.terminals.output_states["coolant"]
 
 
 def test_the_spindle_switch_and_pot(make: Callable[..., BusRig]) -> None:
@@ -240,7 +240,7 @@ def test_a_counter_that_goes_round_goes_on(turned: Turned) -> None:
 
 def test_a_cable_that_comes_off_stops_the_slide(turned: Turned) -> None:
     turned.spin(50)
-    turned.bench.peers.cable(disconnected=True)
+    turned.bench.peers.cable(is_disconnected=True)
     turned.spin(100)
     turned.until(MachineState.FAULT, limit=1.0)
     assert turned.shot.wheel == ""

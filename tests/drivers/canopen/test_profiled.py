@@ -47,10 +47,10 @@ def test_profile_position_refuses_a_corner() -> None:
     axes = bench.machine.axes
     axes.enable(True)
     segments = ramp(bench.clock.now() + 0.15, ZERO, 60.0, 0.5)
-    bent = segments.p.copy()
+    bent = segments.positions.copy()
     bent[1:, 1] = 1.0
     with raises_code(DriverError, "drive-limits") as told:
-        axes.splice(segments._replace(p=bent))
+        axes.splice(segments._replace(positions=bent))
     assert told.value.reason == "one-move-only"
     bench.close()
 

@@ -15,7 +15,7 @@ import pytest
 from canopen import ObjectDictionary
 from canopen.objectdictionary import ODVariable
 
-from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_simulated_devices
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen import canopen_objects as od
@@ -47,7 +47,7 @@ def machine_of(path: Path) -> Machine:
     found = dictionary(path)
     told = found.device_information
     family = find_profile("", told.vendor_number, told.product_name)
-    if family.queue is not None:
+    if family.record_queue is not None:
         machine = can_machine(('drive = "epos2"', f'drive = "{family.name}"'))
     elif od.IP_RECORD in found:
         machine = cyclic("ip")
@@ -70,7 +70,7 @@ def bench(request: pytest.FixtureRequest) -> Iterator[CanBench]:
     modes = dictionary(path).get_variable(od.SUPPORTED, 0)
     found = CanBench.__new__(CanBench)
     found.model, found.clock = machine, ManualClock()
-    found.peers = create_canopen_peers(machine, found.clock)
+    found.peers = create_simulated_devices(machine, found.clock)
     if isinstance(modes, ODVariable) and modes.default:
         for name in ("X", "Z"):
             says(found.peers, name, {(od.SUPPORTED, 0): modes.default})

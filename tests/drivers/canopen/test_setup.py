@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 from canopen.sdo.exceptions import SdoAbortedError
 
-from app.compose.backends.canopen_backend import connect_canopen_machine, create_canopen_peers
+from app.compose.backends.canopen_backend import connect_canopen_machine, create_simulated_devices
 from core.faults import get_fault_code
 from core.machine.machine_model import Machine
 from core.ports import DriverError
@@ -85,7 +85,7 @@ class Recorded:
 def test_a_read_only_object_with_the_wanted_value_is_not_written() -> None:
     """Interpolation time and following window are fixed in many drives."""
     machine, clock = cyclic(), ManualClock()
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     window, period = round(2.032 / 0.00127), 4
     values = {(od.WINDOW, 0): window, (od.IP_TIME, 1): period, (od.IP_TIME, 2): -3}
     says(peers, "X", values)
@@ -108,7 +108,7 @@ def test_a_read_only_object_with_another_value_is_named_with_both_values() -> No
 def test_a_pdo_that_is_mapped_as_wanted_is_left_alone() -> None:
     """Mapping and communication of many modules are fixed; the second connection finds all as it wants it."""
     machine, clock = cyclic(), ManualClock()
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     connect_canopen_machine(machine, clock, peers.process_frames).bus.close()
     record = Recorded(peers, "X", frozenset())
     connect_canopen_machine(machine, clock, peers.process_frames).bus.close()
@@ -119,7 +119,7 @@ def test_a_pdo_that_is_mapped_as_wanted_is_left_alone() -> None:
 def connected_without(machine: Machine, *lacking: int) -> tuple[str, ...]:
     """What is told of X, whose firmware has not these objects."""
     clock = ManualClock()
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     for index in lacking:
         del peers.nodes["X"].local_node.object_dictionary[index]
     connected = connect_canopen_machine(machine, clock, peers.process_frames)
@@ -152,7 +152,7 @@ def refused(
 ) -> None:
     """Expect that a machine with a spoilt node is not connected to, by code and named values."""
     model, clock = machine or can_machine(), ManualClock()
-    peers = create_canopen_peers(model, clock)
+    peers = create_simulated_devices(model, clock)
     spoil(peers)
     try:
         with raises_code(DriverError, code, *values):
@@ -268,11 +268,11 @@ def test_a_fault_of_one_drive_stops_the_other_within_a_round_of_the_bus(bench: C
     axes, plant = bench.machine.axes, bench.peers.plant
     axes.enable(True)
     both = ramp(bench.clock.now() + 0.15, (0.0, 0.0, 0.0), 100.0, 0.5)
-    for part in (both.p, both.v, both.a):
+    for part in (both.positions, both.velocities, both.accelerations):
         part[:, 1] = part[:, 0]
     axes.splice(both)
     bench.run(0.4)
-    plant.axis_drives["X"].power_states.trip()  # silently: the status word alone tells
+    plant.axis_drives["X"].power_states.enter_fault()  # silently: the status word alone tells
     took = bench.until(lambda: plant.axis_drives["Z"].power_states.is_braking, 0.1)
     assert took <= 0.01 + 0.005 + 1e-9  # until the next answer, and a tick
     bench.run(0.3)

@@ -20,10 +20,10 @@ def test_power_comes_with_the_command_and_goes_at_standstill(bench: CanBench) ->
     spindle = bench.machine.ports.spindle
     bench.run(0.2)
     assert not powered(bench)
-    spindle.run_at(300.0)
+    spindle.set_speed(300.0)
     bench.run(1.0)
     assert powered(bench)
-    spindle.run_at(0.0)
+    spindle.set_speed(0.0)
     bench.run(0.1)
     assert powered(bench)  # it brakes
     bench.run(1.0)
@@ -34,7 +34,7 @@ def test_power_comes_with_the_command_and_goes_at_standstill(bench: CanBench) ->
 def test_a_command_during_estop_is_an_alarm_and_not_a_start_at_its_release(bench: CanBench) -> None:
     spindle = bench.machine.ports.spindle
     bench.peers.machine.press_estop()
-    spindle.run_at(500.0)
+    spindle.set_speed(500.0)
     bench.run(1.5)
     assert get_fault_code(spindle.read_fault(), "driver") == "spindle"
     assert spindle.read_fault().startswith("spindle: ")
@@ -42,12 +42,12 @@ def test_a_command_during_estop_is_an_alarm_and_not_a_start_at_its_release(bench
     bench.run(2.0)
     assert bench.peers.machine.get_spindle_rpm() == 0.0
     with raises_code(DriverError, "spindle-off", "spindle: "):
-        spindle.run_at(500.0)
+        spindle.set_speed(500.0)
 
 
 def test_a_blocked_motor_is_told_and_the_spindle_runs_down(bench: CanBench) -> None:
     spindle = bench.machine.ports.spindle
-    spindle.run_at(500.0)
+    spindle.set_speed(500.0)
     bench.run(1.0)
     bench.peers.machine.spindle_fault("blocked")
     bench.until(lambda: spindle.read_fault() != "", 0.1)
@@ -60,13 +60,13 @@ def test_a_blocked_motor_is_told_and_the_spindle_runs_down(bench: CanBench) -> N
     bench.run(1.0)
     assert spindle.read_fault() == ""
     assert spindle.speed() == 0.0
-    spindle.run_at(200.0)
+    spindle.set_speed(200.0)
     bench.run(1.0)
     assert spindle.speed() == pytest.approx(200.0, abs=1.0)
 
 
 def test_speed_is_limited_to_the_machines(bench: CanBench) -> None:
-    bench.machine.ports.spindle.run_at(-99999.0)
+    bench.machine.ports.spindle.set_speed(-99999.0)
     bench.run(4.0)
     assert bench.machine.ports.spindle.speed() == -3500.0
 
@@ -77,7 +77,7 @@ def test_an_angle_only_where_counts_a_turn_are_known() -> None:
     plain.close()
     bench = CanBench(can_machine(("spindle = { id = 3 }", "spindle = { id = 3, counts_per_rev = 4096 }")))
     spindle = bench.machine.ports.spindle
-    spindle.run_at(600.0)
+    spindle.set_speed(600.0)
     bench.run(3.0)
     angle = spindle.read_angle()
     assert angle is not None
@@ -106,8 +106,8 @@ def test_without_a_drive_on_the_bus_there_is_nothing_to_turn() -> None:
     )
     spindle = bench.machine.ports.spindle
     with raises_code(DriverError, "spindle-off") as told:
-        spindle.run_at(100.0)
+        spindle.set_speed(100.0)
     assert told.value.reason == "no-drive"
-    spindle.run_at(0.0)
+    spindle.set_speed(0.0)
     assert spindle.speed() == 0.0
     bench.close()

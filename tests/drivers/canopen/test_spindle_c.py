@@ -57,9 +57,9 @@ def stand() -> Iterator[CBench]:
 
 def stopped_somewhere(stand: CBench, rpm: float = 700.0) -> float:
     """It has turned as the spindle; where it stands."""
-    stand.machine.ports.spindle.run_at(rpm)
+    stand.machine.ports.spindle.set_speed(rpm)
     stand.run(1.13)
-    stand.machine.ports.spindle.run_at(0.0)
+    stand.machine.ports.spindle.set_speed(0.0)
     stand.run(2.0)
     return stand.degrees()
 
@@ -114,10 +114,10 @@ def test_the_index_is_looked_for_once(stand: CBench) -> None:
 def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
     stand.hold(orient=False)
     with raises_code(DriverError, "spindle-off") as told:
-        stand.machine.ports.spindle.run_at(500.0)
+        stand.machine.ports.spindle.set_speed(500.0)
     assert told.value.reason == "held-as-c"
     stand.c.set_c_mode(False)
-    stand.machine.ports.spindle.run_at(500.0)
+    stand.machine.ports.spindle.set_speed(500.0)
     stand.run(0.02)
     assert stand.peers.machine.get_spindle_rpm() == 0.0
     stand.until(lambda: stand.c.step is CanopenCStep.SPINDLE_MODE, 5.0)
@@ -126,12 +126,12 @@ def test_given_back_it_turns_again_and_only_then(stand: CBench) -> None:
 
 
 def test_it_is_refused_while_it_turns(stand: CBench) -> None:
-    stand.machine.ports.spindle.run_at(300.0)
+    stand.machine.ports.spindle.set_speed(300.0)
     stand.run(1.0)
     with raises_code(DriverError, "c-coupling") as told:
         stand.c.set_c_mode(True)
     assert told.value.reason == "spindle-turns"
-    stand.machine.ports.spindle.run_at(0.0)
+    stand.machine.ports.spindle.set_speed(0.0)
     stand.run(0.05)
     with raises_code(DriverError, "c-coupling") as told:
         stand.c.set_c_mode(True)
@@ -149,7 +149,7 @@ def test_it_is_refused_without_power() -> None:
 def test_estop_ends_it_and_nothing_turns_on_release(stand: CBench) -> None:
     stand.hold(orient=False)
     stand.peers.machine.press_estop()
-    stand.machine.ports.spindle.coast()
+    stand.machine.ports.spindle.start_coasting()
     stand.run(2.0)
     assert not stand.c.is_c_ready()
     stand.peers.machine.release_estop()
@@ -349,16 +349,16 @@ def test_through_the_driver_host_too() -> None:
             clock.advance(0.005)
             axes.sample()
 
-    lock.set_c_mode(True, orient=True)
+    lock.set_c_mode(True, should_orient=True)
     run(8.0)
     assert lock.is_c_ready()
     with raises_code(DriverError, "spindle-off") as told:
-        link.run_at(100.0)
+        link.set_speed(100.0)
     assert told.value.reason == "held-as-c"
     lock.set_c_mode(False)
     run(3.0)
     assert not lock.is_c_ready()
-    link.run_at(100.0)
+    link.set_speed(100.0)
     run(1.5)
     assert link.speed() == pytest.approx(100.0, abs=2.0)
     connected.close()

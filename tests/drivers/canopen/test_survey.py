@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from app.compose.backends.canopen_backend import create_canopen_config, create_canopen_peers
+from app.compose.backends.canopen_backend import create_canopen_config, create_simulated_devices
 from core.machine.machine_model import Machine
 from core.ports import DriverError
 from drivers.canopen.canopen_survey import SurveyResult, identify_nodes
@@ -30,7 +30,7 @@ def on_one_bus(there: Machine, asked: Machine) -> Machine:
 def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, SurveyResult]:
     """What the shipped machine's peers say to a machine file with ``changes``."""
     clock, machine = ManualClock(), can_machine()
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     try:
         if silent:
             peers.nodes[silent].is_silent = True
@@ -45,7 +45,12 @@ def surveyed(*changes: tuple[str, str], silent: str = "") -> dict[str, SurveyRes
 
 def test_every_node_says_what_it_is() -> None:
     found = surveyed()
-    assert {name: answer.node for name, answer in found.items()} == {"X": 1, "Z": 2, "spindle": 3, "io": 10}
+    assert {name: answer.node_id for name, answer in found.items()} == {
+        "X": 1,
+        "Z": 2,
+        "spindle": 3,
+        "io": 10,
+    }
     assert not any(answer.error_text for answer in found.values())
     # EPOS2 has no option of its quick stop, and no time for its window
     assert "PP homing IP CSP" in found["X"].detail
@@ -84,7 +89,7 @@ def test_a_node_of_another_kind_is_named_with_both_profiles() -> None:
 
 def test_asking_leaves_no_heartbeat_that_somebody_could_miss(monkeypatch: pytest.MonkeyPatch) -> None:
     clock, machine = ManualClock(), can_machine()
-    peers = create_canopen_peers(machine, clock)
+    peers = create_simulated_devices(machine, clock)
     heard: list[int] = []
     take = peers.nodes["X"].handle_frame
 

@@ -68,8 +68,8 @@ def test_outputs_of_a_silent_module_are_refused_and_its_safe_states_kept(bench: 
     with raises_code(DriverError, "output", "catcher", "io: "):
         io.write("catcher", True)
     io.switch_to_safe_state()
-    assert not io.outputs()["coolant"]
-    assert io.outputs()["collet"]
+    assert not io.get_outputs()["coolant"]
+    assert io.get_outputs()["collet"]
 
 
 def test_a_spindle_load_is_told_in_per_cent() -> None:

@@ -67,7 +67,7 @@ class Canopen(Rig):
         self.peers, self.clock, self.machine = self.bench.peers, self.bench.clock, self.bench.model
         self.ports = self.bench.machine.ports
         self._answered, self._count = 1, 0  # the peers answer every so many rounds
-        self.world = SimWorld(self.peers.machine, lambda: self.peers.plant.terminals.outputs)
+        self.world = SimWorld(self.peers.machine, lambda: self.peers.plant.terminals.output_states)
 
     @staticmethod
     def made(*changes: tuple[str, str], absolute: bool) -> Machine:
@@ -98,7 +98,7 @@ class Canopen(Rig):
         return {
             "drive fault": lambda: machine.drive_fault("X"),
             "following error": lambda: machine.jam("X"),
-            "cable out": lambda: self.peers.cable(disconnected=True),
+            "cable out": lambda: self.peers.cable(is_disconnected=True),
             "silence": lambda: setattr(nodes["Z"], "is_silent", True),
             "silent terminals": lambda: setattr(nodes["io"], "is_silent", True),
             "garbage": lambda: self._send(*[(0x181, b"\x27\x02")] * 3),
@@ -113,7 +113,7 @@ class Canopen(Rig):
 
     def mend(self) -> None:
         """Cable in, slide free."""
-        self.peers.cable(disconnected=False)
+        self.peers.cable(is_disconnected=False)
         self.peers.machine.jam("X", False)
 
     def close(self) -> None:

@@ -105,7 +105,7 @@ class GrblWorld:
         self._peer.command_spindle(0.0)
         self._peer.output_states.update(flood=False, mist=False)
         self._peer.raise_alarm(10)
-        self._motor.cut_power(self._peer.clock.now())
+        self._motor.remove_power(self._peer.clock.now())
 
     def release_estop(self) -> None:
         """Free."""

@@ -48,7 +48,7 @@ def hal_text(*, homing: bool = False, lamps: str = "", orients: bool = False) ->
 
     ``lamps``: lines of [io.out] besides its own. ``orients``: HAL brings its spindle to an angle.
     """
-    text = resources.machine_file("gt75-hal.toml").replace("\n[m_codes]", _HANDS, 1)
+    text = resources.read_machine_file("gt75-hal.toml").replace("\n[m_codes]", _HANDS, 1)
     text = text.replace('enable = "x-motor.sel"', 'enable = "x-motor.sel"\nfault = "x-fault"')
     text = text.replace(
         'enable = "z-motor.sel"', 'enable = "z-motor.sel"\nfault = "z-fault"\nhome = "z-home"'
@@ -101,7 +101,7 @@ class Hal(Rig):
         self.far = HalSimulator(config, create_sim_config(self.machine), self.clock)
         self.driver = HalMachine(config, self.clock, self.far.restart_bridge, self.far.plant.advance)
         self.ports = self.driver.ports
-        self.world = SimWorld(self.far.plant_controls, lambda: self.far.plant.terminals.outputs)
+        self.world = SimWorld(self.far.plant_controls, lambda: self.far.plant.terminals.output_states)
 
     def alone(self, dt: float) -> None:
         """Two rounds of the loop that owns the bridge."""

@@ -83,7 +83,7 @@ class OnALine(Simulated):
     }
 
     def __init__(self, *, homing: bool = False) -> None:
-        machine = parse_machine(resources.machine_file("gt75-vfd.toml"), "gt75-vfd.toml")
+        machine = parse_machine(resources.read_machine_file("gt75-vfd.toml"), "gt75-vfd.toml")
         super().__init__(machine, homing=homing)
         assert isinstance(self.clock, LockstepClock)
         self.inverter = Inverter(self.clock)
@@ -109,7 +109,7 @@ class OnALine(Simulated):
             unknown=partial(find_unknown_parts, ports, spindle),
             spindle_lag=spindle.get_line_delay,
         )
-        self.world = InverterWorld(self.hands, ports.io.outputs)
+        self.world = InverterWorld(self.hands, ports.io.get_outputs)
         self.world.inverter = self.inverter
         self._hook = threading.excepthook
         self.keeper.start()

@@ -31,21 +31,21 @@ class LockstepClock(ManualClock):
             self._free = True
             self._turn.notify_all()
 
-    def sleep_until(self, t: float) -> None:
+    def sleep_until(self, time_s: float) -> None:
         """The owner moves the clock; the other one waits until the clock is there."""
         if threading.get_ident() == self._owner or self._free:
-            super().sleep_until(t)
+            super().sleep_until(time_s)
             return
-        if t <= self.now():
+        if time_s <= self.now():
             return
         with self._turn:
-            self._due = t
+            self._due = time_s
             self._turn.notify_all()
             self._turn.wait_for(lambda: self._due is None or self._free)
 
-    def advance(self, dt: float) -> None:
-        """On by ``dt``, with a stop wherever the other one wants to be woken."""
-        end = self.now() + dt
+    def advance(self, seconds: float) -> None:
+        """On by ``seconds``, with a stop wherever the other one wants to be woken."""
+        end = self.now() + seconds
         while self._due is not None and self._due <= end:
             super().sleep_until(self._due)
             self._wake()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from core.block_ports import BlockController, LineOperation
-from core.ports import AxisSink, Segments
+from core.ports import AxisSink, MotionSegments
 
 ACCEL = 3000.0  # mm/s²
 _PIECE = 0.1  # s of one block
 
 
-def start(axes: AxisSink, speed: float, cruise: float) -> Segments:
+def start(axes: AxisSink, speed: float, cruise: float) -> MotionSegments:
     """X from where it rests, as soon as the driver takes it."""
     at = axes.now() + axes.commit + 0.005
     rest, _ = axes.demand_at(1e9)
@@ -23,7 +23,7 @@ def start(axes: AxisSink, speed: float, cruise: float) -> Segments:
     p[:, 0] += np.array([0.0, 0.5 * speed * up, 0.5 * speed * up + speed * cruise])
     v[:, 0] = [0.0, speed, speed]
     acc[:, 0] = [a, 0.0, -a]
-    return Segments(at + np.array([0.0, up, up + cruise]), dt, p, v, acc)
+    return MotionSegments(at + np.array([0.0, up, up + cruise]), dt, p, v, acc)
 
 
 def hand_over(blocks: BlockController, axes: AxisSink, speed: float, cruise: float) -> float:

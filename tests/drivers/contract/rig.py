@@ -144,7 +144,7 @@ class Rig(ABC):
             return hand_over(self.blocks, self.ports.axes, speed, cruise)
         segments = start(self.ports.axes, speed, cruise)
         self.ports.axes.splice(segments)
-        return float(segments.p[-1, 0] + 0.5 * segments.v[-1, 0] * segments.dt[-1])
+        return float(segments.positions[-1, 0] + 0.5 * segments.velocities[-1, 0] * segments.durations_s[-1])
 
     def under_way(self) -> float:
         """Drives on, X at 120 mm/s with 0.4 s of way before it; where it will end."""

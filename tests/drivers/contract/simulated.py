@@ -26,7 +26,7 @@ _INSIDE = "the simulated machine is in this process: there is no wire"
 def unhomed(machine: Machine) -> Machine:
     """With a Z that only counts and has to be homed."""
     x, z, c = machine.axes
-    z = dataclasses.replace(z, absolute=False, home_speed=20.0, home_order=1)
+    z = dataclasses.replace(z, is_position_absolute=False, home_speed=20.0, home_order=1)
     return dataclasses.replace(machine, axes=(x, z, c))
 
 
@@ -63,7 +63,7 @@ class Simulated(Rig):
         self.clock = self.make_clock()
         sim = create_simulation(self.machine, self.clock)
         self.ports, self.hands = sim.ports, sim.machine
-        self.world = SimWorld(sim.machine, sim.ports.io.outputs)
+        self.world = SimWorld(sim.machine, sim.ports.io.get_outputs)
 
     def make_clock(self) -> ManualClock:
         """Moved by the test."""

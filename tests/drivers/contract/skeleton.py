@@ -20,7 +20,7 @@ from core.ports import (
     DriverError,
     Fault,
     MachinePorts,
-    Segments,
+    MotionSegments,
     StopMode,
     UnknownPart,
 )
@@ -45,12 +45,12 @@ class Board:
         self.place = (0.0,) * len(config.axes)  # mm or degrees, counted in steps
         self.powered = self.estop = self.cut = False
         self.motor = SpindleMotor(config.spindle)
-        self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.seed)
+        self.terminals = SimulatedTerminals(config.outputs, config.inputs, config.collet, config.random_seed)
 
     def switch_off(self, now: float) -> None:
         """Remove the power of the axes and the spindle."""
         self.powered = False
-        self.motor.cut_power(now)
+        self.motor.remove_power(now)
 
 
 class BoardAxes:
@@ -75,7 +75,7 @@ class BoardAxes:
         if board.cut and not self.fault:
             self.fault = Fault("the board does not respond; check its cable", "controller-lost")
         if board.powered:
-            board.place = self._queue.commanded_state_at(min(now, self._off_at))[0]
+            board.place = self._queue.get_commanded_state(min(now, self._off_at))[0]
             if now >= self._off_at:
                 board.powered = False
         if not board.powered:
@@ -86,19 +86,19 @@ class BoardAxes:
 
     def horizon(self) -> float:
         """Return the end of the last motion in the queue."""
-        return self._queue.queue_end(self.poll())
+        return self._queue.get_end_time(self.poll())
 
-    def splice(self, segments: Segments) -> None:
+    def splice(self, segments: MotionSegments) -> None:
         """Queue setpoints. Raises DriverError."""
         now = self.poll()
         self._need_power()
         check_limits(segments, self._config.axes, self._homed)
-        self._queue.splice(segments, now)
+        self._queue.splice_segments(segments, now)
 
     def demand_at(self, time_s: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Return the queued position and velocity at ``t``."""
         self.poll()
-        return self._queue.commanded_state_at(time_s)
+        return self._queue.get_commanded_state(time_s)
 
     def sample(self) -> AxisSample:
         """Return the counted position; a step drive does not report a following error."""
@@ -110,18 +110,18 @@ class BoardAxes:
             following_error=(0.0,) * len(place),
             enabled=self._board.powered,
             homed=tuple(self._homed),
-            moving=any(self._queue.commanded_state_at(now)[1]) or self._homing is not None,
+            moving=any(self._queue.get_commanded_state(now)[1]) or self._homing is not None,
             fault=self.fault,
         )
 
-    def enable(self, on: bool) -> None:
+    def enable(self, is_on: bool) -> None:
         """Switch the drives. Raises DriverError in E-stop and after a fault."""
         self.poll()
-        if on and self._board.estop:
+        if is_on and self._board.estop:
             raise DriverError("the drives stay off while the E-stop is pressed", "no-power")
-        if on and self.fault:
+        if is_on and self.fault:
             raise DriverError(self.fault)
-        self._board.powered = on
+        self._board.powered = is_on
         self.poll()
 
     def stop(self, mode: StopMode) -> None:
@@ -175,16 +175,16 @@ class BoardSpindle:
     def __init__(self, axes: BoardAxes, board: Board, rpm_max: float) -> None:
         self._axes, self._board, self._rpm_max = axes, board, rpm_max
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         """Turn, M03 is positive. Raises DriverError in E-stop and after a fault, except for 0."""
         now = self._axes.poll()
         if rpm and (self._board.estop or self._axes.fault):
             raise DriverError("the spindle stays off: E-stop or fault", "spindle-off")
         self._board.motor.command_speed(now, min(max(rpm, -self._rpm_max), self._rpm_max))
 
-    def coast(self) -> None:
+    def start_coasting(self) -> None:
         """Remove the torque."""
-        self._board.motor.command_speed(self._axes.poll(), 0.0, coast=True)
+        self._board.motor.command_speed(self._axes.poll(), 0.0, should_coast=True)
 
     def speed(self) -> float:
         """Return the speed, rpm."""
@@ -209,13 +209,13 @@ class BoardIO:
         """Return all inputs."""
         return self._terminals.read_inputs(self._axes.poll())
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return all outputs."""
-        return dict(self._terminals.outputs)
+        return dict(self._terminals.output_states)
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch an output. Raises DriverError for a name that the machine file does not have."""
-        self._terminals.write(name, on, self._axes.poll())
+        self._terminals.write(name, is_on, self._axes.poll())
 
     def switch_to_safe_state(self) -> None:
         """Switch every output to its safe state."""
@@ -229,7 +229,7 @@ def board_ports(config: SimConfig, clock: Clock, board: Board) -> MachinePorts:
     return MachinePorts(
         clock=clock,
         axes=axes,
-        spindle=BoardSpindle(axes, board, config.spindle.rpm_max),
+        spindle=BoardSpindle(axes, board, config.spindle.max_rpm),
         io=io,
         station=OnScreenStation(clock, io.inputs),
         unknown=lambda: ALL_UNKNOWN_PARTS if board.cut else frozenset[UnknownPart](),
@@ -261,7 +261,7 @@ class BoardWorld:
 
     def outputs(self) -> Readings:
         """Return the states of all outputs."""
-        return dict(self._board.terminals.outputs)
+        return dict(self._board.terminals.output_states)
 
     def press_estop(self) -> None:
         """Open the chain: the relay removes the power."""
@@ -335,7 +335,7 @@ class Skeleton(rig.Rig):
 
     def switch_output(self, name: str, on: bool) -> None:
         """Switch an output by hand."""
-        self.board.terminals.outputs[name] = on
+        self.board.terminals.output_states[name] = on
 
     def mend(self) -> None:
         """Connect the cable."""

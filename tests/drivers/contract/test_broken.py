@@ -37,7 +37,7 @@ def test_every_fault_has_its_hammer(name: str) -> None:
 def costs_no_time(rig: Rig) -> None:
     """On this clock whoever waits moves it."""
     now, ports = rig.clock.now(), rig.ports
-    for look in (ports.axes.sample, ports.station.read_state, ports.io.inputs, ports.io.outputs):
+    for look in (ports.axes.sample, ports.station.read_state, ports.io.inputs, ports.io.get_outputs):
         look()
     for ask in (ports.spindle.speed, ports.spindle.read_angle, ports.spindle.read_fault):
         ask()
@@ -51,7 +51,7 @@ def takes_no_orders(rig: Rig) -> None:
     axes = rig.ports.axes
     if not axes.sample().fault:
         with pytest.raises(DriverError):
-            rig.ports.spindle.run_at(300.0)
+            rig.ports.spindle.set_speed(300.0)
         return
     assert not axes.sample().enabled
     with pytest.raises(DriverError):
@@ -62,7 +62,7 @@ def takes_no_orders(rig: Rig) -> None:
 
 def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken: Broken) -> None:
     (rig, fault), axes = broken, broken[0].ports.axes
-    rig.ports.spindle.run_at(600.0)
+    rig.ports.spindle.set_speed(600.0)
     rig.under_way()
     rig.acts()[fault]()
     rig.until(lambda: rig.told != "", rig.faults[fault].told)
@@ -95,7 +95,7 @@ def test_a_fault_is_told_in_time_and_only_a_clear_word_brings_power_back(broken:
 def test_a_disturbance_that_does_not_matter_does_not_matter(disturbed: Broken) -> None:
     rig, what = disturbed
     end = rig.under_way()
-    rig.ports.spindle.run_at(600.0)
+    rig.ports.spindle.set_speed(600.0)
     rig.acts()[what]()
     rig.run(1.5)
     assert rig.told == ""

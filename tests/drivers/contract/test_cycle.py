@@ -122,7 +122,7 @@ def test_single_block_stops_behind_each_block(control: Control) -> None:
     control.start("G90G94F300\nX.5\nG01F100Z-.5\nX.7\nM30\n")
     places = []
     for _ in range(3):
-        control.until(MachineState.BLOCK_END, limit=5.0)
+        control.until(MachineState.SINGLE_BLOCK_STOP, limit=5.0)
         control.run(0.1)
         places.append(control.world.place())
         control.press()
@@ -137,8 +137,8 @@ def test_single_block_gets_past_blocks_that_go_nowhere(control: Control) -> None
     control.start("G90G94F300\nX.3Z.1\nX.3\nG01X.3F100\nX.35\nX.35\nM30\n")
     lines = []
     while control.state is not MachineState.IDLE:
-        control.until(MachineState.BLOCK_END, MachineState.IDLE, MachineState.FAULT, limit=5.0)
-        if control.state is MachineState.BLOCK_END:
+        control.until(MachineState.SINGLE_BLOCK_STOP, MachineState.IDLE, MachineState.FAULT, limit=5.0)
+        if control.state is MachineState.SINGLE_BLOCK_STOP:
             lines.append(control.shot.line)
             assert len(lines) < 12, lines
             control.press()
@@ -167,7 +167,7 @@ def test_a_cycle_comes_after_homing(lost: Rig) -> None:
     assert control.state is MachineState.IDLE
     assert "homed" in control.shot.start_refusal
     control.post(HomeAxes())
-    control.until(MachineState.HOME, limit=0.1)
+    control.until(MachineState.HOMING, limit=0.1)
     control.until(MachineState.IDLE)
     assert all(control.shot.homed)
     control.press()

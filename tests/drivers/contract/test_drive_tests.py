@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.executor.commands import RenewDriveTest, RunDriveTest
-from core.executor.hand_motion.drive_test import NO_SETPOINTS_REASON, DriveTestPath, Shape
+from core.executor.hand_motion.drive_test import NO_SETPOINTS_REASON, DriveTestMotion, Shape
 from core.executor.snapshot import MachineState
 from tests.drivers.contract.control import Control
 from tests.drivers.contract.rig import STILL
@@ -13,13 +13,13 @@ from tests.texts import text
 
 LEASE = 0.3
 PATHS = (
-    DriveTestPath("X", Shape.STEP, 0.5),
-    DriveTestPath("Z", Shape.RAMP, -2.0, speed=10.0),
-    DriveTestPath("X", Shape.SINE, 0.4, frequencies=(5.0,)),
+    DriveTestMotion("X", Shape.STEP, 0.5),
+    DriveTestMotion("Z", Shape.RAMP, -2.0, speed=10.0),
+    DriveTestMotion("X", Shape.SINE, 0.4, frequencies_hz=(5.0,)),
 )
 
 
-def hold(control: Control, path: DriveTestPath) -> list[float]:
+def hold(control: Control, path: DriveTestMotion) -> list[float]:
     """Renewed until it is over: where the slide really was."""
     control.post(RunDriveTest(path, LEASE))
     index, seen = "XZ".index(path.axis), []
@@ -31,7 +31,7 @@ def hold(control: Control, path: DriveTestPath) -> list[float]:
 
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: path.shape.value)
 def test_a_test_is_played_and_comes_back_or_is_refused_with_the_reason(
-    control: Control, path: DriveTestPath
+    control: Control, path: DriveTestMotion
 ) -> None:
     control.ready()
     control.run(0.5)
@@ -59,7 +59,7 @@ def test_a_test_that_nobody_renews_ends_with_its_lease(control: Control) -> None
     control.run(0.5)
     if control.shot.drive_test.barred:
         pytest.skip(control.shot.drive_test.barred)
-    control.post(RunDriveTest(DriveTestPath("Z", Shape.RAMP, 20.0, speed=10.0), LEASE))
+    control.post(RunDriveTest(DriveTestMotion("Z", Shape.RAMP, 20.0, speed=10.0), LEASE))
     at = control.world.place()[1]
     control.run(LEASE + 0.2)
     control.rest(0.2)

@@ -19,7 +19,9 @@ Opened = Callable[[], None]  # lets it go again
 OWNERS: dict[str, Callable[[str], Opened]] = {
     "inverter": lambda port: open_line(LineSettings(port)).close,
     "programs": lambda port: (
-        open_line(LineSettings(port, bits=7, parity="E", flow="xonxoff"), count_damaged=True).close
+        open_line(
+            LineSettings(port, data_bits=7, parity="E", flow_control="xonxoff"), count_damaged=True
+        ).close
     ),
     "grblhal": lambda port: open_controller(port, 115_200).close,
 }

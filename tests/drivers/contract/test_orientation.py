@@ -164,7 +164,7 @@ def test_an_angle_in_a_sense_another_one_and_none(control: Control) -> None:
     assert not port.is_oriented()
     rig.until(port.is_oriented)
     assert rig.slides.spindle_turns() == pytest.approx(0.0, abs=1e-3)
-    rig.ports.spindle.run_at(300.0)
+    rig.ports.spindle.set_speed(300.0)
     rig.run(0.3)
     assert not port.is_oriented()
 
@@ -187,19 +187,23 @@ def test_who_cannot_says_so_in_the_machine_file_and_has_no_such_port(name: str) 
 
 @pytest.mark.parametrize("name", ["gt75-canopen", "gt75-grblhal", "gt75-vfd"])
 def test_a_machine_file_that_asks_it_of_them_is_refused(name: str) -> None:
-    text = resources.machine_file(f"{name}.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    text = resources.read_machine_file(f"{name}.toml").replace(
+        "[spindle]\n", "[spindle]\noriented = true\n", 1
+    )
     with pytest.raises(MachineFileError, match=r"spindle\.oriented = true: .*spindle\.driver"):
         parse_machine(text, name)
 
 
 def test_a_lathe_whose_spindle_is_c_is_not_oriented_besides() -> None:
-    text = resources.machine_file("gt75.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    text = resources.read_machine_file("gt75.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
     with pytest.raises(MachineFileError, match=r"spindle\.oriented = true: .*axis\.C\.own_drive"):
         parse_machine(text, "gt75")
 
 
 def test_hal_needs_the_four_pins_of_it() -> None:
-    text = resources.machine_file("gt75-hal.toml").replace("[spindle]\n", "[spindle]\noriented = true\n", 1)
+    text = resources.read_machine_file("gt75-hal.toml").replace(
+        "[spindle]\n", "[spindle]\noriented = true\n", 1
+    )
     with pytest.raises(MachineFileError) as refused:
         parse_machine(text, "gt75-hal")
     for pin in ("orient", "orient_angle", "orient_mode", "is_oriented"):

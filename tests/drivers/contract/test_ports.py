@@ -120,7 +120,7 @@ def test_homing_finds_home_for_one_axis_and_only_where_power_is(lost: Rig) -> No
 
 def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
     axes, spindle = moving.ports.axes, moving.ports.spindle
-    spindle.run_at(500.0)
+    spindle.set_speed(500.0)
     moving.run(0.2)
     moving.world.press_estop()
     moving.run(0.5)
@@ -149,7 +149,7 @@ def test_estop_takes_power_and_gives_nothing_back(moving: Rig) -> None:
 
 def test_letting_go_leaves_nothing_under_way(moving: Rig) -> None:
     """What a control that ends in good order does: it stops, then it closes."""
-    moving.ports.spindle.run_at(0.0)
+    moving.ports.spindle.set_speed(0.0)
     moving.ports.axes.stop(StopMode.RAMP_OFF)
     moving.run(1.0)
     assert moving.stands()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.block_ports import LineOperation
-from core.ports import DriverError, Segments
+from core.ports import DriverError, MotionSegments
 from tests.coded import raises_code
 from tests.drivers.contract.conftest import need
 from tests.drivers.contract.moves import start
@@ -24,18 +24,18 @@ def test_a_splice_goes_on_from_what_demand_at_foretells(rig: Rig) -> None:
     zero = np.zeros((1, len(p)))
     speed, brake = zero.copy(), zero.copy()
     speed[0, 0], brake[0, 0] = 120.0, -3000.0
-    axes.splice(Segments(np.array([at]), np.array([stop]), np.array([p]), speed, brake))
+    axes.splice(MotionSegments(np.array([at]), np.array([stop]), np.array([p]), speed, brake))
     rig.until(lambda: not axes.sample().moving)
     assert axes.sample().actual[0] == pytest.approx(p[0] + 120.0 * stop / 2, abs=0.003)
 
 
-def stopping(rig: Rig) -> Segments:
+def stopping(rig: Rig) -> MotionSegments:
     """A good stop from full speed, in 40 ms, and a moment of rest."""
     axes = rig.ports.axes
     at = axes.now() + axes.commit + 0.005
     p, v = (np.array(each) for each in axes.demand_at(at))
     still = np.zeros(len(p))
-    return Segments(
+    return MotionSegments(
         np.array([at, at + 0.04]),
         np.array([0.04, 0.01]),
         np.vstack([p, p + v * 0.02]),
@@ -50,14 +50,16 @@ def test_bad_setpoints_are_refused_and_the_old_ones_stay(rig: Rig) -> None:
     axes = rig.ports.axes
     horizon, good = axes.horizon(), stopping(rig)
     bad = {
-        "too-early": good._replace(t=good.t - axes.commit - 0.05),
-        "jump": good._replace(p=good.p + 1.0),
-        "gap": good._replace(t=good.t + np.array([0.0, 0.01])),
-        "moves-at-end": Segments(*(part[:1] for part in good))._replace(a=0.0 * good.a[:1]),
-        "no-number": good._replace(a=good.a * np.nan),
-        "backwards": good._replace(dt=-good.dt),
-        "too-fast": good._replace(v=good.v * 1.2),
-        "leaves-travel": good._replace(p=good.p + 500.0),
+        "too-early": good._replace(start_times_s=good.start_times_s - axes.commit - 0.05),
+        "jump": good._replace(positions=good.positions + 1.0),
+        "gap": good._replace(start_times_s=good.start_times_s + np.array([0.0, 0.01])),
+        "moves-at-end": MotionSegments(*(part[:1] for part in good))._replace(
+            accelerations=0.0 * good.accelerations[:1]
+        ),
+        "no-number": good._replace(accelerations=good.accelerations * np.nan),
+        "backwards": good._replace(durations_s=-good.durations_s),
+        "too-fast": good._replace(velocities=good.velocities * 1.2),
+        "leaves-travel": good._replace(positions=good.positions + 500.0),
     }
     for reason, segments in bad.items():
         with pytest.raises(DriverError) as told:
@@ -82,7 +84,7 @@ def test_the_longest_plan_of_many_short_pieces(powered: Rig) -> None:
     v[:, 0], a[:, 0] = speed[:-1], np.diff(speed) / 0.001
     p = np.tile(np.array(rest), (n, 1))
     p[1:, 0] += np.cumsum((speed[:-1] + speed[1:]) / 2 * 0.001)[:-1]
-    axes.splice(Segments(np.asarray(t, dtype=np.float64), np.full(n, 0.001), p, v, a))
+    axes.splice(MotionSegments(np.asarray(t, dtype=np.float64), np.full(n, 0.001), p, v, a))
     powered.run(2.5)
     sample = axes.sample()
     assert sample.fault == ""

@@ -18,13 +18,13 @@ def _turns_at(spindle: Spindle, rpm: float) -> bool:
 def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
     spindle = rig.ports.spindle
     for rpm in (-1200.0, 600.0, 1500.0, 0.0):
-        spindle.run_at(rpm)
+        spindle.set_speed(rpm)
         rig.until(partial(_turns_at, spindle, rpm), 6.0)
         rig.run(0.3)
         assert rig.world.rpm() == pytest.approx(rpm, abs=1.0)
-    spindle.run_at(600.0)
+    spindle.set_speed(600.0)
     rig.until(lambda: abs(spindle.speed() - 600.0) < 2.0)
-    spindle.coast()
+    spindle.start_coasting()
     rig.until(lambda: abs(spindle.speed()) < 1.0)
     assert rig.stands()
     assert rig.world.rpm() == 0.0
@@ -32,7 +32,7 @@ def test_the_spindle_turns_both_ways_and_stops(rig: Rig) -> None:
 
 
 def test_no_more_rpm_than_the_machine_allows(rig: Rig) -> None:
-    rig.ports.spindle.run_at(-99999.0)
+    rig.ports.spindle.set_speed(-99999.0)
     rig.run(4.0)
     assert rig.world.rpm() == pytest.approx(-rig.machine.spindle.max_rpm, abs=1.0)
     assert rig.ports.spindle.read_fault() == ""
@@ -41,14 +41,14 @@ def test_no_more_rpm_than_the_machine_allows(rig: Rig) -> None:
 def test_of_many_speeds_the_last_one_counts(rig: Rig) -> None:
     """More of them than any line takes, as a surface speed makes them; and a stop behind them all."""
     for step in range(200):
-        rig.ports.spindle.run_at(500.0 + 5.0 * step)
-        rig.ports.spindle.run_at(400.0 + 5.0 * step)
+        rig.ports.spindle.set_speed(500.0 + 5.0 * step)
+        rig.ports.spindle.set_speed(400.0 + 5.0 * step)
         if step % 4 == 0:
             rig.tick()
     rig.run(2.0)
     assert rig.world.rpm() == pytest.approx(400.0 + 5.0 * 199, abs=1.0)
-    rig.ports.spindle.run_at(1500.0)
-    rig.ports.spindle.run_at(0.0)
+    rig.ports.spindle.set_speed(1500.0)
+    rig.ports.spindle.set_speed(0.0)
     rig.run(2.0)
     assert rig.world.rpm() == 0.0
     assert rig.ports.spindle.read_fault() == ""
@@ -59,13 +59,13 @@ def test_outputs_go_out_and_fall_safe(rig: Rig) -> None:
     io.write("coolant", True)
     io.write("collet", True)
     rig.run(0.1)
-    assert io.outputs()["coolant"]
+    assert io.get_outputs()["coolant"]
     assert rig.world.outputs()["coolant"]
     io.switch_to_safe_state()
     rig.run(0.1)
-    assert not io.outputs()["coolant"]
+    assert not io.get_outputs()["coolant"]
     assert not rig.world.outputs()["coolant"]
-    assert io.outputs()["collet"]  # "keep"
+    assert io.get_outputs()["collet"]  # "keep"
     assert rig.world.outputs()["collet"]
     with raises_code(DriverError, "output", "'laser'"):
         io.write("laser", True)

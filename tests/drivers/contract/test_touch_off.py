@@ -71,21 +71,21 @@ def test_the_place_of_the_touch_is_found_as_near_as_is_said(bench: Bench) -> Non
     bench.until(MachineState.IDLE, limit=60.0)
     touched = bench.touched
     assert touched.why == ""
-    assert touched.touch_position is not None
+    assert touched.touch_position_mm is not None
     # The bench itself makes the input up to a tick late.
-    assert touched.touch_position == pytest.approx(FACE, abs=touched.uncertainty_mm + SLOW * TICK + COUNT)
+    assert touched.touch_position_mm == pytest.approx(FACE, abs=touched.uncertainty_mm + SLOW * TICK + COUNT)
     assert touched.uncertainty_mm <= SLOW * 0.06 / 2 + COUNT / 2
     assert bench.rig.world.place()[0] == pytest.approx(FACE + SETTER.back_off, abs=0.02)
     if bench.rig.ports.touch is not None:
         kept = bench.rig.ports.touch.read_latch()
         assert kept is not None
         assert touched.uncertainty_mm == pytest.approx(
-            SLOW * kept.max_delay_s / 2 + bench.rig.machine.find_axis("X").count / 2
+            SLOW * kept.max_delay_s / 2 + bench.rig.machine.find_axis("X").count_size / 2
         )
     assert bench.shot.alarms == ()
 
 
-@pytest.mark.parametrize("phase", [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW])
+@pytest.mark.parametrize("phase", [TouchPhase.SEARCH, TouchPhase.BACK_OFF, TouchPhase.SLOW_TOUCH])
 def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
     bench.touch()
     bench.until_true(lambda shot: shot.touch_phase is phase)
@@ -93,7 +93,7 @@ def test_letting_go_stops_it(bench: Bench, phase: TouchPhase) -> None:
     bench.let_go()
     bench.rest(0.6)
     bench.until(MachineState.IDLE)
-    assert bench.touched.touch_position is None
+    assert bench.touched.touch_position_mm is None
     assert text("executor.let-go") in bench.touched.why
 
 
@@ -104,7 +104,7 @@ def test_a_screen_that_is_gone_stops_it(bench: Bench) -> None:
     before = bench.rig.world.place()[0]
     bench.until(MachineState.IDLE)
     assert before - bench.rig.world.place()[0] < 10.0 * (LEASE + 0.5)
-    assert bench.touched.touch_position is None
+    assert bench.touched.touch_position_mm is None
 
 
 def test_nothing_there_leads_back(bench: Bench) -> None:
@@ -141,5 +141,5 @@ def test_what_breaks_ends_it(bench: Bench, fault: str) -> None:
     bench.until(MachineState.FAULT)
     bench.run(bench.rig.faults[fault].rests)
     assert bench.shot.touch_phase is None
-    assert bench.touched.touch_position is None
+    assert bench.touched.touch_position_mm is None
     assert bench.stands()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import resources
-from app.compose.backends.canopen_backend import create_canopen_peers
+from app.compose.backends.canopen_backend import create_simulated_devices
 from app.compose.machine.machine_files import load_machine
 from core.ports import DriverError
 from drivers.simulators.canopen_devices import CanopenDevices
@@ -65,7 +65,7 @@ class SteadyClock(ManualClock):
 def bus_file(folder: Path, *changes: tuple[str, str]) -> Path:
     """A machine file of that bus."""
     group = f"239.74.163.2:{20000 + os.getpid() % 20000}"  # two runs on one port would hear each other
-    text = resources.machine_file("gt75-canopen.toml")
+    text = resources.read_machine_file("gt75-canopen.toml")
     channel = (('"socketcan"', '"udp_multicast"'), ('channel = "can0"', f'channel = "{group}"'))
     for old, new in (*channel, *TIMES, *changes):
         assert old in text, old
@@ -78,7 +78,7 @@ def bus_file(folder: Path, *changes: tuple[str, str]) -> Path:
 def peers_on(path: Path, clock: SteadyClock) -> CanopenDevices:
     """Drives and terminals of the file; the test is skipped, and says so, where no bus is to be had."""
     try:
-        peers = create_canopen_peers(load_machine(path), clock)
+        peers = create_simulated_devices(load_machine(path), clock)
     except DriverError as error:
         pytest.skip(f"no bus between processes on this computer: {error}")
     peers.convert_arrival_time = clock.arrival

@@ -11,7 +11,7 @@ import numpy as np
 from app.compose.backends.driver_host_process import DriverHostProcess
 from app.compose.machine.machine_files import load_machine
 from core.faults import get_fault_code
-from core.ports import Segments
+from core.ports import MotionSegments
 from drivers.driver_host.host_ports import create_host_ports
 from drivers.wakeups import RealClock
 
@@ -24,7 +24,7 @@ def main(path: str) -> None:
     host = DriverHostProcess(load_machine(Path(path)), clock)
     ports = create_host_ports(host.connection)
     ports.axes.enable(True)
-    ports.spindle.run_at(600.0)
+    ports.spindle.set_speed(600.0)
     ports.io.write("coolant", True)
     ports.io.write("collet", True)
     at = clock.now() + ports.axes.commit + 0.1
@@ -33,7 +33,9 @@ def main(path: str) -> None:
         p[:, axis] = [0.0, 0.5 * SPEED * UP, 0.5 * SPEED * UP + SPEED * CRUISE]
         v[:, axis] = [0.0, SPEED, SPEED]
         a[:, axis] = [SPEED / UP, 0.0, -SPEED / UP]
-    ports.axes.splice(Segments(at + np.array([0.0, UP, UP + CRUISE]), np.array([UP, CRUISE, UP]), p, v, a))
+    ports.axes.splice(
+        MotionSegments(at + np.array([0.0, UP, UP + CRUISE]), np.array([UP, CRUISE, UP]), p, v, a)
+    )
     sys.stdout.write(json.dumps({"feeder": host.process.pid, "warnings": list(ports.warnings)}) + "\n")
     sys.stdout.flush()
     while True:

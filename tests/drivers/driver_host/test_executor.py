@@ -40,7 +40,7 @@ def story(rig: Rig, text: str) -> list[tuple[float, str, str, int]]:
     rig.events.clear()
     rig.start(text, TOOLS)
     rig.until(MachineState.IDLE)
-    return [(round(event.time_s, 6), event.kind, event.text, event.line) for event in rig.events]
+    return [(round(event.time_s, 6), event.kind, event.text, event.line_number) for event in rig.events]
 
 
 @pytest.mark.parametrize("text", [TURN, EXTERNAL], ids=["turning", "thread"])

@@ -65,11 +65,11 @@ def test_a_spindle_that_refuses_its_stop_keeps_no_output_on(monkeypatch: pytest.
     ports = create_host_ports(HostConnection(InProcessLink(host), clock))
     ports.axes.enable(True)
     ports.io.write("coolant", True)
-    monkeypatch.setattr(sim.ports.spindle, "run_at", refuse("the inverter does not answer"))
+    monkeypatch.setattr(sim.ports.spindle, "set_speed", refuse("the inverter does not answer"))
     for _ in range(300):
         clock.advance(0.01)
         host.run_cycle()
-    assert not sim.ports.io.outputs()["coolant"]
+    assert not sim.ports.io.get_outputs()["coolant"]
     assert [note for note in host._notes if "was stopping the machine: the inverter does not answer" in note]
 
 
@@ -77,7 +77,7 @@ def test_outputs_that_refuse_keep_no_spindle_turning(monkeypatch: pytest.MonkeyP
     sim, clock = simulation()
     host = DriverHost(simulation_driven(sim.ports, sim.machine))
     ports = create_host_ports(HostConnection(InProcessLink(host), clock))
-    ports.spindle.run_at(600.0)
+    ports.spindle.set_speed(600.0)
     for _ in range(10):
         clock.advance(0.1)
         ports.axes.sample()

@@ -107,8 +107,8 @@ def test_a_killed_control_leaves_slides_that_stop_on_their_path(shop: Shop) -> N
     assert shop.x == pytest.approx(END, abs=0.01)  # to the end of what was queued
     shop.until(lambda: not drives["X"].power_states.is_powered)  # an orphan takes the power too
     shop.play(2.0)
-    assert not board.outputs["coolant"]
-    assert board.outputs["collet"]
+    assert not board.output_states["coolant"]
+    assert board.output_states["collet"]
     shop.until(lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0)
 
 
@@ -120,8 +120,8 @@ def test_a_killed_driver_host_leaves_it_to_the_drives(shop: Shop) -> None:
     # 160 ms in the drives' queues, then v²/2a: less than 5 mm
     assert shop.x - before < 6.0
     assert shop.x < END - 5.0
-    shop.until(lambda: not board.outputs["coolant"])  # three heartbeats
-    assert board.outputs["collet"]
+    shop.until(lambda: not board.output_states["coolant"])  # three heartbeats
+    assert board.output_states["collet"]
     shop.until(lambda: abs(shop.peers.machine.get_spindle_rpm()) < 1.0)
     shop.until(lambda: len(shop.lines) > 1)
     assert shop.lines[1]["code"] == "feeder-gone"
@@ -132,6 +132,6 @@ def test_a_stopped_driver_host_is_no_life_sign(shop: Shop) -> None:
     drives, board = shop.peers.plant.axis_drives, shop.peers.plant.terminals
     os.kill(shop.host, signal.SIGSTOP)
     shop.until(lambda: not drives["X"].power_states.is_powered and not drives["Z"].power_states.is_powered)
-    shop.until(lambda: not board.outputs["coolant"])
+    shop.until(lambda: not board.output_states["coolant"])
     shop.until(lambda: len(shop.lines) > 1)
     assert shop.lines[1]["code"] == "feeder-silent"

@@ -179,7 +179,7 @@ def test_nothing_is_answered_that_would_be_over_behind_a_sync() -> None:
     [("gt75-epos4.toml", 0.002), ("gt75-canopen.toml", 0.0), ("gt75.toml", 0.0)],
 )
 def test_a_setpoint_at_each_sync_needs_its_time(shipped: str, expected: float) -> None:
-    assert get_setpoint_interval(parse_machine(resources.machine_file(shipped), shipped)) == expected
+    assert get_setpoint_interval(parse_machine(resources.read_machine_file(shipped), shipped)) == expected
 
 
 @pytest.mark.parametrize(
@@ -200,8 +200,8 @@ def test_what_is_lost_without_priority_is_said_with_what_a_trial_has_found(
 
 def test_a_trial_finds_a_process_that_wakes_up_late(monkeypatch: pytest.MonkeyPatch) -> None:
     class Stalled(ManualClock):
-        def sleep_until(self, t: float) -> None:
-            super().sleep_until(t + (0.02 if 0.1 < t < 0.103 else 0.0001))
+        def sleep_until(self, time_s: float) -> None:
+            super().sleep_until(time_s + (0.02 if 0.1 < time_s < 0.103 else 0.0001))
 
     monkeypatch.setattr(host_loop, "RealClock", Stalled)
     assert host_loop.measure_wakeup_delay(0.002) == pytest.approx(0.02)
@@ -220,7 +220,7 @@ def test_a_driver_host_that_does_not_answer_is_a_fault_and_no_hang() -> None:
 @pytest.fixture
 def asleep(patient: pytest.MonkeyPatch) -> Iterator[tuple[DriverHostProcess, MachinePorts]]:
     """The simulated lathe in a driver host of its own, whose control is about to sleep."""
-    text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
+    text = resources.read_machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
     process = DriverHostProcess(parse_machine(text, "gt75.toml"), RealClock())
     ports = create_host_ports(process.connection)
     ports.axes.sample()
@@ -238,7 +238,7 @@ def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_t
     process, ports = asleep
     assert ports.wakeup is not None
     process.process.kill()
-    assert ports.wakeup.wait(60.0)
+    assert ports.wakeup.wait_for_wakeup(60.0)
     assert get_fault_code(ports.axes.sample().fault, "driver") == "feeder-gone"
     assert not ports.wakeup.is_settled()
     ports.axes.clear_fault()
@@ -246,11 +246,11 @@ def test_a_driver_host_that_is_killed_wakes_its_control_and_the_next_one_rings_t
         ports.axes.sample()
         ports.clock.sleep_until(ports.clock.now() + 0.01)
     assert ports.axes.sample().fault == ""
-    while ports.wakeup.wait(0.0):
+    while ports.wakeup.wait_for_wakeup(0.0):
         ports.axes.sample()
     process.connection.send_request(Message({"do": "hand", "name": "press_estop", "values": []}, NO_NUMBERS))
-    at_once = ports.wakeup.wait(0.0)  # tells it that nobody looks
-    assert at_once or ports.wakeup.wait(60.0)
+    at_once = ports.wakeup.wait_for_wakeup(0.0)  # tells it that nobody looks
+    assert at_once or ports.wakeup.wait_for_wakeup(60.0)
     assert ports.station.read_state().estop
 
 
@@ -259,9 +259,9 @@ def test_a_driver_host_that_stands_while_its_control_sleeps_is_told_with_the_nex
 ) -> None:
     process, ports = asleep
     assert ports.wakeup is not None
-    ports.wakeup.wait(0.0)
+    ports.wakeup.wait_for_wakeup(0.0)
     process.process.send_signal(signal.SIGSTOP)
-    assert not ports.wakeup.wait(0.1)
+    assert not ports.wakeup.wait_for_wakeup(0.1)
     patient.setattr(host_connection, "_REPLY_TIMEOUT_S", 0.5)
     sample = ports.axes.sample()
     assert get_fault_code(sample.fault, "driver") == "feeder-silent"

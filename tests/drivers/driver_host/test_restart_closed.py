@@ -15,7 +15,7 @@ from drivers.wakeups import RealClock
 def test_closing_in_a_restart_leaves_no_broken_thread_and_no_driver_host(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    text = resources.machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
+    text = resources.read_machine_file("gt75.toml").replace("[machine]\n", "[machine]\nfeeder = true\n", 1)
     died: list[object] = []
     monkeypatch.setattr(threading, "excepthook", died.append)
     host = DriverHostProcess(parse_machine(text, "gt75.toml"), RealClock())

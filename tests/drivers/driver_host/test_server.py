@@ -28,7 +28,7 @@ from drivers.driver_host.host_server import (
 )
 from drivers.driver_host.trip_guard import TripGuard
 from drivers.simulated.simulated_machine import Simulation, build_simulation
-from drivers.wakeups import ManualClock, ProcessBell
+from drivers.wakeups import ManualClock, ProcessWakeup
 from tests.coded import raises_code
 from tests.drivers.contract.simulated import simulation_driven
 from tests.drivers.machines import CONFIG, ramp
@@ -71,7 +71,7 @@ def test_a_slow_wire_of_the_spindle_is_reported_to_the_control() -> None:
 
 def working(bench: Bench) -> None:
     bench.ports.axes.enable(True)
-    bench.ports.spindle.run_at(600.0)
+    bench.ports.spindle.set_speed(600.0)
     bench.ports.io.write("coolant", True)
     bench.ports.axes.splice(ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0))
 
@@ -80,14 +80,14 @@ def test_a_silent_control_is_played_to_the_end_of_its_queue_and_then_all_stops(b
     working(bench)
     bench.alone(0.9)
     assert bench.sim.machine.get_spindle_rpm() > 500.0  # the tool is still in the cut
-    assert bench.sim.ports.io.outputs()["coolant"]
+    assert bench.sim.ports.io.get_outputs()["coolant"]
     bench.alone(2.0)
     sample = bench.sim.ports.axes.sample()
     assert sample.actual[0] == pytest.approx(50.0 * 1.0167, abs=0.01)
     assert sample.fault == ""
     assert sample.enabled  # it may come back; the slides are held
-    assert not bench.sim.ports.io.outputs()["coolant"]
-    assert bench.sim.ports.io.outputs()["collet"]
+    assert not bench.sim.ports.io.get_outputs()["coolant"]
+    assert bench.sim.ports.io.get_outputs()["collet"]
     bench.alone(2.0)
     assert bench.sim.machine.get_spindle_rpm() == 0.0
 
@@ -137,7 +137,7 @@ def test_a_control_that_comes_back_in_time_goes_on(bench: Bench) -> None:
     bench.alone(0.5)
     assert bench.ports.axes.sample().moving
     bench.alone(0.1)
-    assert bench.ports.io.outputs()["coolant"]
+    assert bench.ports.io.get_outputs()["coolant"]
     assert bench.sim.machine.get_spindle_rpm() > 500.0
 
 
@@ -162,7 +162,7 @@ def test_an_orphan_takes_the_power_at_rest_and_is_done(bench: Bench) -> None:
 
 
 def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
-    bench.ports.spindle.run_at(3000.0)
+    bench.ports.spindle.set_speed(3000.0)
     bench.alone(0.19)
     for _ in range(20):
         bench.ports.axes.sample()
@@ -178,7 +178,7 @@ def test_an_orphan_brakes_the_spindle_before_it_lets_go(bench: Bench) -> None:
 
 
 def test_an_orphan_does_not_wait_for_ever_for_a_spindle(bench: Bench) -> None:
-    bench.ports.spindle.run_at(600.0)
+    bench.ports.spindle.set_speed(600.0)
     bench.alone(0.1)
     bench.sim.machine.spindle_ignores_stop()
     bench.ports.axes.sample()
@@ -237,7 +237,7 @@ def test_nonsense_is_refused_and_changes_nothing(bench: Bench, head: dict[str, o
 def test_setpoints_that_are_no_numbers_never_reach_a_drive(bench: Bench, damage: float) -> None:
     bench.ports.axes.enable(True)
     way = ramp(bench.clock.now() + 0.03, ZERO, 50.0, 1.0)
-    way.p[1, 1] = damage
+    way.positions[1, 1] = damage
     with raises_code(DriverError, "feeder-silent") as told:
         bench.ports.axes.splice(way)
     assert told.value.reason == "damaged"
@@ -294,7 +294,7 @@ def test_an_order_that_takes_long_is_no_silence(bench: Bench, monkeypatch: pytes
     monkeypatch.setattr(bench.sim.ports.axes, "enable", slowly)
     bench.ports.axes.enable(True)
     bench.host.run_cycle()
-    assert bench.ports.io.outputs()["coolant"]
+    assert bench.ports.io.get_outputs()["coolant"]
 
 
 def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench: Bench) -> None:
@@ -303,9 +303,9 @@ def test_an_output_that_must_be_renewed_falls_while_the_slides_still_move(bench:
     working(bench)
     host.handle_message(Message({"do": "look"}, NO_NUMBERS))
     bench.alone(0.29)
-    assert bench.sim.ports.io.outputs()["coolant"]
+    assert bench.sim.ports.io.get_outputs()["coolant"]
     bench.alone(0.05)
-    assert not bench.sim.ports.io.outputs()["coolant"]
+    assert not bench.sim.ports.io.get_outputs()["coolant"]
     assert bench.sim.ports.axes.sample().moving
 
 
@@ -321,7 +321,7 @@ def test_a_loop_that_wakes_up_late_is_told_once_for_each_record(
 def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: Bench) -> None:
     """The slides follow the spindle: one that stands in the pass never lets their queue end."""
     bench.ports.axes.enable(True)
-    bench.ports.spindle.run_at(600.0)
+    bench.ports.spindle.set_speed(600.0)
     bench.ports.io.write("coolant", True)
     for _ in range(20):
         bench.alone(0.1)
@@ -332,7 +332,7 @@ def test_a_thread_whose_spindle_stands_does_not_keep_an_orphan_for_ever(bench: B
     bench.line.close()
     bench.sim.machine.spindle_bog(0.0)
     bench.alone(4.0)
-    assert not bench.sim.ports.io.outputs()["coolant"]
+    assert not bench.sim.ports.io.get_outputs()["coolant"]
     assert not bench.sim.ports.axes.sample().moving
     bench.alone(9.0)
     assert bench.host.is_done
@@ -354,7 +354,7 @@ class Sleeper:
             self.sim.ports, axes.sample, lambda: None, self.sim.machine, has_sent_requests=lambda: self.asked
         )
         self.host = DriverHost(driven, ring_bell=self._ring)
-        self.bell = ProcessBell()
+        self.bell = ProcessWakeup()
         self.line = HostConnection(InProcessLink(self.host), self.clock, wakeup_bell=self.bell)
         self.ports = create_host_ports(self.line)
         self.ports.axes.enable(True)
@@ -362,7 +362,7 @@ class Sleeper:
 
     def _ring(self) -> None:
         self.rung += 1
-        self.bell.ring()
+        self.bell.wake()
 
     def look(self) -> None:
         """As a tick of the control does."""
@@ -378,7 +378,7 @@ class Sleeper:
         """Whether something has rung by the time the driver host has gone round once more."""
         assert self.ports.wakeup is not None
         assert self.ports.wakeup.is_settled()
-        self.ports.wakeup.wait(0.0)
+        self.ports.wakeup.wait_for_wakeup(0.0)
         self.clock.advance(0.005)
         self.host.run_cycle()
         return self.rung > 0
@@ -407,7 +407,7 @@ def test_one_look_serves_a_tick_of_a_control_that_sleeps(sleeper: Sleeper) -> No
     assert not sleeper.ports.station.read_state().estop, "of this tick; what is new rings"
     assert sleeper.sleeps()
     assert sleeper.ports.wakeup is not None
-    assert sleeper.ports.wakeup.wait(0.0)
+    assert sleeper.ports.wakeup.wait_for_wakeup(0.0)
     assert sleeper.ports.station.read_state().estop
 
 
@@ -456,8 +456,8 @@ def test_what_has_changed_between_the_last_look_and_falling_asleep_rings(sleeper
 def test_a_control_that_looks_as_ever_is_not_rung(sleeper: Sleeper) -> None:
     sleeper.sleeps()
     assert sleeper.ports.wakeup is not None
-    sleeper.bell.ring()
-    assert sleeper.ports.wakeup.wait(0.0)  # something was asked for: it is awake
+    sleeper.bell.wake()
+    assert sleeper.ports.wakeup.wait_for_wakeup(0.0)  # something was asked for: it is awake
     sleeper.look()
     assert not sleeper.host.is_asleep
     sleeper.sim.machine.set_input("TB2-5", True)
@@ -522,13 +522,13 @@ def test_an_orphan_does_not_go_on_sleeping(sleeper: Sleeper) -> None:
 
 
 def test_a_bell_that_is_full_or_closed_is_no_error() -> None:
-    bell = ProcessBell()
+    bell = ProcessWakeup()
     for _ in range(3000):
-        bell.ring()
+        bell.wake()
     assert bell.wait(0.0)
     assert not bell.wait(0.0)
     bell.close()
-    bell.ring()
+    bell.wake()
 
 
 @pytest.mark.parametrize(
@@ -550,18 +550,18 @@ def test_an_order_for_what_the_machine_has_not_is_refused_with_the_reason(what: 
 
 def test_a_trip_is_acknowledged_by_its_number_alone_and_a_stop_is_always_let_through() -> None:
     guard = TripGuard()
-    guard.record_trip(0.4, [], spindle=True)
+    guard.record_trip(0.4, [], is_spindle_stopped=True)
     assert guard.active_trip is None  # nothing was on
-    guard.record_trip(0.4, ["coolant"], spindle=True)
+    guard.record_trip(0.4, ["coolant"], is_spindle_stopped=True)
     assert guard.active_trip is not None
     for head in ({"what": "run", "rpm": 100.0}, {"what": "home"}, {"do": "splice"}, {"what": "orient"}):
         with raises_code(DriverError, "late", "0.40 s"):
             guard.require_allowed(Message(head, ()))
     for head in ({"what": "run", "rpm": 0.0}, {"what": "stop"}, {"what": "write", "on": False}):
         guard.require_allowed(Message(head, ()))
-    guard.acknowledge(guard.active_trip.number + 1)
+    guard.acknowledge_trip(guard.active_trip.trip_number + 1)
     assert guard.active_trip is not None
-    guard.acknowledge(guard.active_trip.number)
+    guard.acknowledge_trip(guard.active_trip.trip_number)
     assert guard.active_trip is None
-    guard.acknowledge(1)
+    guard.acknowledge_trip(1)
     guard.require_allowed(Message({"what": "home"}, ()))

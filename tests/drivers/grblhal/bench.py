@@ -26,7 +26,7 @@ from drivers.simulators.grblhal_settings import SimulatorBehavior
 from drivers.wakeups import ManualClock
 
 TICK = 0.01
-SHIPPED = resources.machine_file("gt75-grblhal.toml")
+SHIPPED = resources.read_machine_file("gt75-grblhal.toml")
 
 
 def grbl_machine(*changes: tuple[str, str]) -> Machine:

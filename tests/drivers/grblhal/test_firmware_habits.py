@@ -188,7 +188,7 @@ def test_with_a_hundred_free_bytes_it_takes_nothing_more_from_its_wire() -> None
     desk.hear(0.2)
     lines = b"G1X40F600\n" * 100
     desk.say(lines)
-    assert desk.firmware.receive_buffer_free == 100
+    assert desk.firmware.free_receive_byte_count == 100
     desk.say(START)
     assert desk.firmware.state == "Hold:0"
     assert desk.firmware.lost_byte_count == 0

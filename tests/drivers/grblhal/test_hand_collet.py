@@ -25,7 +25,7 @@ def by_hand(*changes: tuple[str, str]) -> Machine:
 def test_an_output_that_is_said_to_be_absent_is_no_trouble() -> None:
     bench = GrblBench(by_hand(), quirky())
     assert not any("collet" in warning for warning in bench.machine.ports.warnings)
-    assert "collet" not in bench.machine.ports.io.outputs()
+    assert "collet" not in bench.machine.ports.io.get_outputs()
     assert bench.shot.absent == {"collet"}
 
 

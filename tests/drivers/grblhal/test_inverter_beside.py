@@ -96,16 +96,16 @@ def test_it_turns_both_ways_and_says_so_only_when_it_does(both: Both) -> None:
             made.ports.axes.sample()  # the driver's round
             return spindle.speed()
 
-        spindle.run_at(600.0)
+        spindle.set_speed(600.0)
         until(lambda: abs(speed() - 600.0) < 3.0, "600 rpm")
-        spindle.run_at(-600.0)
+        spindle.set_speed(-600.0)
         early = []
         while not both.inverter.back:
             early.append(speed())
         assert all(speed > -60.0 for speed in early)
         until(lambda: abs(speed() + 600.0) < 3.0, "600 rpm back")
         assert both.inverter.motor.speed == pytest.approx(-600.0, abs=5.0)
-        spindle.run_at(0.0)
+        spindle.set_speed(0.0)
         until(lambda: speed() == 0.0, "standstill")
         assert spindle.read_fault() == ""
         assert both.belt.ordered == 0.0

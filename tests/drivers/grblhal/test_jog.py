@@ -61,7 +61,7 @@ def let_go_on_a_slow_line() -> GrblBench:
     bench = ready()
     bench.peer.behavior.drip = 0.012
     hold_key(bench, 1.2)
-    while bench.machine.controller.line_sender.is_quiet:
+    while bench.machine.controller.line_sender.is_idle:
         hold_key(bench, 0.04)
     bench.post(StopJog())
     assert bench.machine.controller.is_busy

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.block_ports import LineOperation
-from core.ports import DriverError, Segments, StopMode
+from core.ports import DriverError, MotionSegments, StopMode
 from tests.coded import raises_code
 from tests.drivers.grblhal.bench import GrblBench, quirky
 from tests.texts import text
@@ -23,7 +23,7 @@ def test_setpoints_are_refused() -> None:
     bench = powered()
     still = np.zeros((1, 3))
     with raises_code(DriverError, "driver") as told:
-        bench.machine.axes.splice(Segments(np.zeros(1), np.zeros(1), still, still, still))
+        bench.machine.axes.splice(MotionSegments(np.zeros(1), np.zeros(1), still, still, still))
     assert told.value.reason == "blocks-only"
 
 
@@ -65,11 +65,11 @@ def test_stops_brake_and_void_what_was_handed_over(how: StopMode) -> None:
 
 def test_the_spindle_turns_and_stops() -> None:
     bench = powered()
-    bench.machine.spindle.run_at(-600.0)
+    bench.machine.spindle.set_speed(-600.0)
     bench.alone(1.5)
     assert bench.machine.spindle.speed() == pytest.approx(-600.0, abs=1.0)
     assert "M4S600" in bench.peer.program.executed_lines
-    bench.machine.spindle.run_at(0.0)
+    bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
     assert bench.machine.spindle.speed() == 0.0
     assert bench.machine.spindle.read_fault() == ""
@@ -78,9 +78,9 @@ def test_the_spindle_turns_and_stops() -> None:
 def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_down() -> None:
     """Its encoder tells no direction: 600 rpm of before are none the other way, at which one may cut."""
     bench = powered()
-    bench.machine.spindle.run_at(600.0)
+    bench.machine.spindle.set_speed(600.0)
     bench.alone(1.5)
-    bench.machine.spindle.run_at(-600.0)
+    bench.machine.spindle.set_speed(-600.0)
     for _ in range(300):
         bench.alone(0.01)
         real, told = bench.peer.spindle.speed, bench.machine.spindle.speed()
@@ -90,12 +90,12 @@ def test_a_spindle_that_reverses_is_told_the_other_way_only_when_it_has_come_dow
 
 def test_in_motion_the_spindle_follows_by_its_override() -> None:
     bench = powered()
-    bench.machine.spindle.run_at(1000.0)
+    bench.machine.spindle.set_speed(1000.0)
     bench.alone(1.5)
     bench.machine.block_controller.submit_block(LineOperation(20.0, 0.0, 10.0))
     bench.alone(0.3)
     bench.wire.sent.clear()
-    bench.machine.spindle.run_at(870.0)
+    bench.machine.spindle.set_speed(870.0)
     bench.alone(0.8)
     assert bench.peer.spindle_percent == 87
     assert bench.wire.lines() == []

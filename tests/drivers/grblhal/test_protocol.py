@@ -206,7 +206,7 @@ def test_no_more_bytes_are_unanswered_than_fit() -> None:
     assert len(sent) == 8
     assert not stream.can_send("x")
     stream.handle_reply(0)
-    stream.send_waiting(0.0)
+    stream.send_waiting_lines(0.0)
     assert len(sent) == 9
 
 

@@ -58,8 +58,8 @@ def test_an_axis_that_is_slow_holds_back_its_own_way_alone() -> None:
     lines = bench.wire.lines()
     assert lines[0].startswith("N1G0X0Z")
     assert all("G0" in line for line in lines[:4])
-    assert bench.machine.block_controller.max_line_speed(0.0, 1.0) == pytest.approx(127.0)
-    assert bench.machine.block_controller.max_line_speed(1.0, 1.0) == pytest.approx(25.4 * math.sqrt(2.0))
+    assert bench.machine.block_controller.get_max_line_speed(0.0, 1.0) == pytest.approx(127.0)
+    assert bench.machine.block_controller.get_max_line_speed(1.0, 1.0) == pytest.approx(25.4 * math.sqrt(2.0))
 
 
 def test_a_controller_that_may_more_does_no_more_than_was_proved() -> None:
@@ -138,7 +138,7 @@ def test_single_block_stops_behind_each_block() -> None:
     bench.start("G90G94F300\nX.5Z.2\nG01X.25F60\nX.1\nM30\n")
     places = []
     for _ in range(3):
-        bench.until(MachineState.BLOCK_END)
+        bench.until(MachineState.SINGLE_BLOCK_STOP)
         places.append(bench.peer.motion.position)
         bench.run(0.4)
         bench.press()

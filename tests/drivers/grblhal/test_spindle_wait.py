@@ -25,7 +25,7 @@ def slow_bench(settings: dict[int, float], *, encoder: bool = True) -> GrblBench
     """A spindle that takes 6 s to 3 000 rpm, on a machine that allows 9 s."""
     machine = grbl_machine(("timeout_s = 5", "timeout_s = 9"))
     bench = GrblBench(machine, quirky(settings=settings, encoder=encoder))
-    bench.peer.spindle = SpindleMotor(SimSpindle(accel=500.0))
+    bench.peer.spindle = SpindleMotor(SimSpindle(acceleration_rpm_per_s=500.0))
     return bench
 
 
@@ -93,13 +93,13 @@ def test_a_spindle_stop_does_not_wait_for_the_speed(held: bool) -> None:
     """Neither M5 nor the toggle of a hold reaches firmware that waits."""
     bench = slow_bench({TOLERANCE: 5.0})
     bench.ready()
-    bench.machine.spindle.run_at(3000.0)
+    bench.machine.spindle.set_speed(3000.0)
     bench.alone(2.0)
     assert bench.peer.program.active_wait is not None
     if held:
         bench.machine.block_controller.hold_on_path()
         bench.alone(0.3)
-    bench.machine.spindle.run_at(0.0)
+    bench.machine.spindle.set_speed(0.0)
     bench.alone(1.0)
     assert bench.peer.commanded_rpm == 0.0
     assert bench.machine.controller.fault == ""
@@ -109,7 +109,7 @@ def test_an_answer_to_m3_that_is_lost_is_missed_behind_the_longest_wait() -> Non
     bench = slow_bench({ON: 4.0})
     bench.ready()
     bench.peer.behavior.garbled_replies.append(b"")
-    bench.machine.spindle.run_at(3000.0)
+    bench.machine.spindle.set_speed(3000.0)
     bench.alone(5.5)
     assert bench.machine.controller.fault == ""
     bench.alone(2.0)

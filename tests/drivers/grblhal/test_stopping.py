@@ -85,7 +85,7 @@ def test_a_thread_that_waits_for_its_index_is_given_up_without_a_lost_position(m
     come when the pass has just begun to move: within its first hundredth of a millimetre.
     """
     bench = powered(mute=mute)
-    bench.machine.spindle.run_at(30.0)
+    bench.machine.spindle.set_speed(30.0)
     bench.alone(1.0)
     thread(bench, -20.0)
     bench.alone(1.0)
@@ -100,7 +100,7 @@ def test_a_thread_that_waits_for_its_index_is_given_up_without_a_lost_position(m
 
 def test_an_index_that_is_slow_to_come_is_no_silence() -> None:
     bench = powered()
-    bench.machine.spindle.run_at(25.0)
+    bench.machine.spindle.set_speed(25.0)
     bench.alone(1.0)
     thread(bench, -2.0)
     bench.alone(12.0)
@@ -110,13 +110,13 @@ def test_an_index_that_is_slow_to_come_is_no_silence() -> None:
 
 def test_in_a_hold_the_spindle_stops_by_its_toggle_and_stays_off() -> None:
     bench = powered()
-    bench.machine.spindle.run_at(600.0)
+    bench.machine.spindle.set_speed(600.0)
     bench.alone(1.0)
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
     bench.machine.block_controller.hold_on_path()
     bench.alone(0.5)
-    bench.machine.spindle.run_at(0.0)
+    bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
     assert bytes(bench.wire.sent).count(PAUSE) == 1
     assert bench.machine.spindle.speed() == 0.0
@@ -130,13 +130,13 @@ def test_in_a_hold_the_spindle_stops_by_its_toggle_and_stays_off() -> None:
 
 def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
     bench = powered(toggle_broken=True)
-    bench.machine.spindle.run_at(600.0)
+    bench.machine.spindle.set_speed(600.0)
     bench.alone(1.0)
     bench.machine.block_controller.submit_block(LineOperation(50.0, 0.0, 10.0))
     bench.alone(0.5)
     bench.machine.block_controller.hold_on_path()
     bench.alone(0.5)
-    bench.machine.spindle.run_at(0.0)
+    bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
     assert get_fault_code(bench.machine.controller.fault, "driver") == "ignores-stop"
 
@@ -144,13 +144,13 @@ def test_a_spindle_that_does_not_stop_in_a_hold_is_told() -> None:
 def test_in_a_jog_functions_wait_for_its_end() -> None:
     """Sent at once they would be refused, and the refusal would stick."""
     bench = powered()
-    bench.machine.spindle.run_at(600.0)
+    bench.machine.spindle.set_speed(600.0)
     bench.machine.io.write("coolant", True)
     bench.alone(1.0)
     bench.machine.block_controller.start_jog("X", 40.0, 0.3, None)
     bench.alone(0.1)
     bench.machine.io.write("coolant", False)
-    bench.machine.spindle.run_at(0.0)
+    bench.machine.spindle.set_speed(0.0)
     bench.alone(1.5)
     assert bench.machine.controller.fault == ""
     assert bench.peer.programmed_rpm == 0.0

@@ -49,10 +49,10 @@ def changed(text: str, changes: Changes) -> str:
 
 def lathe(folder: Path, machine: Changes = (), hal: Changes = (), text: str = "") -> Path:
     """Its machine file, the HAL file beside it: ``text``, or the shipped one."""
-    text = text or resources.hal_file("gt75-hal.hal").read_text(encoding="utf-8")
+    text = text or resources.get_hal_path("gt75-hal.hal").read_text(encoding="utf-8")
     (folder / "gt75-hal.hal").write_text(changed(text, hal), encoding="utf-8")
     file = folder / "lathe.toml"
-    file.write_text(changed(resources.machine_file("gt75-hal.toml"), machine), encoding="utf-8")
+    file.write_text(changed(resources.read_machine_file("gt75-hal.toml"), machine), encoding="utf-8")
     return file
 
 

@@ -160,7 +160,7 @@ def switch(lathe: LiveLathe, folder: Path, on: list[str]) -> None:
 def lathe_without_board(board: str, folder: Path, on: list[str]) -> Path:
     """The machine file beside its HAL file, both as shipped but for homing and the board."""
     name = f"gt75-{board}"
-    machine = resources.machine_file(f"{name}.toml")
+    machine = resources.read_machine_file(f"{name}.toml")
     machine = re.sub(r"absolute = false\nhome = .*", "absolute = true", machine)
     machine = machine.replace("two_hand_start = true", "two_hand_start = false")  # tests post the start
     machine = changed(machine, (*PATIENT, *(WIDE if board == "parport" else ())))
@@ -172,7 +172,7 @@ def lathe_without_board(board: str, folder: Path, on: list[str]) -> Path:
     prefixes = dict.fromkeys(pin.name.partition(".")[0] for pin in pins)
     command = f"/usr/bin/python3 {folder / STAND_IN.name} {folder / 'pins.json'}"
     loads = [f"loadusr -Wn stand-in-{each} {command} {each}" for each in prefixes]
-    text = resources.hal_file(f"{name}.hal").read_text(encoding="utf-8")
+    text = resources.get_hal_path(f"{name}.hal").read_text(encoding="utf-8")
     whole = without_board(text, "\n".join((*loads, *moving(board)))) + "\n".join(called(board))
     (folder / f"{name}.hal").write_text(whole, encoding="utf-8")
     return folder / f"{name}.toml"

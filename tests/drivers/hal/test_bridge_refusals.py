@@ -121,7 +121,7 @@ def test_with_an_open_chain_the_spindle_is_not_ordered_to_turn(bench: Bench) -> 
     bench.far.bridge.run_cycle()
     assert bench.pin("spindle.speed") == 0.0  # not for a single period
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        bench.driver.ports.spindle.run_at(500.0)
+        bench.driver.ports.spindle.set_speed(500.0)
     bench.run(1.0)
     assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
@@ -191,4 +191,4 @@ def test_what_nobody_takes_does_not_grow(bench: Bench) -> None:
 
 def test_turns_that_were_never_seen_are_none() -> None:
     """Before the first reading of the spindle: a thread asked for then is reckoned from 0."""
-    assert SetpointPlayer(2).spindle_predictor.predict(5.0) == 0.0
+    assert SetpointPlayer(2).spindle_predictor.predict_revolutions(5.0) == 0.0

@@ -21,7 +21,7 @@ class Rows:
         self.rows: deque[SetpointRow] = deque()
 
     @property
-    def depth(self) -> int:
+    def row_count(self) -> int:
         return len(self.rows)
 
     @property
@@ -60,7 +60,7 @@ class Thread:
 
     def seen(self) -> bool:
         """The bridge looks again."""
-        self.rows.record_played(int(self.played[-1][0]))
+        self.rows.record_played_row(int(self.played[-1][0]))
         return self.rows.finish_change(bool(self.plays))
 
     def late(self, what: Callable[[float], SetpointRow], at: float, past: int) -> None:
@@ -138,7 +138,7 @@ def test_the_way_of_a_cam_is_the_same_until_it_is_said_to_part_whatever_its_rows
 def test_setpoints_that_hal_plays_already_are_not_too_late(thread: Thread) -> None:
     thread.run(10)
     thread.seen()
-    assert thread.rows.first_recallable_row(0.012) is None
+    assert thread.rows.find_first_recallable_row(0.012) is None
     assert thread.rows.matches_locked_rows(0.012, stops_at(0.030))
     assert not thread.rows.matches_locked_rows(0.012, stops_at(0.014))
     assert not thread.rows.matches_locked_rows(-1.0, stops_at(0.030))  # of that nobody knows any more

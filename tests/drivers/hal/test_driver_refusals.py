@@ -71,8 +71,8 @@ def test_the_spindle_stays_off_behind_a_drive_that_reports_a_fault(bench: Bench)
     bench.far.plant_controls.drive_fault("X")
     bench.run(0.5)
     with raises_code(DriverError, "spindle-off", "the X axis drive"):
-        bench.driver.ports.spindle.run_at(500.0)
-    bench.driver.ports.spindle.run_at(0.0)  # to stop is never refused
+        bench.driver.ports.spindle.set_speed(500.0)
+    bench.driver.ports.spindle.set_speed(0.0)  # to stop is never refused
     bench.run(1.0)
     assert bench.far.plant_controls.get_spindle_rpm() == 0.0
 
@@ -90,7 +90,7 @@ def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> 
     at_speed = ("[hal.spindle]\n", '[hal.spindle]\nat_speed = "spindle-at-speed"\n')
     with powered(NO_TURNS, NO_INDEX, NO_SPEED, NO_PPR, at_speed) as bench:
         spindle = bench.driver.ports.spindle
-        spindle.run_at(500.0)
+        spindle.set_speed(500.0)
         bench.run(0.2)
         assert (spindle.speed(), spindle.read_angle()) == (0.0, None)
         bench.wire("spindle-at-speed", True)
@@ -100,7 +100,7 @@ def test_without_an_encoder_the_speed_is_what_was_ordered_once_hal_says_so() -> 
 
 def test_without_a_speed_the_turns_make_it() -> None:
     with powered(NO_SPEED) as bench:
-        bench.driver.ports.spindle.run_at(600.0)
+        bench.driver.ports.spindle.set_speed(600.0)
         bench.run(3.0)
         turning = bench.far.plant_controls.get_spindle_rpm()
         assert turning > 500.0
@@ -166,7 +166,7 @@ def test_a_broken_pipe_is_the_end_and_a_full_one_is_not() -> None:
     class Full(Bridge):
         why = DriverError("the bridge to HAL takes nothing", "hal-silent")
 
-        def send(self, data: bytes) -> None:  # noqa: ARG002
+        def send_packet(self, data: bytes) -> None:  # noqa: ARG002
             raise self.why
 
     bridge = Full()

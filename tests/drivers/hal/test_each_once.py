@@ -114,7 +114,7 @@ def homed(behind_hal: LiveLathe) -> LiveLathe:
     if not all(made.shot.homed):
         made.post(HomeAxes())
         made.until(
-            lambda shot: (shot.state is not MachineState.HOME and all(shot.homed)) or bool(shot.alarms)
+            lambda shot: (shot.state is not MachineState.HOMING and all(shot.homed)) or bool(shot.alarms)
         )
         assert not made.shot.alarms, made.shot.alarms
     return made
@@ -218,8 +218,8 @@ def test_a_tool_is_touched_off_where_the_setter_stands(homed: LiveLathe) -> None
     assert touched is not None
     if homed.stalled_at > began:  # the first touch may have been seen further away than the slide backs off
         tell("late")
-    assert touched.touch_position is not None, touched.why
-    assert touched.touch_position == pytest.approx(TIP - home, abs=touched.uncertainty_mm + 0.001)
+    assert touched.touch_position_mm is not None, touched.why
+    assert touched.touch_position_mm == pytest.approx(TIP - home, abs=touched.uncertainty_mm + 0.001)
     assert touched.uncertainty_mm < 0.005
     homed.state(MachineState.IDLE)
 

@@ -32,9 +32,9 @@ def written(name: str) -> HalFile:
 def test_the_shipped_file_is_what_the_command_writes(name: str) -> None:
     file = written(name)
     assert render_file(file) == render_file(written(name))
-    assert resources.hal_file(f"{name}.hal").read_text(encoding="utf-8") == render_file(file)
+    assert resources.get_hal_path(f"{name}.hal").read_text(encoding="utf-8") == render_file(file)
     for other, text in file.extra_files.items():
-        assert resources.hal_file(other).read_text(encoding="utf-8") == text
+        assert resources.get_hal_path(other).read_text(encoding="utf-8") == text
 
 
 @pytest.mark.parametrize("name", FILES)

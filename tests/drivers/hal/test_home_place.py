@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from core.ports import DriverError
-from drivers.setpoint_queue import plan_straight_move
+from drivers.setpoint_queue import plan_axis_move
 from tests.coded import raises_code
 from tests.drivers.contract.hal import Hal
 
@@ -49,6 +49,6 @@ def test_setpoints_from_where_the_slide_lags_are_refused(rig: Hal) -> None:
     lags = axes.sample().actual
     with raises_code(DriverError, "driver", "Z: ", "position") as told:
         axes.splice(
-            plan_straight_move(rig.clock.now() + 0.3, lags, X, target=lags[X] - 1.0, speed=10.0, accel=100.0)
+            plan_axis_move(rig.clock.now() + 0.3, lags, X, target=lags[X] - 1.0, speed=10.0, accel=100.0)
         )
     assert told.value.reason == "jump"

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from core.ports import DriverError, Segments
+from core.ports import DriverError, MotionSegments
 from drivers.hal.hal_config import HalAxis
 from drivers.hal.hal_homing import HalHoming
 from drivers.hal.hal_table import HalAxisPins
@@ -45,15 +45,21 @@ class Slides:
     def read_number(self, _name: str) -> float:
         return self.index_at
 
-    def splice_homing(self, segments: Segments) -> None:
+    def splice_homing(self, segments: MotionSegments) -> None:
         dt, p, v, a = (
-            each[-1] for each in (segments.dt, segments.p[:, 0], segments.v[:, 0], segments.a[:, 0])
+            each[-1]
+            for each in (
+                segments.durations_s,
+                segments.positions[:, 0],
+                segments.velocities[:, 0],
+                segments.accelerations[:, 0],
+            )
         )
         ends = p + (v + 0.5 * a * dt) * dt
-        self.ways.append((float(ends), float(abs(segments.v).max())))
-        self.until = float(segments.t[-1] + segments.dt[-1])
+        self.ways.append((float(ends), float(abs(segments.velocities).max())))
+        self.until = float(segments.start_times_s[-1] + segments.durations_s[-1])
 
-    def brake(self) -> None:
+    def brake_axes(self) -> None:
         self.halts += 1
         self.until = self.t
 
@@ -67,7 +73,7 @@ class Slides:
     def read_hal_position(self, _index: int) -> float:
         return self.place
 
-    def set_home(self, _index: int, hal_position: float) -> None:
+    def set_home_position(self, _index: int, hal_position: float) -> None:
         self.zero = hal_position
 
 
@@ -85,7 +91,7 @@ def steps(order: HalHoming, slides: Slides, seconds: float) -> None:
     """Rounds of 10 ms."""
     for _ in range(round(seconds / 0.01)):
         slides.t += 0.01
-        order.advance(slides.t)
+        order.continue_homing(slides.t)
 
 
 def rests(order: HalHoming, slides: Slides) -> None:
@@ -99,7 +105,7 @@ def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> Non
     """1.2 times its travel at the search's speed, back with a tenth; zero lies OFFSET beside the mark."""
     order, slides = homing(method)
     order.add_sample(0.0, False)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     assert slides.ways[-1] == pytest.approx((way * 120.0, 20.0))
     slides.place = way * 30.0
     order.add_sample(slides.place, True)
@@ -125,7 +131,7 @@ def test_onto_its_switch_and_slowly_off_it_again(method: int, way: float) -> Non
 def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() -> None:
     order, slides = homing(19, latch=3.0)
     order.add_sample(0.0, True)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     assert slides.ways == [pytest.approx((-120.0, 3.0))]
 
 
@@ -133,7 +139,7 @@ def test_on_its_switch_already_it_leaves_it_with_the_speed_that_the_file_says() 
 def test_the_present_place_is_home_at_once(method: int) -> None:
     order, slides = homing(method)
     slides.place = 7.0
-    order.advance(0.0)
+    order.continue_homing(0.0)
     rests(order, slides)
     assert order.is_done
     assert (slides.zero, slides.ways) == (7.0 + OFFSET, [])
@@ -142,7 +148,7 @@ def test_the_present_place_is_home_at_once(method: int) -> None:
 def test_behind_its_switch_the_index_is_the_mark() -> None:
     order, slides = homing(3)
     order.add_sample(0.0, True)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     order.add_sample(-1.0, False)
     steps(order, slides, 0.05)
     assert slides.asked == [True]
@@ -158,7 +164,7 @@ def test_behind_its_switch_the_index_is_the_mark() -> None:
 @pytest.mark.parametrize(("method", "way"), [(33, -1.0), (34, 1.0)])
 def test_the_index_alone_is_looked_for_within_thirty_millimetres(method: int, way: float) -> None:
     order, slides = homing(method)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     assert slides.ways == [pytest.approx((way * 30.0, 2.0))]
     steps(order, slides, 0.2)
     slides.t = slides.until
@@ -180,7 +186,7 @@ def test_a_switch_that_nobody_samples_is_told_after_a_second() -> None:
 def test_no_switch_in_the_whole_travel() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, False)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)
@@ -191,7 +197,7 @@ def test_no_switch_in_the_whole_travel() -> None:
 def test_a_slide_that_ran_over_its_switch() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, False)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     order.add_sample(30.0, True)
     steps(order, slides, 0.01)
     order.add_sample(31.0, False)
@@ -203,7 +209,7 @@ def test_a_slide_that_ran_over_its_switch() -> None:
 def test_a_switch_that_does_not_go_off() -> None:
     order, slides = homing(19)
     order.add_sample(0.0, True)
-    order.advance(0.0)
+    order.continue_homing(0.0)
     steps(order, slides, 1.0)
     with raises_code(DriverError, "homing", "X: ") as told:
         rests(order, slides)

@@ -29,7 +29,7 @@ def angle(rig: Hal) -> tuple[float, float]:
 
 def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig: Hal) -> None:
     first = angle(rig)
-    rig.ports.spindle.run_at(300.0)
+    rig.ports.spindle.set_speed(300.0)
     rig.until(lambda: rig.far.plant.spindle.counted_revolutions > 0.25)
     assert angle(rig) == first
     rig.until(lambda: angle(rig) != first, limit=2.0)
@@ -41,16 +41,16 @@ def test_the_angle_is_an_old_one_until_the_index_has_come_by_and_whole_there(rig
 
 
 def test_a_spindle_whose_index_does_not_come_by_is_told_and_reset_asks_again(rig: Hal) -> None:
-    rig.far.has_index = False
-    rig.ports.spindle.run_at(300.0)
+    rig.far.has_encoder_index = False
+    rig.ports.spindle.set_speed(300.0)
     rig.run(0.5)
     assert rig.ports.spindle.read_fault() == ""
     rig.until(lambda: bool(rig.ports.spindle.read_fault()), limit=2.0)
     assert get_fault_code(rig.ports.spindle.read_fault(), "driver") == "spindle-encoder"
     assert "hal.spindle.index_enable" in rig.ports.spindle.read_fault()
-    rig.far.has_index = True
+    rig.far.has_encoder_index = True
     rig.ports.axes.clear_fault()
     assert rig.ports.spindle.read_fault() == ""
-    rig.ports.spindle.run_at(300.0)
+    rig.ports.spindle.set_speed(300.0)
     old = angle(rig)
     rig.until(lambda: angle(rig) != old, limit=2.0)

@@ -53,7 +53,7 @@ def test_frozen_inputs_have_no_age_that_anything_accepts() -> None:
 
 def test_a_moving_slide_loses_power_and_the_spindle_its_speed() -> None:
     with powered() as bench:
-        bench.driver.spindle.run_at(500.0)
+        bench.driver.spindle.set_speed(500.0)
         bench.x_goes(5.0)
         bench.run(0.3)
         bench.far.is_cable_disconnected = True
@@ -63,7 +63,7 @@ def test_a_moving_slide_loses_power_and_the_spindle_its_speed() -> None:
         assert bench.x == place
         assert bench.driver.spindle.commanded_rpm == 0.0
         with raises_code(DriverError, "spindle-off"):
-            bench.driver.spindle.run_at(500.0)
+            bench.driver.spindle.set_speed(500.0)
 
 
 def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal_again() -> None:
@@ -90,7 +90,7 @@ def test_reset_with_the_cable_out_clears_nothing_and_with_the_cable_in_loads_hal
 
 @pytest.mark.parametrize("name", ["gt75-mesa-7i76e", "gt75-mesa-7i97", "gt75-ethercat"])
 def test_a_machine_file_without_the_link_of_its_board_is_refused(name: str) -> None:
-    text = resources.machine_file(f"{name}.toml")
+    text = resources.read_machine_file(f"{name}.toml")
     line = next(each for each in text.splitlines() if each.startswith("link_fault"))
     with pytest.raises(MachineFileError) as caught:
         parse_machine(text.replace(f"{line}\n", ""), f"{name}.toml")
@@ -99,7 +99,9 @@ def test_a_machine_file_without_the_link_of_its_board_is_refused(name: str) -> N
 
 def test_an_input_of_a_card_needs_the_link_without_a_board_table_too() -> None:
     text = (
-        resources.machine_file("gt75-hal.toml").replace('link_fault = "link-fault"', "").split("[board]")[0]
+        resources.read_machine_file("gt75-hal.toml")
+        .replace('link_fault = "link-fault"', "")
+        .split("[board]")[0]
     )
     parse_machine(text, "gt75-hal.toml")
     with pytest.raises(MachineFileError) as caught:

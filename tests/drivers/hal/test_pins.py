@@ -12,7 +12,7 @@ from drivers.hal.bridge.hal_pins import (
     HalSignal,
     build_net_lines,
     describe_pin_error,
-    is_on,
+    is_pin_on,
     parse_pins,
     parse_signals,
     run_halcmd,
@@ -89,10 +89,10 @@ def test_a_pin_that_is_not_as_the_machine_file_says_is_told(asked: ExpectedPin, 
 
 
 def test_whether_a_pin_or_a_signal_is_on() -> None:
-    assert is_on("guard", PINS, SIGNALS)
-    assert is_on("guard.out", PINS, SIGNALS)
-    assert not is_on("by-hand", PINS, SIGNALS)
-    assert not is_on("lamp.in", PINS, SIGNALS)
+    assert is_pin_on("guard", PINS, SIGNALS)
+    assert is_pin_on("guard.out", PINS, SIGNALS)
+    assert not is_pin_on("by-hand", PINS, SIGNALS)
+    assert not is_pin_on("lamp.in", PINS, SIGNALS)
 
 
 def test_the_machine_is_hung_on_our_signals_and_keeps_its_own() -> None:

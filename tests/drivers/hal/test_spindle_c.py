@@ -75,14 +75,14 @@ class Spindle:
         self.is_used_as_c = False
         self.is_known = True
 
-    def run_at(self, rpm: float) -> None:
+    def set_speed(self, rpm: float) -> None:
         self.commanded_rpm = rpm
 
     @property
     def spindle_index(self) -> Spindle:
         return self
 
-    def encoder_rpm(self) -> float:
+    def get_encoder_rpm(self) -> float:
         return self.rpm
 
     def read_angle(self) -> tuple[float, float]:
@@ -93,7 +93,7 @@ class Stand:
     """Axes and C on a clock of its own."""
 
     def __init__(self, *, tells: bool = False) -> None:
-        text = changed(resources.machine_file("gt75-hal.toml"), (*PATIENT, *OF_C))
+        text = changed(resources.read_machine_file("gt75-hal.toml"), (*PATIENT, *OF_C))
         self.t, self.link, self.z = 0.0, Link(), 0.0
         self.axes = HalAxes(
             create_hal_config(parse_machine(text, "gt75-hal.toml")), cast(HalLink, self.link), lambda: self.t
@@ -120,7 +120,7 @@ def test_its_way_to_its_place_is_a_motion_before_its_first_setpoint_is_played() 
     stand = Stand()
     stand.run(0.5)
     assert not stand.axes.sample().moving
-    stand.c.set_c_mode(True, orient=True)
+    stand.c.set_c_mode(True, should_orient=True)
     stand.run(0.02)
     assert stand.c.step is HalSpindleCStep.TURN_TO_POSITION
     while stand.c.step is HalSpindleCStep.TURN_TO_POSITION:
@@ -138,7 +138,7 @@ def test_a_slide_that_lags_keeps_its_setpoint_while_c_is_taken_and_let_go(orient
     stand.run(0.5)
     stand.z = LAGS
     stand.run(0.5)
-    stand.c.set_c_mode(True, orient=orient)
+    stand.c.set_c_mode(True, should_orient=orient)
     stand.run(2.0)
     assert stand.c.is_c_ready()
     assert stand.axes.demand_at(stand.t)[0][Z] == 0.0
@@ -172,13 +172,13 @@ def test_its_index_is_looked_for_with_60_rpm_and_it_brakes_before_it_is_taken() 
     stand = Stand()
     stand.run(0.2)
     stand.turning.is_known = False
-    stand.c.set_c_mode(True, orient=True)
+    stand.c.set_c_mode(True, should_orient=True)
     assert (stand.c.step, stand.turning.commanded_rpm, stand.turning.is_used_as_c) == (
         HalSpindleCStep.FIND_INDEX,
         60.0,
         True,
     )
-    stand.c.set_c_mode(True, orient=True)  # asked again, it goes on
+    stand.c.set_c_mode(True, should_orient=True)  # asked again, it goes on
     stand.turning.rpm = 60.0
     stand.run(1.0)
     assert stand.c.step is HalSpindleCStep.FIND_INDEX
@@ -205,7 +205,7 @@ def test_what_does_not_come_in_its_time_is_a_fault_and_the_spindle_is_free(
     stand = Stand(tells=True)
     stand.run(0.2)
     stand.turning.is_known = False
-    stand.c.set_c_mode(True, orient=True)
+    stand.c.set_c_mode(True, should_orient=True)
     stand.turning.is_known, stand.turning.rpm = known, rpm
     stand.run(0.02)  # and what it waits for begins
     stand.run(seconds - 0.05)
@@ -227,7 +227,7 @@ def test_behind_a_blind_link_it_is_let_go_and_a_lost_one_is_told_nothing(lost: s
     stand = Stand()
     stand.run(0.2)
     stand.turning.is_known = False
-    stand.c.set_c_mode(True, orient=True)
+    stand.c.set_c_mode(True, should_orient=True)
     stand.link.is_state_unknown, stand.link.failure = True, lost
     stand.c.update()
     assert stand.c.step is HalSpindleCStep.SPINDLE_MODE

@@ -34,7 +34,7 @@ if sys.argv[1] == "-f":
 
 def config() -> HalConfig:
     """Of the shipped lathe."""
-    return create_hal_config(parse_machine(resources.machine_file("gt75-hal.toml"), "gt75-hal.toml"))
+    return create_hal_config(parse_machine(resources.read_machine_file("gt75-hal.toml"), "gt75-hal.toml"))
 
 
 @pytest.fixture
@@ -124,8 +124,8 @@ def test_a_bridge_that_ends_behind_its_start_is_gone(path: Path) -> None:
     session._halrun.wait()
     assert session.has_shut_down
     with raises_code(DriverError, "hal-bridge"):
-        list(session.receive())
+        list(session.receive_packets())
     with raises_code(DriverError, "hal-bridge"):
-        session.send(b"")
+        session.send_packet(b"")
     session.close()
     assert list(path.glob(f"{FOLDER_PREFIX}*")) == []

@@ -28,11 +28,11 @@ class Bridge:
     has_shut_down = True
     silent = False
 
-    def receive(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
+    def receive_packets(self) -> Iterator[tuple[PacketHead, Sequence[float]]]:
         if not self.silent:
             yield {"n": 0}, ()
 
-    def send(self, data: bytes) -> None:
+    def send_packet(self, data: bytes) -> None:
         pass
 
     def stop_bridge(self) -> None:

@@ -51,7 +51,7 @@ AS_C: dict[str, Changes] = {
 
 def written(name: str, *changes: tuple[str, str], own: bool = False) -> HalFile:
     axis = AXIS.replace("absolute", "own_drive = true\nabsolute") if own else AXIS
-    text = changed(resources.machine_file(f"{name}.toml"), (("[spindle]\n", axis), *changes))
+    text = changed(resources.read_machine_file(f"{name}.toml"), (("[spindle]\n", axis), *changes))
     return build_hal_file(parse_machine(text, f"{name}.toml"))
 
 

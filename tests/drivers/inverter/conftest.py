@@ -16,7 +16,7 @@ def stand(request: pytest.FixtureRequest) -> Bench:
 @pytest.fixture
 def turning(stand: Bench) -> Bench:
     """It turns at 1200 rpm."""
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     stand.run(1.5)
     assert stand.spindle.read_fault() == ""
     assert abs(stand.rpm - 1200.0) < 1.0

@@ -48,7 +48,7 @@ class Inverter:
         """Safe torque off; let go, it does again whatever it is commanded to."""
         self.torque_off = on
         if on:
-            self.motor.cut_power(self.clock.now())
+            self.motor.remove_power(self.clock.now())
         else:
             self._turn()
 
@@ -60,12 +60,12 @@ class Inverter:
     def trip_with(self, code: int) -> None:
         """It trips: the motor runs down."""
         self.trip, self.running = code, False
-        self.motor.cut_power(self.clock.now())
+        self.motor.remove_power(self.clock.now())
 
     def restart(self) -> None:
         """Its supply has failed for a moment: it stands and waits for a command."""
         self.hz, self.running, self.back = 0.0, False, False
-        self.motor.cut_power(self.clock.now())
+        self.motor.remove_power(self.clock.now())
 
     def listen(self) -> None:
         """A frame has come."""

@@ -31,11 +31,11 @@ def is_setpoint(frame: bytes) -> bool:
 
 
 def stop(one: Bench) -> None:
-    one.spindle.run_at(0.0)
+    one.spindle.set_speed(0.0)
 
 
 def coast(one: Bench) -> None:
-    one.spindle.coast()
+    one.spindle.start_coasting()
 
 
 def estop(one: Bench) -> None:
@@ -91,7 +91,7 @@ def test_a_stop_while_the_first_frequency_is_sent_holds_the_run_command_back(
     stand: Bench, end: End, rpm: float
 ) -> None:
     seen = Interrupted(stand, is_setpoint, end)
-    stand.spindle.run_at(rpm)
+    stand.spindle.set_speed(rpm)
     stand.run(2.0)
     assert (seen.come, bool(seen.after), seen.runs) == (True, True, 0)
     assert stand.rpm == 0.0
@@ -111,7 +111,7 @@ def test_a_stop_in_the_pause_before_a_run_command_holds_it_back(stand: Bench, en
 
     stand.clock.sleep_until = overslept  # type: ignore[method-assign]
     seen = Interrupted(stand, is_setpoint, lambda _: None)
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     stand.run(2.0)
     assert (come, seen.come, seen.runs) == (True, True, 0)
     assert stand.rpm == 0.0
@@ -124,7 +124,7 @@ def test_a_run_command_that_is_not_answered_is_not_repeated_after_a_stop(stand: 
         end(one)
 
     seen = Interrupted(stand, is_run, unanswered)
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     stand.run(3.0)
     assert (seen.come, bool(seen.after), seen.runs) == (True, True, 0)
     assert stand.rpm == 0.0
@@ -137,7 +137,7 @@ def test_a_stop_that_comes_with_any_frame_while_it_turns_is_followed_by_no_run_c
 ) -> None:
     count = iter(range(1000))
     seen = Interrupted(turning, lambda _: next(count) == number, end)
-    turning.spindle.run_at(900.0)
+    turning.spindle.set_speed(900.0)
     while not seen.come:
         turning.attendant.run_exchange()
     turning.run(3.0)
@@ -148,10 +148,10 @@ def test_a_stop_that_comes_with_any_frame_while_it_turns_is_followed_by_no_run_c
 def test_what_was_held_back_is_followed_by_a_stop_and_can_be_started_again(stand: Bench) -> None:
     stops = stand.inverter.stops
     seen = Interrupted(stand, is_setpoint, stop)
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     stand.run(0.5)
     assert (seen.runs, stand.inverter.stops > stops, stand.spindle.read_fault()) == (0, True, "")
-    stand.spindle.run_at(-600.0)
+    stand.spindle.set_speed(-600.0)
     stand.run(2.0)
     assert seen.runs > 0
     assert stand.rpm == pytest.approx(-600.0, abs=1.0)
@@ -161,13 +161,13 @@ def test_what_was_held_back_is_followed_by_a_stop_and_can_be_started_again(stand
 def test_a_direction_that_may_have_been_heard_is_said_again() -> None:
     """A Delta is not told what it was told last; here nobody knows what that was."""
     one = bench("delta-vfdb")
-    one.spindle.run_at(1200.0)
+    one.spindle.set_speed(1200.0)
     one.run(1.5)
     seen = Interrupted(one, is_run, lambda each: setattr(each.wire, "loses", 3))
-    one.spindle.run_at(-1200.0)
+    one.spindle.set_speed(-1200.0)
     one.attendant.run_exchange()
     assert (one.attendant.exchange_error != "", one.inverter.back) == (True, True)
-    one.spindle.run_at(1200.0)
+    one.spindle.set_speed(1200.0)
     one.run(4.0)
     assert seen.runs == 3  # two repetitions, and the new direction
     assert one.rpm == pytest.approx(1200.0, abs=1.0)
@@ -187,8 +187,8 @@ def frames_of(one: Bench, seconds: float) -> list[bytes]:
 @pytest.mark.parametrize("rpm", [1200.0, 600.0, -1200.0])
 def test_a_stop_before_a_start_is_sent_first(turning: Bench, rpm: float) -> None:
     stops = turning.inverter.stops
-    turning.spindle.run_at(0.0)
-    turning.spindle.run_at(rpm)
+    turning.spindle.set_speed(0.0)
+    turning.spindle.set_speed(rpm)
     runs = [is_run(frame) for frame in frames_of(turning, 3.0)]
     assert stops < turning.inverter.stops <= stops + 2  # a Hitachi needs two frames
     assert True in runs
@@ -201,16 +201,16 @@ def test_a_stop_before_a_start_is_sent_first(turning: Bench, rpm: float) -> None
 def test_many_stops_before_one_frame_are_one_stop(turning: Bench, pairs: int) -> None:
     stops = turning.inverter.stops
     for _ in range(pairs):
-        turning.spindle.run_at(0.0)
-        turning.spindle.run_at(1200.0)
+        turning.spindle.set_speed(0.0)
+        turning.spindle.set_speed(1200.0)
     turning.run(3.0)
     assert stops < turning.inverter.stops <= stops + 2  # a Hitachi needs two frames
     assert turning.rpm == pytest.approx(1200.0, abs=1.0)
 
 
 def test_a_stop_that_is_not_answered_is_sent_again_before_the_start(turning: Bench) -> None:
-    turning.spindle.run_at(0.0)
-    turning.spindle.run_at(1200.0)
+    turning.spindle.set_speed(0.0)
+    turning.spindle.set_speed(1200.0)
     turning.wire.loses = 1
     stops = turning.inverter.stops
     runs = [is_run(frame) for frame in frames_of(turning, 3.0)]
@@ -221,12 +221,12 @@ def test_a_stop_that_is_not_answered_is_sent_again_before_the_start(turning: Ben
 
 def test_a_run_command_of_before_a_stop_is_held_back_although_a_start_follows(stand: Bench) -> None:
     def stop_and_reverse(one: Bench) -> None:
-        one.spindle.run_at(0.0)
-        one.spindle.run_at(-600.0)
+        one.spindle.set_speed(0.0)
+        one.spindle.set_speed(-600.0)
 
     seen = Interrupted(stand, is_setpoint, stop_and_reverse)
     stops = stand.inverter.stops
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     stand.run(3.0)
     assert not is_run(seen.after[0])
     assert stand.inverter.stops > stops
@@ -235,6 +235,6 @@ def test_a_run_command_of_before_a_stop_is_held_back_although_a_start_follows(st
 
 def test_a_change_of_speed_is_no_stop(turning: Bench) -> None:
     stops = turning.inverter.stops
-    turning.spindle.run_at(600.0)
+    turning.spindle.set_speed(600.0)
     turning.run(2.0)
     assert turning.inverter.stops == stops

@@ -45,7 +45,7 @@ class Wired:
 def machine_file(folder: Path, family: str, port: str) -> Path:
     """The shipped sample with this inverter, and next to it the file of the invented one."""
     shutil.copy(FOLDER / OWN, folder)
-    text = resources.machine_file("gt75-vfd.toml")
+    text = resources.read_machine_file("gt75-vfd.toml")
     text = text.replace(
         'family = "delta-vfdb", port = "/dev/ttyUSB1"', f'family = "{family}", port = "{port}"'
     )
@@ -79,20 +79,20 @@ def connected(wired: Wired) -> Iterator[ConnectedMachine]:
 
 def test_turns_back_and_stops_over_the_line(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run_at(-600.0)
+    spindle.set_speed(-600.0)
     until(lambda: abs(spindle.speed() + 600.0) < 2.0, "600 rpm back")
     assert wired.inverter.motor.speed == pytest.approx(-600.0, abs=2.0)
-    spindle.run_at(0.0)
+    spindle.set_speed(0.0)
     until(lambda: spindle.speed() == 0.0, "standstill")
     assert spindle.read_fault() == ""
 
 
 def test_ignoring_a_stop_asks_for_the_estop(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run_at(900.0)
+    spindle.set_speed(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
     wired.inverter.deaf = True
-    spindle.run_at(0.0)
+    spindle.set_speed(0.0)
     until(lambda: spindle.read_fault() != "", "a fault")
     assert get_fault_code(spindle.read_fault(), "driver") == "ignores-stop"
     assert PRESS_ESTOP_TEXT in spindle.read_fault()
@@ -100,7 +100,7 @@ def test_ignoring_a_stop_asks_for_the_estop(connected: ConnectedMachine, wired: 
 
 def test_cable_out_is_a_fault_that_axes_and_spindle_share(connected: ConnectedMachine, wired: Wired) -> None:
     spindle = connected.ports.spindle
-    spindle.run_at(900.0)
+    spindle.set_speed(900.0)
     until(lambda: spindle.speed() > 800.0, "900 rpm")
     wired.cable.cut()
     until(lambda: spindle.read_fault() != "", "a fault")
@@ -119,7 +119,7 @@ def test_silence_then_life_and_a_clear_word(connected: ConnectedMachine, wired: 
     def turns() -> bool:
         connected.ports.axes.clear_fault()
         try:
-            spindle.run_at(300.0)
+            spindle.set_speed(300.0)
         except DriverError:
             return False
         return True
@@ -132,8 +132,8 @@ def test_estop_keeps_it_off(connected: ConnectedMachine) -> None:
     assert connected.on_screen_station is not None
     connected.on_screen_station.press_estop()
     with raises_code(DriverError, "spindle-off", "E-stop"):
-        connected.ports.spindle.run_at(100.0)
-    connected.ports.spindle.run_at(0.0)
+        connected.ports.spindle.set_speed(100.0)
+    connected.ports.spindle.set_speed(0.0)
 
 
 def test_machine_check_reads_it(wired: Wired, capsys: pytest.CaptureFixture[str]) -> None:
@@ -157,7 +157,7 @@ def test_through_the_driver_host(wired: Wired) -> None:
     made = connect_machine(load_machine(path), RealClock())
     try:
         spindle = made.ports.spindle
-        spindle.run_at(500.0)
+        spindle.set_speed(500.0)
         until(lambda: abs(spindle.speed() - 500.0) < 2.0, "500 rpm")
     finally:
         made.close()

@@ -29,9 +29,9 @@ def judged(
     """Just within the second that it has, and just behind it."""
     obedience = CommandMonitor()
     if first:
-        obedience.note_command(-9.0, first, STOOD)
+        obedience.record_command(-9.0, first, STOOD)
         obedience.check_poll(-5.0, before)
-    obedience.note_command(0.0, asked, before)
+    obedience.record_command(0.0, asked, before)
     return obedience.check_poll(RESPONSE_TIME_S - 0.01, seen), obedience.check_poll(
         RESPONSE_TIME_S + 0.01, seen
     )
@@ -69,24 +69,24 @@ def test_told_to_stop_it_has_to_fall_and_to_stop() -> None:
         f"{text('drivers.inverter-still-runs')}: {PRESS_ESTOP_TEXT}"
     )
     falling = CommandMonitor()
-    falling.note_command(0.0, 20.0, STOOD)
+    falling.record_command(0.0, 20.0, STOOD)
     falling.check_poll(1.0, turning)
-    falling.note_command(2.0, 0.0, turning)
+    falling.record_command(2.0, 0.0, turning)
     for n in range(30):
         assert falling.check_poll(2.0 + 0.1 * n, look(20.0 - 0.6 * n, 0.0, run=False)) == ""
 
 
 def test_the_same_command_again_does_not_begin_the_second_anew() -> None:
     obedience = CommandMonitor()
-    obedience.note_command(0.0, 20.0, STOOD)
-    obedience.note_command(0.9, 20.0, STOOD)
+    obedience.record_command(0.0, 20.0, STOOD)
+    obedience.record_command(0.9, 20.0, STOOD)
     why = text("drivers.inverter-does-not-run", asked="20.0")
     assert obedience.check_poll(1.1, look(0.0, run=False)).startswith(why)
 
 
 def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
     obedience = CommandMonitor()
-    obedience.note_command(0.0, 20.0, STOOD)
+    obedience.record_command(0.0, 20.0, STOOD)
     assert obedience.check_poll(0.9, look(0.0, run=False)) == ""
     assert obedience.check_poll(0.95, look(1.0)) == ""
     assert obedience.check_poll(1.5, look(0.0, run=False)) == ""  # its second begins here
@@ -96,9 +96,9 @@ def test_one_that_obeys_at_last_is_forgiven_what_was() -> None:
 def test_a_stop_while_it_gets_faster_is_compared_with_the_next_look() -> None:
     """On a slow line the look before the stop is old: 10 Hz there, 30 Hz when the stop came."""
     obedience = CommandMonitor()
-    obedience.note_command(-1.0, 50.0, STOOD)
+    obedience.record_command(-1.0, 50.0, STOOD)
     assert obedience.check_poll(-0.5, look(5.0, 50.0)) == ""
-    obedience.note_command(0.0, 0.0, look(10.0, 50.0))
+    obedience.record_command(0.0, 0.0, look(10.0, 50.0))
     for t, output in ((0.95, 30.0), (1.70, 25.0), (2.45, 15.0)):
         assert obedience.check_poll(t, look(output, run=False)) == "", t
     assert obedience.check_poll(3.2, look(15.0, run=False)) == ""

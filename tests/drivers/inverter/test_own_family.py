@@ -232,7 +232,7 @@ def test_a_write_that_is_answered_for_another_register_is_sent_again() -> None:
     assert isinstance(one.memory, MyDriveMemory)
     one.wire.slave = Elsewhere(one.memory)
     one.wire.sent.clear()
-    one.spindle.run_at(600.0)
+    one.spindle.set_speed(600.0)
     one.attendant.run_exchange()
     assert [frame[1:4] for frame in one.wire.sent] == [b"\x10\x00\x02"] * MAX_TRIES
     assert one.until_fault(6.0) <= 5.0
@@ -249,7 +249,7 @@ class Elsewhere(RtuSlave):
 
 def test_a_trip_whose_code_cannot_be_read_is_still_a_fault() -> None:
     one = bench(OWN)
-    one.spindle.run_at(600.0)
+    one.spindle.set_speed(600.0)
     one.run(1.5)
     one.inverter.trip_with(7)
     assert isinstance(one.memory, MyDriveMemory)

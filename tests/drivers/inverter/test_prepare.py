@@ -101,10 +101,10 @@ def test_huanyang_is_trusted_after_ten_good_answers() -> None:
     one.attendant.run_exchange()
     assert not one.attendant.is_trusted
     with raises_code(DriverError, "spindle-off") as told:
-        one.spindle.run_at(100.0)
+        one.spindle.set_speed(100.0)
     assert told.value.reason == "not-ready"
     one.run(1.0)
-    one.spindle.run_at(100.0)
+    one.spindle.set_speed(100.0)
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -40,7 +40,7 @@ def test_speeds_that_change_on_a_slow_line_are_no_fault(slow: Control, late: flo
 def test_a_slow_line_is_neither_silent_nor_unknown(slow: Control) -> None:
     spindle, unknown = slow.rig.ports.spindle, slow.rig.ports.unknown
     for n in range(40):  # each stop breaks a look off
-        spindle.run_at(0.0 if n % 2 else 1500.0)
+        spindle.set_speed(0.0 if n % 2 else 1500.0)
         for _ in range(45):
             slow.rig.tick()
             assert (spindle.read_fault(), unknown()) == ("", frozenset())

@@ -10,7 +10,7 @@ from tests.drivers.inverter.benches import FAMILIES, OWN, Bench, bench
 
 def test_a_surface_speed_changes_the_setpoint_all_the_time(turning: Bench) -> None:
     for step in range(60):
-        turning.spindle.run_at(1200.0 + 30.0 * step if step < 40 else 2400.0 - 20.0 * (step - 40))
+        turning.spindle.set_speed(1200.0 + 30.0 * step if step < 40 else 2400.0 - 20.0 * (step - 40))
         turning.run(0.05)
         assert turning.spindle.read_fault() == ""
     turning.run(1.0)
@@ -23,8 +23,8 @@ def test_without_an_encoder_there_is_no_angle(turning: Bench) -> None:
 
 def test_a_stop_goes_before_everything(turning: Bench) -> None:
     """At most the request under way comes before it, however many setpoints are waiting."""
-    turning.spindle.run_at(2000.0)
-    turning.spindle.run_at(0.0)
+    turning.spindle.set_speed(2000.0)
+    turning.spindle.set_speed(0.0)
     before, stops = turning.clock.now(), turning.inverter.stops
     while turning.inverter.stops == stops:
         turning.attendant.run_exchange()
@@ -37,7 +37,7 @@ def test_a_stop_waits_for_one_answer_at_most(turning: Bench) -> None:
     """A line that has gone silent: the stop is sent although nothing comes back."""
     turning.wire.silent = True
     turning.attendant.run_exchange()
-    turning.spindle.run_at(0.0)
+    turning.spindle.set_speed(0.0)
     sent = len(turning.wire.sent)
     turning.attendant.run_exchange()
     first = turning.wire.sent[sent]
@@ -49,11 +49,11 @@ def test_a_stop_that_comes_after_the_frequency_keeps_the_run_command_back(turnin
     send, back = turning.wire.send, set[bool]()
 
     def overtaken(data: bytes) -> None:
-        turning.spindle.run_at(0.0)
+        turning.spindle.set_speed(0.0)
         send(data)
         back.add(turning.inverter.back)
 
-    turning.spindle.run_at(-900.0)
+    turning.spindle.set_speed(-900.0)
     turning.wire.send = overtaken  # type: ignore[method-assign]
     turning.run(2.0)
     assert turning.inverter.hz == pytest.approx(15.0)
@@ -73,7 +73,7 @@ def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None
     for step in range(1, 41):
         turning.wire.loses = int(step % 10 == 0)
         turning.attendant.run_exchange()
-        turning.spindle.run_at(1200.0 + 10.0 * step)
+        turning.spindle.set_speed(1200.0 + 10.0 * step)
     turning.run(1.5)
     assert turning.spindle.read_fault() == ""
     assert turning.rpm == pytest.approx(1600.0, abs=1.0)
@@ -82,16 +82,16 @@ def test_nor_while_a_surface_speed_changes_at_every_tick(turning: Bench) -> None
 def test_the_wrong_direction_is_told(stand: Bench) -> None:
     """The inverter's own "at speed" would be true."""
     stand.inverter.backwards = True
-    stand.spindle.run_at(1200.0)
+    stand.spindle.set_speed(1200.0)
     assert stand.until_fault(4.0) <= 2.5
     assert get_fault_code(stand.spindle.read_fault(), "driver") == "ignores-stop"
 
 
 def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
     turning.inverter.deaf = True
-    turning.spindle.run_at(600.0)
+    turning.spindle.set_speed(600.0)
     turning.run(1.0)
-    turning.spindle.run_at(0.0)
+    turning.spindle.set_speed(0.0)
     turning.until_fault(3.0)
     turning.inverter.deaf = False
     turning.run(3.0)
@@ -102,7 +102,7 @@ def test_trouble_wants_nothing_any_more(turning: Bench) -> None:
 @pytest.mark.parametrize("family", ["delta-vfdb", "hitachi-wj200", OWN])
 def test_a_trip_is_told_and_reset_once(family: str) -> None:
     one = bench(family)
-    one.spindle.run_at(1000.0)
+    one.spindle.set_speed(1000.0)
     one.run(1.5)
     one.inverter.trip_with(1)
     assert one.until_fault(2.0) <= 0.6
@@ -114,7 +114,7 @@ def test_a_trip_is_told_and_reset_once(family: str) -> None:
     assert one.inverter.resets == 1
     assert one.spindle.read_fault() == ""
     assert one.rpm == 0.0
-    one.spindle.run_at(400.0)
+    one.spindle.set_speed(400.0)
     one.run(1.5)
     assert one.rpm == pytest.approx(400.0, abs=1.0)
 
@@ -139,14 +139,14 @@ def test_a_slow_line_is_no_disobedience(family: str) -> None:
     one.wire.delay = 0.15
     one.run(3.0)
     for rpm in (3000.0, 800.0, 2500.0, -1500.0, 0.0, 3400.0, 0.0):
-        one.spindle.run_at(rpm)
+        one.spindle.set_speed(rpm)
         one.run(0.7)
         assert one.spindle.read_fault() == "", rpm
     for step in range(40):
-        one.spindle.run_at(3000.0 - 60.0 * step)
+        one.spindle.set_speed(3000.0 - 60.0 * step)
         one.run(0.1)
         assert one.spindle.read_fault() == "", step
-    one.spindle.run_at(0.0)
+    one.spindle.set_speed(0.0)
     one.run(4.0)
     assert one.spindle.read_fault() == ""
     assert one.rpm == 0.0
@@ -155,9 +155,9 @@ def test_a_slow_line_is_no_disobedience(family: str) -> None:
 def test_on_a_slow_line_disobedience_is_still_told() -> None:
     one = bench("delta-vfdb")
     one.wire.delay = 0.15
-    one.spindle.run_at(2000.0)
+    one.spindle.set_speed(2000.0)
     one.run(5.0)
     one.inverter.deaf = True
-    one.spindle.run_at(0.0)
+    one.spindle.set_speed(0.0)
     assert one.until_fault(6.0) <= 4.0
     assert get_fault_code(one.spindle.read_fault(), "driver") == "ignores-stop"

@@ -17,8 +17,8 @@ from drivers.transfer.program_framing import (
 from tests.coded import raises_code
 
 EIGHT = TransferSettings(LineSettings("bench"))
-SEVEN = TransferSettings(LineSettings("bench", bits=7, parity="E"))
-ODD = TransferSettings(LineSettings("bench", bits=7, parity="O"))
+SEVEN = TransferSettings(LineSettings("bench", data_bits=7, parity="E"))
+ODD = TransferSettings(LineSettings("bench", data_bits=7, parity="O"))
 BODY = b"G90G70\nG00X1.Z.1\n\nM30\n"  # with an empty line
 LINES = b"G90G70", b"G00X1.Z.1", b"", b"M30"
 

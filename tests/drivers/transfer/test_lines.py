@@ -9,7 +9,7 @@ import pytest
 from drivers.serial_line import LineSettings, SerialLineError
 from drivers.serial_port import SerialPort
 from drivers.transfer.program_framing import ReceivedText, TransferSettings, encode_program
-from drivers.transfer.transfer_session import CancelledError, ReceiveTransfer, SendTransfer
+from drivers.transfer.transfer_session import ReceiveTransfer, SendTransfer, TransferCanceledError
 from drivers.wakeups import RealClock
 from tests.coded import raises_code
 from tests.drivers.inverter.lines import WAIT, Pair, until
@@ -23,10 +23,10 @@ LONG = TEXT * (400_000 // len(TEXT))  # more than a pseudo terminal holds: nobod
 def sent(
     port: str, pool: ThreadPoolExecutor, flow: str = "xonxoff"
 ) -> tuple[SendTransfer, bytes, Future[int]]:
-    settings = TransferSettings(LineSettings(port, flow=flow), line_end="\n")
+    settings = TransferSettings(LineSettings(port, flow_control=flow), line_end="\n")
     data = encode_program(LONG, settings)
     job = SendTransfer(SerialPort(settings.sending_settings), RealClock(), settings, data)
-    return job, data, pool.submit(job.run)
+    return job, data, pool.submit(job.send_program)
 
 
 def test_xoff_in_the_middle_of_a_line_stops_it_and_xon_goes_on(far: FarEnd, pool: ThreadPoolExecutor) -> None:
@@ -48,11 +48,13 @@ def test_a_port_without_seven_bits_is_given_parity_and_obeys_codes_that_have_it(
     far: FarEnd, pool: ThreadPoolExecutor
 ) -> None:
     """DC3 has three ones: with even parity it is 93 on the line, DC1 stays 11."""
-    settings = TransferSettings(LineSettings(far.port, bits=7, parity="E", flow="xonxoff"), line_end="\n")
+    settings = TransferSettings(
+        LineSettings(far.port, data_bits=7, parity="E", flow_control="xonxoff"), line_end="\n"
+    )
     job = SendTransfer(
         SerialPort(settings.sending_settings), RealClock(), settings, encode_program(LONG[:40_000], settings)
     )
-    future = pool.submit(job.run)
+    future = pool.submit(job.send_program)
     until(lambda: far.hear() != b"" and len(far.heard) > 200, "the beginning")
     far.say(b"\x93")
     until(lambda: far.hear(0.3) == b"", "a stop")
@@ -71,7 +73,7 @@ def test_giving_up_while_it_is_held_lets_the_port_go(far: FarEnd, pool: ThreadPo
     far.say(b"\x13")
     until(lambda: far.hear(0.3) == b"", "a stop")
     job.cancel()
-    with pytest.raises(CancelledError):
+    with pytest.raises(TransferCanceledError):
         future.result(WAIT)
     SerialPort(LineSettings(far.port)).close()
 
@@ -90,7 +92,7 @@ def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
         job = ReceiveTransfer(
             SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings
         )
-        future = pool.submit(job.run)
+        future = pool.submit(job.receive_program)
         cable.cut()
         with raises_code(SerialLineError, "driver", cable.near) as told:
             future.result(WAIT)
@@ -100,9 +102,9 @@ def test_cable_out_while_receiving(pool: ThreadPoolExecutor) -> None:
 @pytest.mark.parametrize("bits", [7, 8])
 def test_seven_bits_and_even_parity_arrive(far: FarEnd, pool: ThreadPoolExecutor, bits: int) -> None:
     """Set to 7E1, and found out by a port that is set to 8N1."""
-    settings = TransferSettings(LineSettings(far.port, bits=bits, parity="E" if bits == 7 else "N"))
+    settings = TransferSettings(LineSettings(far.port, data_bits=bits, parity="E" if bits == 7 else "N"))
     job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
-    future: Future[ReceivedText] = pool.submit(job.run)
+    future: Future[ReceivedText] = pool.submit(job.receive_program)
     stream = bytes(10) + b"%\r\n" + TEXT.replace(b"\n", b"\r\n") + b"%\r\n" + bytes(10)
     feed(far, bytes(c | (c.bit_count() % 2 << 7) for c in stream))
     program = future.result(WAIT)
@@ -113,7 +115,7 @@ def test_seven_bits_and_even_parity_arrive(far: FarEnd, pool: ThreadPoolExecutor
 def test_letters_of_eight_bits_and_the_byte_that_marks_damage(far: FarEnd, pool: ThreadPoolExecutor) -> None:
     settings = TransferSettings(LineSettings(far.port))
     job = ReceiveTransfer(SerialPort(settings.receiving_settings, count_damaged=True), RealClock(), settings)
-    future: Future[ReceivedText] = pool.submit(job.run)
+    future: Future[ReceivedText] = pool.submit(job.receive_program)
     feed(far, b"%\n(\xff\xfe\x94)\nM30\n%\n")
     assert future.result(WAIT).program_bytes == b"(\xff\xfe\x94)\nM30\n"
 

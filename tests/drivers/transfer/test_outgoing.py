@@ -19,8 +19,8 @@ LINE = LineSettings("bench")
         (TransferSettings(LINE), b"%\r\nG90\r\nM30\r\n%\r\n"),
         (TransferSettings(LINE, line_end="\n"), b"%\nG90\nM30\n%\n"),
         (TransferSettings(LINE, line_end="\r"), b"%\rG90\rM30\r%\r"),
-        (TransferSettings(LINE, line_end="\n", dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
-        (TransferSettings(LINE, line_end="\n", leader_length=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
+        (TransferSettings(LINE, line_end="\n", sends_dc_codes=True), b"\x12%\nG90\nM30\n%\n\x14"),
+        (TransferSettings(LINE, line_end="\n", leader_nul_count=3), b"\0\0\0%\nG90\nM30\n%\n\0\0\0"),
     ],
 )
 @pytest.mark.parametrize("text", [b"G90\nM30\n", b"G90\r\nM30", b"%\nG90\nM30\n%\n", b"G90\rM30\r\x1a"])
@@ -40,7 +40,7 @@ def test_a_program_goes_out_framed_once(settings: TransferSettings, expected: by
 )
 def test_what_would_not_arrive_is_not_sent(text: bytes, bits: int, reason: str, values: list[str]) -> None:
     with raises_code(DriverError, "driver", *values) as told:
-        encode_program(text, TransferSettings(LineSettings("bench", bits=bits)))
+        encode_program(text, TransferSettings(LineSettings("bench", data_bits=bits)))
     assert told.value.reason == reason
 
 

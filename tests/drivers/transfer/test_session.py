@@ -9,12 +9,17 @@ import pytest
 from core.ports import DriverError
 from drivers.serial_line import LineSettings, SerialLineError
 from drivers.transfer.program_framing import IncompleteError, TransferSettings, encode_program
-from drivers.transfer.transfer_session import CancelledError, ReceiveTransfer, SendTransfer, TransferState
+from drivers.transfer.transfer_session import (
+    ReceiveTransfer,
+    SendTransfer,
+    TransferCanceledError,
+    TransferState,
+)
 from drivers.wakeups import ManualClock
 from tests.coded import raises_code
 from tests.drivers.transfer.bench import OtherSide
 
-SETTINGS = TransferSettings(LineSettings("bench", flow="xonxoff"), line_end="\n")
+SETTINGS = TransferSettings(LineSettings("bench", flow_control="xonxoff"), line_end="\n")
 TEXT = b"".join(b"N%d X1.2345\n" % n for n in range(200))
 DATA = encode_program(TEXT, SETTINGS)
 
@@ -30,7 +35,7 @@ def receiving(side: OtherSide, settings: TransferSettings = SETTINGS) -> Receive
 def test_it_goes_out_whole_in_small_pieces() -> None:
     side = OtherSide(ManualClock())
     job = sending(side)
-    assert job.run() == len(DATA)
+    assert job.send_program() == len(DATA)
     assert bytes(side.taken) == DATA
     assert side.largest <= 64
     assert side.closed
@@ -47,7 +52,7 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
         told.add(job.progress.wait_reason)
 
     side.before_listening = look
-    job.run()
+    job.send_program()
     assert bytes(side.taken) == DATA
     assert "held" in told
     assert side.clock.now() > 30.0
@@ -56,7 +61,7 @@ def test_a_hold_in_a_line_is_waited_for_and_told() -> None:
 def test_a_hold_that_does_not_end_is_a_sentence() -> None:
     side = OtherSide(ManualClock(), holds=(0.5, 1e9))
     with raises_code(DriverError, "driver", "512 bytes") as told:
-        sending(side).run()
+        sending(side).send_program()
     assert told.value.reason == "held"
     assert side.closed
 
@@ -77,11 +82,11 @@ class Satisfied(OtherSide):
 
 @pytest.mark.parametrize("obeyed", [True, False])
 def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
-    settings = dataclasses.replace(SETTINGS, dc_codes=True, leader_length=200)
+    settings = dataclasses.replace(SETTINGS, sends_dc_codes=True, leader_nul_count=200)
     data = encode_program(TEXT, settings)
     side = Satisfied(ManualClock())
     side.obeyed = obeyed
-    assert SendTransfer(side, side.clock, settings, data).run() == len(data)
+    assert SendTransfer(side, side.clock, settings, data).send_program() == len(data)
     assert data.startswith(bytes(side.taken))
     assert bytes(side.taken).rstrip(b"\0\x14\n").endswith(b"\n%")
     assert len(side.taken) < len(data)
@@ -90,9 +95,9 @@ def test_a_hold_behind_the_last_sign_is_the_end(obeyed: bool) -> None:
 
 def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
     side = OtherSide(ManualClock(), [(3.0, b"\x91")])  # DC1 with its parity bit
-    settings = dataclasses.replace(SETTINGS, waits_for_dc1=True)
-    assert settings.sending_settings.flow == "none"
-    sending(side, settings).run()
+    settings = dataclasses.replace(SETTINGS, needs_dc1=True)
+    assert settings.sending_settings.flow_control == "none"
+    sending(side, settings).send_program()
     assert bytes(side.taken) == DATA
     assert side.obeys
     assert side.clock.now() > 3.0
@@ -101,7 +106,7 @@ def test_it_waits_for_dc1_and_then_obeys_the_codes() -> None:
 def test_nobody_asks_for_it() -> None:
     side = OtherSide(ManualClock())
     with raises_code(DriverError, "driver", "DC1") as told:
-        sending(side, dataclasses.replace(SETTINGS, waits_for_dc1=True)).run()
+        sending(side, dataclasses.replace(SETTINGS, needs_dc1=True)).send_program()
     assert told.value.reason == "not-asked"
     assert side.taken == b""
 
@@ -110,7 +115,7 @@ def test_nobody_asks_for_it() -> None:
 def test_cable_out_while_sending(at: float) -> None:
     side = OtherSide(ManualClock(), cut_at=at)
     with pytest.raises(SerialLineError):
-        sending(side).run()
+        sending(side).send_program()
     assert side.closed
 
 
@@ -123,15 +128,15 @@ def test_giving_up_while_it_is_held() -> None:
             job.cancel()
 
     side.before_listening = cancel_late
-    with pytest.raises(CancelledError):
-        job.run()
+    with pytest.raises(TransferCanceledError):
+        job.send_program()
     assert side.clock.now() < 5.3
     assert side.closed
 
 
 def test_a_program_comes_in() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:100]), (1.5, DATA[100:150]), (9.0, DATA[150:])])
-    program = receiving(side).run()
+    program = receiving(side).receive_program()
     assert program.program_bytes == TEXT
     assert program.line_count == 200
     assert side.closed
@@ -140,14 +145,14 @@ def test_a_program_comes_in() -> None:
 
 def test_dc1_is_said_again_while_nothing_comes() -> None:
     side = OtherSide(ManualClock(), [(11.0, DATA)])
-    receiving(side).run()
+    receiving(side).receive_program()
     assert bytes(side.taken) == b"\x11\x11\x11\x13"  # at 0, 5 and 10 s
 
 
 def test_a_disturbance_before_the_program_does_not_end_the_asking() -> None:
     """One stray character at 1 s: DC1 is said at 0, and 5 s after each last word, at 6 and 11."""
     side = OtherSide(ManualClock(), [(1.0, b"?"), (12.0, DATA)])
-    assert receiving(side).run().program_bytes == TEXT
+    assert receiving(side).receive_program().program_bytes == TEXT
     assert bytes(side.taken) == b"\x11\x11\x11\x13"
 
 
@@ -170,32 +175,32 @@ def test_what_is_heard_before_a_program_is_told(come: bytes, heard: str, what: s
             told.append((job.progress.received_text, job.progress.wait_reason))
 
     side.before_listening = look
-    assert job.run().program_bytes == TEXT
+    assert job.receive_program().program_bytes == TEXT
     assert told == [(heard, what)]
 
 
 def test_nothing_is_said_where_no_codes_are_used() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA)])
-    receiving(side, dataclasses.replace(SETTINGS, line_settings=LineSettings("bench"))).run()
+    receiving(side, dataclasses.replace(SETTINGS, line_settings=LineSettings("bench"))).receive_program()
     assert side.taken == b""
 
 
 def test_a_last_percent_without_a_line_end_ends_it_soon() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:-1])])
-    assert receiving(side).run().program_bytes == TEXT
+    assert receiving(side).receive_program().program_bytes == TEXT
     assert side.clock.now() < 2.0
 
 
 def test_a_pause_behind_a_line_is_no_end() -> None:
     """The sender reads from a slow disk: five seconds in the middle."""
     side = OtherSide(ManualClock(), [(1.0, DATA[:500]), (6.0, DATA[500:])])
-    assert receiving(side).run().program_bytes == TEXT
+    assert receiving(side).receive_program().program_bytes == TEXT
 
 
 def test_a_lost_last_percent_is_refused() -> None:
     side = OtherSide(ManualClock(), [(1.0, DATA[:-2])])
     with raises_code(IncompleteError, "driver", "%", "201 lines") as told:
-        receiving(side).run()
+        receiving(side).receive_program()
     assert told.value.reason == "no-end"
     assert 11.0 <= side.clock.now() < 11.2
     assert side.closed
@@ -210,7 +215,7 @@ def test_a_damaged_character_ends_it_at_once() -> None:
 
     side.before_listening = spoil
     with raises_code(IncompleteError, "driver", "line 201") as told:
-        job.run()
+        job.receive_program()
     assert told.value.reason == "damaged"
 
 
@@ -219,10 +224,10 @@ def test_cable_out_while_receiving(at: float) -> None:
     script = [(1.0 + n / 100, DATA[10 * n : 10 * n + 10]) for n in range(len(DATA) // 10 + 1)]
     side = OtherSide(ManualClock(), script, cut_at=at)
     if at > 8.0:
-        assert receiving(side).run().program_bytes == TEXT  # it had come
+        assert receiving(side).receive_program().program_bytes == TEXT  # it had come
         return
     with pytest.raises(SerialLineError):
-        receiving(side).run()
+        receiving(side).receive_program()
     assert side.closed
 
 
@@ -235,7 +240,7 @@ def test_giving_up_while_receiving() -> None:
             job.cancel()
 
     side.before_listening = cancel_late
-    with pytest.raises(CancelledError):
-        job.run()
+    with pytest.raises(TransferCanceledError):
+        job.receive_program()
     assert side.clock.now() < 2.2
     assert side.closed

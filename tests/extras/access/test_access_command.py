@@ -95,7 +95,7 @@ def test_who_breaks_a_command_off_while_a_pin_is_looked_at_is_counted(
 def test_what_is_of_service_is_refused_below(
     words: list[str], say: Say, people: None, home: Path, tmp_path: Path, refusals: list[CodedError]
 ) -> None:
-    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
     (home / "programs").mkdir()
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     given = {"backup": tmp_path / "b.db", "home": home, "machine": tmp_path / "own.toml"}
@@ -108,7 +108,7 @@ def test_what_is_of_service_is_refused_below(
 def test_a_restore_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     assert say("store", "backup", tmp_path / "b.db")[0] == 0
     assert say("store", "restore", tmp_path / "b.db", "--as", "anna", typed="4711")[0] == 0
-    (tmp_path / "own.toml").write_text(resources.machine_file("gt75.toml"))
+    (tmp_path / "own.toml").write_text(resources.read_machine_file("gt75.toml"))
     assert say("machine", "accept", tmp_path / "own.toml", "--as", "anna", typed="4711")[0] == 0
     with Store.open(home) as store:
         restored = store.events.read_events("restored from")[0]

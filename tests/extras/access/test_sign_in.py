@@ -87,7 +87,7 @@ def test_the_waits_are_bounded() -> None:
     for moment in (0.0, 1.0, 2.0):
         wrong.count_wrong_pin(moment)
     assert wrong.get_remaining_delay(4.0) == 3.0
-    wrong.reset()
+    wrong.reset_count()
     assert wrong.get_remaining_delay(4.0) == 0.0
 
 
@@ -112,7 +112,7 @@ def test_what_is_kept_of_a_pin_is_scrypt() -> None:
 
 def test_a_try_costs_what_half_a_second_holds() -> None:
     """Older hashes took 0.03 s of an idle core: 32 times the work is 0.9 s."""
-    work = TODAY.r * TODAY.p << TODAY.log2_n
+    work = TODAY.block_size * TODAY.parallelism << TODAY.log2_n
     assert work >= 32 * (8 * 1 << 14)
 
 
@@ -236,17 +236,17 @@ def typed(levels: AccessLevelsFunction, *texts: str) -> None:
 
 def test_the_first_one_is_of_service_and_switches_levels_on(room: PinRoom) -> None:
     levels = room.find(AccessLevelsFunction)
-    levels.function_keys()["F3"].action()
+    levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711")
     assert levels.make_table(room.desk.read_snapshot()).question == wording("desk.same-pin-again")
     typed(levels, "4711")
     room.settle()
     assert [(row.name, row.level) for row in room.access.users.rows] == [("ANNA", 3)]
-    levels.function_keys()["F3"].action()
+    levels.make_function_keys()["F3"].action()
     assert shows(room.desk.prompt_notice, "screen.level-needed", what="USERS AND PINS", level="SERVICE")
     typed(levels, "", "4711")  # Return on her name, and her PIN
     room.settle()
-    levels.function_keys()["F3"].action()
+    levels.make_function_keys()["F3"].action()
     typed(levels, "Ben", "2", "2580", "2580")
     room.settle()
     assert [(row.name, row.level) for row in room.access.users.rows] == [("ANNA", 3), ("BEN", 2)]
@@ -255,7 +255,7 @@ def test_the_first_one_is_of_service_and_switches_levels_on(room: PinRoom) -> No
 
 def test_two_different_pins_keep_nothing(room: PinRoom) -> None:
     levels = room.find(AccessLevelsFunction)
-    levels.function_keys()["F3"].action()
+    levels.make_function_keys()["F3"].action()
     typed(levels, "anna", "4711", "4712")
     room.settle()
     assert not room.access.users.is_access_restricted
@@ -282,7 +282,7 @@ def pressed(room: PinRoom) -> Callable[[], None]:
     room.desk.station_keys.press_estop()
     room.run()
     levels = room.find(AccessLevelsFunction)
-    levels.function_keys()["F9"].action()
+    levels.make_function_keys()["F9"].action()
     assert begins(room.desk.prompt_notice, "desk.take-all-pins-away")
     levels.service_reset.start()
     return levels.service_reset.start
@@ -334,9 +334,9 @@ def test_who_has_gone_away_finishes_nothing_by_other_hands(room: PinRoom) -> Non
     """What was begun in a level is not ended by whoever finds it open when that level has fallen back."""
     room.enter_people()
     room.sign_in("ANNA")
-    levels, programs = room.find(AccessLevelsFunction), room.desk.page_registry.find(ProgramListModel)
+    levels, programs = room.find(AccessLevelsFunction), room.desk.page_registry.find_model(ProgramListModel)
     assert programs is not None
-    levels.function_keys()["F3"].action()
+    levels.make_function_keys()["F3"].action()
     typed(levels, "eve", "3", "1357")
     programs.import_export.open_chooser((), None, is_export=False)
     room.at += 600.0

@@ -22,7 +22,7 @@ from app.scope.scope_model import ScopeModel
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts, style_application
 from app.screen.window.main_window import MainWindow
-from core.executor.recorder import Recorder
+from core.executor.scope_recorder import ScopeRecorder
 from core.executor.snapshot import MachineState
 from tests.screen.pictures import Stage, _grab, _settle, press
 
@@ -86,14 +86,14 @@ def _picture(
     journal = Journal.open_default()
     stage = Stage(journal)
     desk = stage.desk
-    recorder, scope = desk.desk_control.recordings, desk.page_registry.find(ScopeModel)
+    recorder, scope = desk.desk_control.recordings, desk.page_registry.find_model(ScopeModel)
     assert recorder is not None
     assert scope is not None
     stage.make_ready(str(file))
     wear(desk.desk_control.station_panel)
     stage.press_start()
 
-    assert isinstance(recorder, Recorder)
+    assert isinstance(recorder, ScopeRecorder)
 
     def over() -> bool:
         recorder.store_queued_ticks()
@@ -114,7 +114,7 @@ def _picture(
             if key != "F2" or scope.frozen_curves is not None:
                 break
             _settle(window, 0.1)
-    analyses = desk.page_registry.find(AnalysesModel)
+    analyses = desk.page_registry.find_model(AnalysesModel)
     assert analyses is not None
     for _ in range(_PATIENCE):
         if "F8" not in keys or analyses.result is not None:

@@ -28,7 +28,7 @@ def turned_arc() -> object:
 def test_a_ball_bar_of_the_arc_of_a_record() -> None:
     found = analyze(AnalysisKind.BALL_BAR, turned_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
-    assert found.arc_selection == (0, 1, 4)
+    assert found.selected_arc == (0, 1, 4)
     assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
     assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)  # Z, X
 
@@ -76,7 +76,7 @@ def milled_arc() -> object:
 def test_a_mill_finds_its_arc_in_the_plane_of_x_and_y() -> None:
     found = analyze(AnalysisKind.BALL_BAR, milled_arc(), 0, {})  # type: ignore[arg-type]
     assert found.ball_bar is not None
-    assert (found.axis_names, found.arc_selection) == (("X", "Y"), (0, 1, 4))
+    assert (found.axis_names, found.selected_arc) == (("X", "Y"), (0, 1, 4))
     assert found.ball_bar.radius_mm == pytest.approx(10.0, abs=1e-3)
     assert found.ball_bar.backlash_mm == pytest.approx((0.0, 0.02), abs=3e-4)
 

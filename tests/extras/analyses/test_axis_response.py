@@ -42,13 +42,13 @@ def figures_of(record: object) -> dict[str, str]:
 def test_the_last_move_is_found_with_its_lag() -> None:
     found = find_last_move(moved(), DRIVES)  # type: ignore[arg-type]
     assert found.axis_letter == "Z"
-    assert found.step_response.step_size == pytest.approx(2.0)
+    assert found.step_response.step_size_mm == pytest.approx(2.0)
     assert found.max_speed_mm_s == pytest.approx(20.0, rel=1e-3)
     assert found.lag_s == pytest.approx(TAU, rel=0.05)  # less the two ends, where it builds up and goes
     assert np.abs(found.following_error).max() == pytest.approx(20.0 * TAU, rel=1e-3)
-    assert found.step_response.overshoot == pytest.approx(0.0, abs=1e-6)
+    assert found.step_response.overshoot_fraction == pytest.approx(0.0, abs=1e-6)
     # it is within the window of in position after τ·ln(error / window)
-    band = DRIVES["Z"].in_position
+    band = DRIVES["Z"].in_position_tolerance
     assert found.step_response.settling_time_s == pytest.approx(TAU * np.log(20.0 * TAU / band), abs=0.002)
 
 

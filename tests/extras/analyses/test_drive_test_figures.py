@@ -20,7 +20,7 @@ from app.extras.analyses.drive_test_results import (
     find_test_path,
     make_results_table,
 )
-from core.executor.hand_motion.drive_test import DriveTestPath, Limits, Shape
+from core.executor.hand_motion.drive_test import AxisTestLimits, DriveTestMotion, Shape
 from core.extras.analyses.step_response import (
     analyze_sine,
     calculate_bandwidth,
@@ -32,16 +32,16 @@ from tests.coded import raises_code
 from tests.scope.played_record import RATE, record_of, seconds
 from tests.texts import text
 
-DRIVES = {axis.name: axis for axis in load_machine(None).axes if not axis.rotary}
-LIMITS = Limits(max_speed=42.0, max_acceleration=3000.0, sample_rate_hz=RATE)
+DRIVES = {axis.name: axis for axis in load_machine(None).axes if not axis.is_rotary}
+LIMITS = AxisTestLimits(max_speed_mm_s=42.0, max_acceleration_mm_s2=3000.0, sample_rate_hz=RATE)
 TAU = 0.004
 _FINE = 10  # steps of the drive in one sample
-STEP = DriveTestPath("Z", Shape.STEP, 0.5)
-RAMP = DriveTestPath("Z", Shape.RAMP, -5.0, speed=20.0)
-SINE = DriveTestPath("Z", Shape.SINE, 0.5, frequencies=(2.0, 10.0, 40.0, 80.0))
+STEP = DriveTestMotion("Z", Shape.STEP, 0.5)
+RAMP = DriveTestMotion("Z", Shape.RAMP, -5.0, speed=20.0)
+SINE = DriveTestMotion("Z", Shape.SINE, 0.5, frequencies_hz=(2.0, 10.0, 40.0, 80.0))
 
 
-def played(path: DriveTestPath, tau: float = TAU, lasts: float = 1.0) -> ScopeRecord:
+def played(path: DriveTestMotion, tau: float = TAU, lasts: float = 1.0) -> ScopeRecord:
     """A drive that is late by one time constant plays the path from 2 s on, ``lasts`` of it."""
     ramps = path.make_ramps(LIMITS)
     ends = np.cumsum([0.0] + [piece[0] for piece in ramps])
@@ -80,19 +80,19 @@ def test_other_records_are_none_of_a_test(told: str) -> None:
 def test_the_step_out_and_back_of_a_first_order_drive() -> None:
     """Braking by a until T leaves an error e, which goes with exp(−t/τ): in position after τ·ln(e/band)."""
     found = calculate_results(played(STEP), STEP, DRIVES)
-    assert [each.step_size for each in found.step_responses] == pytest.approx([0.5, -0.5])
+    assert [each.step_size_mm for each in found.step_responses] == pytest.approx([0.5, -0.5])
     # speeding up and braking: e' = v − e/τ; solved from rest over the two halves of h = √(s/a)
-    h, a = math.sqrt(0.5 / LIMITS.max_acceleration), LIMITS.max_acceleration
-    assert a * h < LIMITS.max_speed
+    h, a = math.sqrt(0.5 / LIMITS.max_acceleration_mm_s2), LIMITS.max_acceleration_mm_s2
+    assert a * h < LIMITS.max_speed_mm_s
     half = a * TAU * (h - TAU * (1.0 - math.exp(-h / TAU)))
     t = np.linspace(0.0, h, 2001)
     gone = 1.0 - np.exp(-t / TAU)
     braked = half * (1.0 - gone) + a * h * TAU * gone - a * TAU * (t - TAU * gone)
     end = float(braked[-1])
-    expected = TAU * math.log(end / DRIVES["Z"].in_position)
+    expected = TAU * math.log(end / DRIVES["Z"].in_position_tolerance)
     for each in found.step_responses:
         assert each.settling_time_s == pytest.approx(expected, abs=1.5 / RATE)
-        assert each.overshoot == pytest.approx(0.0, abs=1e-6)
+        assert each.overshoot_fraction == pytest.approx(0.0, abs=1e-6)
     assert np.abs(found.motion.following_error).max() == pytest.approx(float(braked.max()), rel=0.01)
 
 
@@ -140,7 +140,7 @@ def test_response_and_window_are_parts_of_the_whole() -> None:
 
 
 @pytest.mark.parametrize("path", [STEP, RAMP, SINE])
-def test_a_test_that_was_let_go_has_no_figures(path: DriveTestPath) -> None:
+def test_a_test_that_was_let_go_has_no_figures(path: DriveTestMotion) -> None:
     with raises_code(AnalysisError, "test-broken-off"):
         calculate_results(played(path, lasts=0.3), path, DRIVES)
 
@@ -152,7 +152,7 @@ def test_a_record_of_another_machine() -> None:
 
 
 def test_a_step_within_its_own_window_is_told() -> None:
-    path = dataclasses.replace(STEP, travel_mm=DRIVES["Z"].in_position)
+    path = dataclasses.replace(STEP, travel_mm=DRIVES["Z"].in_position_tolerance)
     with raises_code(AnalysisError, "step-too-small"):
         calculate_results(played(path), path, DRIVES)
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.extras.analyses.path_error import (
-    calculate_from_samples,
     calculate_path_error,
+    calculate_path_error_from_samples,
     find_worst_deviations,
 )
 from core.records.record import AnalysisError
@@ -18,7 +18,7 @@ def test_a_slide_that_is_late_is_still_on_its_path() -> None:
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([20.0 * t, 30.0 * t])
     actual = np.column_stack([20.0 * (t - 0.01), 30.0 * (t - 0.01)])
-    error = calculate_from_samples(demand, actual, np.ones(1000), 1000.0)
+    error = calculate_path_error_from_samples(demand, actual, np.ones(1000), 1000.0)
     assert error.distances_mm[20:] == pytest.approx(0.0, abs=1e-12)
     assert error.path_positions_mm[20:] == pytest.approx(np.hypot(20.0, 30.0) * (t[20:] - 0.01))
 
@@ -28,7 +28,7 @@ def test_one_axis_late_beside_the_other() -> None:
     t = np.arange(1000) / 1000.0
     demand = np.column_stack([10.0 * t, 10.0 * t])
     actual = np.column_stack([10.0 * t - 0.02, 10.0 * t])
-    error = calculate_from_samples(demand, actual, np.ones(1000), 1000.0)
+    error = calculate_path_error_from_samples(demand, actual, np.ones(1000), 1000.0)
     assert error.distances_mm[10:-10] == pytest.approx(0.02 / np.sqrt(2.0), abs=1e-9)
 
 
@@ -39,7 +39,7 @@ def test_a_circle_that_lags_shrinks() -> None:
     demand = r * np.column_stack([np.cos(omega * t), np.sin(omega * t)])
     gain, phase = 1.0 / np.hypot(1.0, omega * tau), np.arctan(omega * tau)
     actual = gain * r * np.column_stack([np.cos(omega * t - phase), np.sin(omega * t - phase)])
-    error = calculate_from_samples(demand, actual, np.ones(4000), 1000.0)
+    error = calculate_path_error_from_samples(demand, actual, np.ones(4000), 1000.0)
     assert error.distances_mm[100:-100] == pytest.approx(r * (1.0 - gain), abs=2e-5)  # chords of .0000125 mm
 
 
@@ -73,7 +73,7 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
     up, back = np.column_stack([10 * t, 0 * t]), np.column_stack([10 * t[::-1], 0 * t + 0.01])
     demand = np.concatenate([up, back])
     lines = np.repeat([1.0, 2.0], 500)
-    error = calculate_from_samples(
+    error = calculate_path_error_from_samples(
         demand, demand - (0.0, 0.006) * (lines == 2.0)[:, None], lines, 1000.0, delay_s=0.02
     )
     assert error.distances_mm[700:950] == pytest.approx(0.006)
@@ -90,7 +90,7 @@ def test_a_path_that_crosses_itself_is_not_its_own_neighbour() -> None:
 )
 def test_what_is_no_path_is_refused(demand: np.ndarray, code: str) -> None:
     with raises_code(AnalysisError, code):
-        calculate_from_samples(demand, demand, np.ones(len(demand)), 1000.0)
+        calculate_path_error_from_samples(demand, demand, np.ones(len(demand)), 1000.0)
 
 
 def test_what_does_not_belong_together_is_refused() -> None:

@@ -43,10 +43,10 @@ def test_a_lag_of_first_order_by_its_formula() -> None:
     response = found(turned((1.0, 1000.0)))
     assert MODEL.at_speed == pytest.approx(0.05)
     step = response.step_responses[0]
-    assert step.step_size == 1000.0
+    assert step.step_size_mm == 1000.0
     assert step.rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
     assert response.acceleration_rpm_s == pytest.approx(0.8 * 1000.0 / (TAU * math.log(9.0)), rel=0.01)
-    assert step.overshoot == 0.0
+    assert step.overshoot_fraction == 0.0
     within = [TAU * math.log(1.0 / share) for share in (0.05, 0.02, 0.01)]
     assert [each.settling_time_s for each in response.step_responses] == pytest.approx(within, abs=0.002)
 
@@ -66,12 +66,12 @@ def test_a_swing_wider_than_a_window_never_settles_in_it() -> None:
 def test_of_several_the_last_run_up_and_no_stop() -> None:
     response = found(turned((1.0, 1000.0), (4.0, 2000.0), (8.0, 0.0)))
     assert (response.commanded_rpm[0], response.commanded_rpm[-1]) == (1000.0, 2000.0)
-    assert response.step_responses[0].step_size == 1000.0
+    assert response.step_responses[0].step_size_mm == 1000.0
 
 
 def test_backward_is_a_speed_too() -> None:
     response = found(turned((1.0, -500.0)))
-    assert response.step_responses[0].step_size == -500.0
+    assert response.step_responses[0].step_size_mm == -500.0
     assert response.step_responses[0].rise_time_s == pytest.approx(TAU * math.log(9.0), abs=0.002)
 
 

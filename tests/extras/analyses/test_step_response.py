@@ -29,8 +29,8 @@ def test_a_first_order_lag() -> None:
     assert found.rise_time_s == pytest.approx(tau * math.log(9.0), abs=5e-4)
     assert found.delay_s == pytest.approx(tau * math.log(2.0), abs=1e-3)
     assert found.settling_time_s == pytest.approx(tau * math.log(1000.0), abs=2e-3)
-    assert found.overshoot == pytest.approx(0.0, abs=1e-9)
-    assert found.final_error == pytest.approx(0.0, abs=1e-9)
+    assert found.overshoot_fraction == pytest.approx(0.0, abs=1e-9)
+    assert found.final_error_mm == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -41,13 +41,15 @@ def test_the_overshoot_of_a_second_order(sign: float) -> None:
     t = np.maximum(T, 0.0)
     response = 1.0 - np.exp(-d * w * t) * (np.cos(wd * t) + d * w / wd * np.sin(wd * t))
     found = analyze_step(T, sign * STEP, sign * 0.1 * np.where(T >= 0.0, response, 0.0), 0.001)
-    assert found.overshoot == pytest.approx(math.exp(-math.pi * d / math.sqrt(1.0 - d * d)), abs=1e-3)
-    assert found.step_size == pytest.approx(sign * 0.1)
+    assert found.overshoot_fraction == pytest.approx(
+        math.exp(-math.pi * d / math.sqrt(1.0 - d * d)), abs=1e-3
+    )
+    assert found.step_size_mm == pytest.approx(sign * 0.1)
 
 
 def test_what_does_not_settle_is_not_said_to() -> None:
     assert math.isnan(analyze_step(T, STEP, 0.9 * STEP, 0.001).settling_time_s)
-    assert analyze_step(T, STEP, 0.9 * STEP, 0.001).final_error == pytest.approx(-0.01)
+    assert analyze_step(T, STEP, 0.9 * STEP, 0.001).final_error_mm == pytest.approx(-0.01)
 
 
 @pytest.mark.parametrize("frequency", [1.0, 5.0, 20.0])

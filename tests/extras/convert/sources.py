@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from core.extras.convert.conversion import Conversion, convert
-from core.extras.convert.source_options import Control, Options
+from core.extras.convert.conversion import Conversion, convert_program
+from core.extras.convert.source_options import ConversionOptions, SourceControl
 from core.interpreter.shared.job_setup import ControlLimits
 
 FANUC = "G20G40G99\nT0101\nG97S500M03\nG00X2.Z.1\nG01F.01\n"
@@ -16,8 +16,10 @@ LINUXCNC = "G20G18G7G95\nT1M6\nG97S500M3\nG0X2Z.1\nF.01\n"
 
 def converted(text: str, control: str = "fanuc-a", **options: Any) -> Conversion:
     """Return the conversion of a complete program."""
-    wanted = Options(Control(control), comments=False, m_codes=frozenset({25, 26}), **options)
-    return convert(
+    wanted = ConversionOptions(
+        SourceControl(control), has_comments=False, m_codes=frozenset({25, 26}), **options
+    )
+    return convert_program(
         text.splitlines(), wanted, ControlLimits(m_outputs={25: ("catcher", True), 26: ("catcher", False)})
     )
 

@@ -47,7 +47,7 @@ def test_the_keys_of_json_are_declared(turndesk: Turndesk, part: Path) -> None:
     (told,) = turndesk("convert", part, "--json").lines
     assert [each["code"] for each in told["findings"]] == ["left-out"]
     assert told["from"] == "fanuc-a"
-    declared_alone([told], convert_command.CONVERT.keys)
+    declared_alone([told], convert_command.CONVERT_OUTPUT.keys)
 
 
 def test_options_about_the_source_act(turndesk: Turndesk, part: Path) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from core.extras.convert.conversion_proof import prove
-from core.extras.convert.path_steps import Kind, Step
+from core.extras.convert.path_steps import PathStep, StepKind
 from core.interpreter.shared.job_setup import ControlLimits
 from core.language.diagnostics import Severity
 from tests.extras.convert.sources import converted, lines_after, refused
@@ -20,9 +20,25 @@ def test_a_small_fanuc_program_line_by_line() -> None:
         "G90G94F300G70G72", "T0", "G00X0Z0", "T1", "G77S2500", "G96M03S400", "M08", "X2.1Z.1",
         "G95F.01Z0", "G95F.006X-.06", "G00Z.1", "M09", "T0", "X0Z0", "M30",
     ]  # fmt: skip
-    assert [each.line for each in done.lines] == [4, 4, 4, 5, 7, 7, 8, 8, 9, 10, 11, 11, 12, 12, 13]
+    assert [each.source_line_number for each in done.lines] == [
+        4,
+        4,
+        4,
+        5,
+        7,
+        7,
+        8,
+        8,
+        9,
+        10,
+        11,
+        11,
+        12,
+        12,
+        13,
+    ]
     assert done.findings == ()
-    assert done.proof.rounded == 0
+    assert done.proof.rounded_move_count == 0
 
 
 @pytest.mark.parametrize(
@@ -68,8 +84,8 @@ def test_metric_lengths_without_a_point_are_asked() -> None:
 def test_a_fine_coordinate_is_rounded_to_the_resolution_and_counted() -> None:
     done = converted("G20G99\nT0101\nG97S500M03\nG00X1.00004Z.1\nG01Z0F.01\nM30\n")
     assert not done.errors
-    assert done.proof.rounded == 2  # the start of the second move has the same X
-    assert done.proof.most == pytest.approx(0.00002 * 25.4)
+    assert done.proof.rounded_move_count == 2  # the start of the second move has the same X
+    assert done.proof.max_rounding_mm == pytest.approx(0.00002 * 25.4)
 
 
 def test_threads_in_single_passes_become_g33_with_o() -> None:
@@ -133,10 +149,10 @@ def test_an_error_of_the_target_is_reported_at_the_source_line() -> None:
 def test_a_difference_is_found() -> None:
     """The proof must not depend on the writer: with another step, it fails."""
     text = "G90G94F300G70G72\nG00X1Z.1\nM30\n"
-    steps = [Step(Kind.RAPID, 7, 12.7, 2.54), Step(Kind.END, 8, number=30)]
-    assert prove(text, [7, 7, 8], steps, ControlLimits(), metric=False).errors == ()
-    steps[0] = Step(Kind.RAPID, 7, 12.71, 2.54)
-    (error,) = prove(text, [7, 7, 8], steps, ControlLimits(), metric=False).errors
+    steps = [PathStep(StepKind.RAPID, 7, 12.7, 2.54), PathStep(StepKind.END, 8, number=30)]
+    assert prove(text, [7, 7, 8], steps, ControlLimits(), is_metric=False).errors == ()
+    steps[0] = PathStep(StepKind.RAPID, 7, 12.71, 2.54)
+    (error,) = prove(text, [7, 7, 8], steps, ControlLimits(), is_metric=False).errors
     assert (error.line, error.code) == (7, "proof-differs")
-    steps[:1] = [Step(Kind.RAPID, 7, 12.7, 2.54), Step(Kind.RAPID, 7, 12.8, 2.54)]
-    assert prove(text, [7, 7, 8], steps, ControlLimits(), metric=False).errors
+    steps[:1] = [PathStep(StepKind.RAPID, 7, 12.7, 2.54), PathStep(StepKind.RAPID, 7, 12.8, 2.54)]
+    assert prove(text, [7, 7, 8], steps, ControlLimits(), is_metric=False).errors

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import pytest
 
-from core.extras.convert.path_steps import MOVES, Kind
-from core.extras.convert.source_options import Control, Options
-from core.extras.convert.source_reader import Reader
+from core.extras.convert.path_steps import MOVE_KINDS, StepKind
+from core.extras.convert.source_options import ConversionOptions, SourceControl
+from core.extras.convert.source_reader import SourceReader
 
 RS274 = shutil.which("rs274")
 INI = "[RS274NGC]\nPARAMETER_FILE = {folder}/rs.var\nLATHE = 1\n[EMCIO]\nTOOL_TABLE = {folder}/rs.tbl\n"
@@ -106,12 +106,12 @@ def canon(text: str, folder: Path) -> list[Move]:
 
 def ours(text: str) -> list[Move]:
     """Return the moves of our reader, without those whose position is unknown."""
-    reader = Reader(text.splitlines(), Options(Control.LINUXCNC))
-    reader.read()
+    reader = SourceReader(text.splitlines(), ConversionOptions(SourceControl.LINUXCNC))
+    reader.read_program()
     moves = []
     for step in reader.state.steps:
-        if step.kind in MOVES and step.x is not None and step.z is not None:
-            kind = {Kind.RAPID: "rapid", Kind.ARC: "arc"}.get(step.kind, "cut")
+        if step.kind in MOVE_KINDS and step.x is not None and step.z is not None:
+            kind = {StepKind.RAPID: "rapid", StepKind.ARC: "arc"}.get(step.kind, "cut")
             center = (step.cx, step.cz, 1 if step.clockwise else -1) if kind == "arc" else (0.0, 0.0, 0)
             moves.append(Move(kind, step.x, step.z, *center))
     return without_standstill(moves)

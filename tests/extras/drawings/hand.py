@@ -19,7 +19,7 @@ from core.extras.drawings.drawing_placement import (
     find_contours,
     select_axis,
 )
-from core.extras.drawings.profile_job import propose_fields
+from core.extras.drawings.profile_description import propose_fields
 from core.extras.drawings.profile_program import ProfileProgram, make_profile_program
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.interpreter.shared.job_setup import SecondaryOffset
@@ -69,7 +69,7 @@ def program(
 ) -> ProfileProgram:
     """The program of a profile; what is not typed is as it is proposed."""
     shapes = TOOLS if tools is None else tools
-    fields = propose_fields(chosen, typed, shapes, metric=metric, dialect=dialect)
+    fields = propose_fields(chosen, typed, shapes, is_metric=metric, dialect=dialect)
     setting = ProgramSettings(metric=metric, shop=ShopData(tools=shapes), dialect=dialect)
     return make_profile_program(chosen, fields, [], setting)
 
@@ -86,7 +86,7 @@ def radii(
 ) -> np.ndarray:  # fmt: skip
     """Radii of the proved part at these Z, mm; the proof has nothing to say against the program."""
     n = made.nose_offset
-    offsets = {n.number: SecondaryOffset(n.x, n.z, n.r)} if n else {}
+    offsets = {n.number: SecondaryOffset(n.x, n.z, n.nose_radius)} if n else {}
     report, part = proved(text_of(made), TOOLS if tools is None else tools, offsets, stock)
     assert not report.errors, [d.text for d in report.diagnostics]
     assert part.last_piece is not None

@@ -39,7 +39,7 @@ class Desk:
         self.shapes.added_forms = (self.drawing,)
 
     def open(self, text: str = "") -> DrawingForm:
-        assert self.shapes.open("x.nc", text, 1) == ""
+        assert self.shapes.open_for_text("x.nc", text, 1) == ""
         self.shapes.worker.wait_for_results(60.0)
         while self.shapes.form is not None:  # that of the piece at the cursor
             self.shapes.handle_escape()
@@ -190,7 +190,7 @@ def reading(desk: Desk, tmp_path: Path) -> Reading:
     dxf(tmp_path / "a.dxf", chain(*STEP))
     found = Reading()
     desk.drawing.planner = DrawingPlanner(found)
-    desk.shapes.open("x.nc", "", 1)
+    desk.shapes.open_for_text("x.nc", "", 1)
     desk.shapes.handle_key("x")
     assert found.begun.wait(60.0)
     return found

@@ -11,7 +11,7 @@ import pytest
 
 from app.extras.drawings.profile_trial import TrialStock, run_profile_trial
 from core.extras.drawings.drawing_placement import ContourSide, FaceEnd, ZeroPosition
-from core.extras.drawings.profile_job import is_nose_fillet
+from core.extras.drawings.profile_description import is_nose_fillet
 from core.extras.shapes.contour import resolve_points
 from core.language.source import Dialect
 from tests.extras.drawings.hand import BLADE, SLIM, chain, dxf, profile_of, program, radii, text_of
@@ -70,7 +70,7 @@ def test_the_program_is_that_of_a_good_programmer(tmp_path: Path) -> None:
         "X42", "G00Z25",
     ]  # fmt: skip
     assert made.nose_offset is not None
-    assert (made.nose_offset.x, made.nose_offset.z, made.nose_offset.r) == (-0.4, -0.4, 0.4)
+    assert (made.nose_offset.x, made.nose_offset.z, made.nose_offset.nose_radius) == (-0.4, -0.4, 0.4)
     assert not made.uncut_ranges
 
 
@@ -233,7 +233,7 @@ def test_a_cone_that_falls_from_the_face_is_roughed_up_the_face(
     )
     assert not trial.errors
     assert trial.comparison is not None
-    assert not [each for each in trial.comparison.deviations if not is_nose_fillet(each, made.nose_radius)]
+    assert not [each for each in trial.comparison.deviations if not is_nose_fillet(each, made.nose_radius_mm)]
     assert trial.comparison.worst_deviation_mm < 0.02
     contour = resolve_points(made.shapes[-1][0].contour_points)
     assert contour[:3] == [(0.0, 4.0), (0.0, 10.0), (-20.0, 4.0)]

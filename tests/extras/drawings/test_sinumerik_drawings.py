@@ -11,7 +11,7 @@ import pytest
 from app.cli.main import main
 from app.extras.drawings.profile_trial import TrialResult, TrialStock, run_profile_trial
 from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
-from core.extras.drawings.profile_job import convert_to_json, describe_program
+from core.extras.drawings.profile_description import convert_to_json, describe_program
 from core.extras.drawings.profile_program import ProfileProgram
 from core.extras.shapes.shape_fields import ProgramSettings, ShopData
 from core.extras.shapes.shape_pieces import find_pieces
@@ -81,7 +81,7 @@ def test_what_the_cutting_edge_has_to_hold_is_told(tmp_path: Path) -> None:
     made = program(chosen, dialect=OURS)
     assert TIP_DIRECTIONS[3] == (-1, -1)
     words = wording("shapes.edge-must-have", edge="T1 D1", radius=".4", unit="mm", quadrant=3)
-    assert words in list(describe_program(made, None, chosen, metric=True))
+    assert words in list(describe_program(made, None, chosen, is_metric=True))
     told = convert_to_json(made, None, chosen)
     assert (told["secondary_offset"], told["cutting_edge"]) == (
         None, {"tool": 1, "edge": 1, "r": 0.4, "quadrant": 3}

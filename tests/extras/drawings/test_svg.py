@@ -59,7 +59,7 @@ def test_a_bezier_becomes_arcs_on_its_curve(tmp_path: Path) -> None:
     ]
     assert 4 <= len(arcs) <= 40
     for arc in arcs:
-        y, x = (v * unit for v in arc.point_at(arc.length / 3))
+        y, x = (v * unit for v in arc.get_point(arc.length / 3))
         assert (
             min(math.dist((x, -y), p) for p in curve) < 0.003 + 0.01
         )  # and half the step of the curve's points

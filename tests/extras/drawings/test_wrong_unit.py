@@ -21,7 +21,7 @@ def shaft(path: Path, unit: int, long: float, radius: float) -> Path:
 
 def trouble(path: Path, travel: tuple[float, float] = TRAVEL, **typed: str) -> str:
     """What the form of the screen reports at the field of the unit; other faults are not expected."""
-    setting = ProgramSettings(metric=True, shop=ShopData(travel=travel))
+    setting = ProgramSettings(metric=True, shop=ShopData(travel_mm=travel))
     plan = planned(PlanRequest(path, typed, (), setting))
     assert set(plan.errors) <= {"DUNIT"}
     return plan.errors.get("DUNIT", "")

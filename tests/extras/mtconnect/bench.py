@@ -35,7 +35,7 @@ class Bench:
         self.agents: list[FakeAgent] = []
         self.adapter = MtconnectAdapter(
             MtconnectTable(port=0, heartbeat=heartbeat),
-            tuple(lathe().all_items()),
+            tuple(lathe().iterate_items()),
             lambda: MachineReport(dict(self.values), dict(self.conditions)),
             self.clock,
             lambda: BEGIN + timedelta(seconds=self.clock.now()),

@@ -36,7 +36,7 @@ def _shdr(data: bytes) -> Iterable[str]:
         link = AgentLink(ours, 10.0)
         for at in range(0, len(data), 1000):
             theirs.sendall(data[at : at + 1000])
-            link.read(float(at))
+            link.read_data(float(at))
             link.check_timeout(float(at))
     return ()
 

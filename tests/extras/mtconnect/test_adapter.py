@@ -78,7 +78,7 @@ def test_one_that_comes_back_gets_everything_again(bench: Bench, caplog: pytest.
     bench.until(lambda: bench.adapter.agent_count == 0)
     agent.connect(bench.adapter.address)
     bench.until(lambda: agent.values["execution"] == "ACTIVE")
-    assert bench.adapter.counts.accepted == 2
+    assert bench.adapter.counts.accepted_count == 2
     assert caplog.records == []  # agents come and go: nothing to write down
 
 
@@ -145,10 +145,10 @@ def test_no_more_than_a_kilobyte_is_taken_of_an_agent_at_a_time() -> None:
         near.setblocking(False)
         far.sendall(b"x\n" * 2000)
         link = AgentLink(near, HEARTBEAT)
-        link.read(0.0)
+        link.read_data(0.0)
         assert link.ignored_line_count == READ_BYTES // 2
         for _ in range(10):
-            link.read(0.0)
+            link.read_data(0.0)
         assert link.ignored_line_count == 2000
 
 
@@ -158,7 +158,7 @@ def test_one_that_sends_no_lines_is_given_up(bench: Bench) -> None:
     bench.until(lambda: flooding.wire is None)
     bench.look()
     assert other.wire is not None
-    assert (bench.adapter.agent_count, bench.adapter.counts.lost) == (1, 1)
+    assert (bench.adapter.agent_count, bench.adapter.counts.lost_count) == (1, 1)
 
 
 def test_one_that_does_not_read_is_dropped_and_the_other_hears_all(
@@ -239,7 +239,7 @@ def test_who_pings_takes_the_place_of_who_never_did(bench: Bench) -> None:
     agents = [bench.agent() for _ in range(MAX_AGENTS)]
     assert all(agent.values["execution"] == "READY" for agent in agents)
     assert bench.adapter.agent_count == MAX_AGENTS
-    assert bench.adapter.counts.lost == MAX_AGENTS
+    assert bench.adapter.counts.lost_count == MAX_AGENTS
     for wire in silent:
         wire.close()
 

@@ -32,7 +32,7 @@ class Machine:
 
 def adapter(machine: Machine, port: int = 0) -> MtconnectAdapter:
     return MtconnectAdapter(
-        MtconnectTable(bind=HERE, port=port), tuple(lathe().all_items()), machine.report, RealClock()
+        MtconnectTable(bind=HERE, port=port), tuple(lathe().iterate_items()), machine.report, RealClock()
     )
 
 

@@ -12,14 +12,14 @@ A, B = "2026-01-01T00:00:00.000Z", "2026-01-01T00:00:00.100Z"
 
 def told_after(*values: dict[str, ItemValue]) -> str:
     """What the last of these reports makes."""
-    told, said = SentState(tuple(lathe().all_items())), ""
+    told, said = SentState(tuple(lathe().iterate_items())), ""
     for each in values:
         said = told.report_changes(MachineReport(each, {}), A)
     return said
 
 
 def test_before_anything_is_known_all_of_it_is_unavailable() -> None:
-    lines = SentState(tuple(lathe().all_items())).make_complete_state(A).splitlines()
+    lines = SentState(tuple(lathe().iterate_items())).make_complete_state(A).splitlines()
     values, *conditions = (line.split("|") for line in lines)
     assert set(values[2::2]) == {"UNAVAILABLE"}
     assert {parts[2] for parts in conditions} == {"UNAVAILABLE"}
@@ -58,7 +58,7 @@ def test_a_slow_drift_is_not_lost_in_the_band() -> None:
 
 
 def test_what_a_report_leaves_out_is_no_longer_known() -> None:
-    told = SentState(tuple(lathe().all_items()))
+    told = SentState(tuple(lathe().iterate_items()))
     told.report_changes(
         MachineReport({"Xabs": 1.0}, {"Xservo": (ActiveCondition("FAULT", "101", "tripped"),)}), A
     )
@@ -71,7 +71,7 @@ def test_keys_that_are_no_items_are_not_sent() -> None:
 
 
 def test_a_new_text_of_the_same_fault_replaces_it() -> None:
-    told = SentState(tuple(lathe().all_items()))
+    told = SentState(tuple(lathe().iterate_items()))
     told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "ONE"),)}), A)
     said = told.report_changes(MachineReport({}, {"system": (ActiveCondition("WARNING", "hold", "TWO"),)}), B)
     assert said == f"{B}|system|WARNING|hold|||TWO\n"

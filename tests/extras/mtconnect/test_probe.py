@@ -122,6 +122,6 @@ def test_a_mill_has_its_own_axes_and_no_chuck() -> None:
     mill = make_machine_items(
         MachineLayout(("X", "Y", "Z"), ("A", "C"), "S", is_spindle_positionable=False, has_chuck=False), "AC"
     )
-    keys = {item.key for item in mill.all_items()}
+    keys = {item.key for item in mill.iterate_items()}
     assert {"Yabs", "Yservo", "Aabs", "Aservo", "Atravel", "Cabs", "Cservo", "Srpm", "Sdrive"} <= keys
     assert not keys & {"chuck", "chuckil", "Sabs"}

@@ -20,7 +20,7 @@ from tests.extras.mtconnect.agent import FakeAgent, tokens
 from tests.extras.mtconnect.bench import BEGIN, lathe
 
 AT = "2026-01-01T00:00:00.000Z"
-ITEMS = tuple(lathe().all_items())
+ITEMS = tuple(lathe().iterate_items())
 MODEL = make_devices_xml(lathe(), "bench", BEGIN)
 TEXTS = st.one_of(
     st.text(max_size=40),

@@ -169,7 +169,7 @@ def machine_file(folder: Path, port: int, **changes: str) -> Path:
     path = folder / "own.toml"
     table = {"enabled": "true", "device": '"GT75"', "port": str(port), **changes}
     lines = "".join(f"{key} = {value}\n" for key, value in table.items())
-    path.write_text(resources.machine_file("gt75.toml") + f"\n[mtconnect]\n{lines}")
+    path.write_text(resources.read_machine_file("gt75.toml") + f"\n[mtconnect]\n{lines}")
     return path
 
 
@@ -213,7 +213,7 @@ def test_where_the_file_does_not_want_it_nothing_listens(
     port = free_port()
     path = machine_file(tmp_path, port, **({"enabled": enabled} if enabled else {}))
     if enabled is None:
-        path.write_text(resources.machine_file("gt75.toml"))
+        path.write_text(resources.read_machine_file("gt75.toml"))
     desk = build_desk(str(path))
     try:
         assert threads() == ["status"]
@@ -291,7 +291,7 @@ def test_the_model_is_written_to_stdout(turndesk: Turndesk, tmp_path: Path) -> N
 
 def test_without_the_table_there_is_no_model(turndesk: Turndesk, tmp_path: Path) -> None:
     path = tmp_path / "own.toml"
-    path.write_text(resources.machine_file("gt75.toml"))
+    path.write_text(resources.read_machine_file("gt75.toml"))
     told = turndesk("machine", "mtconnect", path)
     assert (told.status, told.out) == (2, "")
     assert "[mtconnect]" in told.err

@@ -13,7 +13,7 @@ from app.compose.machine.machine_files import parse_machine
 from app.extras.office.other_machines import make_current_address, parse_streams, read_agent_status
 from core.extras.office.shop_network_tables import StatusPageTable
 from core.table_schema import MachineFileError
-from resources import machine_file
+from resources import read_machine_file
 from tests.texts import text
 
 # As the standard has it (part 3, Streams); versions differ in the name space alone.
@@ -162,7 +162,7 @@ def test_the_address_of_what_is_so_now() -> None:
 
 def page_table(keys: str) -> StatusPageTable:
     table = parse_machine(
-        f"{machine_file('gt75.toml')}[status_page]\n{keys}\n", "m.toml"
+        f"{read_machine_file('gt75.toml')}[status_page]\n{keys}\n", "m.toml"
     ).hardware.find_driver_table(StatusPageTable)
     assert table is not None
     return table

@@ -39,7 +39,7 @@ from core.ports import DriverError
 from core.records.record import ScopeRecord, list_machine_channels
 from core.store.production.part_cycles import StopRow
 from core.table_schema import MachineFileError
-from resources import machine_file
+from resources import read_machine_file
 from tests.coded import raises_code
 from tests.texts import text, text_in_spanish
 
@@ -179,7 +179,7 @@ def test_head_has_no_body() -> None:
 
 
 def test_a_page_open_to_the_shop_wants_a_token() -> None:
-    text = machine_file("gt75.toml")
+    text = read_machine_file("gt75.toml")
     with pytest.raises(MachineFileError, match=r"status_page\.token: .*0\.0\.0\.0"):
         parse_machine(text + '[status_page]\nbind = "0.0.0.0"\ntoken = "short"\n', "m.toml")
     with pytest.raises(MachineFileError, match=r"status_page\.token: "):
@@ -204,7 +204,7 @@ def test_a_page_open_to_the_shop_wants_a_token() -> None:
 )
 def test_a_wrong_address_of_who_is_told_is_refused(line: str, path: str) -> None:
     with pytest.raises(MachineFileError) as told:
-        parse_machine(f"{machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
+        parse_machine(f"{read_machine_file('gt75.toml')}[announce]\n{line}\n", "m.toml")
     assert [finding.path for finding in told.value.findings] == [path]
 
 
@@ -588,7 +588,8 @@ def test_machine_check_has_a_row_for_the_page_and_for_the_broker() -> None:
             f'[status_page]\nenabled = true\nport = {taken + 1}\n[announce]\nmqtt = "127.0.0.1:{away}"\n',
         )
         told = [
-            check_machine(parse_machine(machine_file("gt75.toml") + each, "m.toml")).rows for each in tables
+            check_machine(parse_machine(read_machine_file("gt75.toml") + each, "m.toml")).rows
+            for each in tables
         ]
     states = [{row.name: row.state for row in rows} for rows in told]
     assert (states[0]["status_page"], states[0]["announce"]) == ("fault", "ok")

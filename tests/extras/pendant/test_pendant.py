@@ -48,7 +48,13 @@ class Bench:
         self.plug(*pressed)
         self.rung = 0
         self.pendant = PendantReader(
-            BOUND, frozenset(STOP_INPUTS), WHEEL, self._find, lambda: self.t, place=place, ring=self._ring
+            BOUND,
+            frozenset(STOP_INPUTS),
+            WHEEL,
+            self._find,
+            lambda: self.t,
+            has_absolute_wheel=place,
+            report_change=self._ring,
         )
         self.look()
 
@@ -221,7 +227,7 @@ def test_dropped_events_let_everything_go_and_take_the_wheel_away() -> None:
     bench.look()
     assert bench.held == set()  # though it is still down: it must be let go first
     assert bench.counts == 0
-    station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
+    station = PendantStation(Inner(), bench.pendant, has_stops=True, has_wheel=True)
     assert station.read_state().wheel_trouble == LOST_EVENTS_MESSAGE
     assert station.read_state().trouble == ""
     bench.go(0.31)
@@ -257,11 +263,11 @@ class Inner:
     def inputs(self) -> dict[str, bool]:
         return {"estop": False, "start": False}
 
-    def outputs(self) -> dict[str, bool]:
+    def get_outputs(self) -> dict[str, bool]:
         return {"coolant": True}
 
-    def write(self, name: str, on: bool) -> None:
-        raise DriverError(f"{name} {on}")
+    def write(self, name: str, is_on: bool) -> None:
+        raise DriverError(f"{name} {is_on}")
 
     def switch_to_safe_state(self) -> None:
         raise DriverError("safe")
@@ -278,7 +284,7 @@ def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
     bench.look()
     assert bench.held == set()
     assert "unplugged" in bench.pendant.get_state().missing_reason
-    station = PendantStation(Inner(), bench.pendant, stops=True, wheel=True)
+    station = PendantStation(Inner(), bench.pendant, has_stops=True, has_wheel=True)
     bench.go(10.0)
     bench.look()
     assert "not plugged in" in station.read_state().trouble  # as long as its stop is away
@@ -287,7 +293,7 @@ def test_unplugged_everything_is_let_go_and_it_is_told() -> None:
 
 def test_one_without_a_stop_holds_once_and_is_not_missed() -> None:
     bench = Bench()
-    station = PendantStation(Inner(), bench.pendant, stops=False, wheel=True)
+    station = PendantStation(Inner(), bench.pendant, has_stops=False, has_wheel=True)
     bench.device.pull()
     bench.peer = None
     bench.look()
@@ -328,12 +334,12 @@ def test_it_adds_to_the_station_and_can_start_nothing() -> None:
     bench.device.turn(2)
     bench.device.key(BTN_B, True)
     bench.look()
-    state = PendantStation(Inner(), bench.pendant, stops=True, wheel=True).read_state()
+    state = PendantStation(Inner(), bench.pendant, has_stops=True, has_wheel=True).read_state()
     assert state == dataclasses.replace(Inner.state, handwheel=6, hold=True)
     io = PendantIO(Inner(), bench.pendant)
     assert io.inputs()["hold"]
     assert not io.inputs()["start"]
-    assert io.outputs() == {"coolant": True}
+    assert io.get_outputs() == {"coolant": True}
     with raises_code(DriverError, "driver", "coolant False"):
         io.write("coolant", False)
     with raises_code(DriverError, "driver", "safe"):
@@ -376,7 +382,7 @@ class Said:
 
     def __init__(self, wheel: str, ranges: dict[int, AxisRange], keys: tuple[int, ...] = ()) -> None:
         self.buttons = PendantButtons(BOUND, frozenset(STOP_INPUTS), parse_wheel_name(wheel))
-        self.buttons.start(keys, ranges)
+        self.buttons.set_initial_state(keys, ranges)
 
     def tell(self, kind: int, code: int, value: int, ago: float = 0.0) -> None:
         self.buttons.apply_packet(EventPacket((InputEvent(10.0 - ago, kind, code, value),)), 10.0)

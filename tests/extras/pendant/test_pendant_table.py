@@ -36,7 +36,7 @@ start_inhibit = { at = "pendant.BTN_1" }
 
 
 def text(*changes: tuple[str, str]) -> str:
-    found = resources.machine_file("gt75.toml").replace("[io.in]\n", BUTTONS) + PENDANT
+    found = resources.read_machine_file("gt75.toml").replace("[io.in]\n", BUTTONS) + PENDANT
     for old, new in changes:
         assert old in found
         found = found.replace(old, new)
@@ -99,12 +99,12 @@ def test_what_is_refused(old: str, new: str, expected: str) -> None:
 
 
 def test_a_pendant_that_nothing_is_at() -> None:
-    found = resources.machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
+    found = resources.read_machine_file("gt75.toml") + '\n[pendant]\ndevice = "Knob"\n'
     with pytest.raises(MachineFileError) as caught:
         parse_machine(found, "test")
     (finding,) = caught.value.findings
     assert finding.path == "[pendant]"
-    assert "pendant.BTN_B" in finding.expected
+    assert "pendant.BTN_B" in finding.expected_value
 
 
 def test_a_pendant_that_is_not_there_is_a_row_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -54,7 +54,7 @@ def shift_report(folder: Path) -> str:
         _fill(store)
         shift = Shift(BEGIN.timestamp(), (BEGIN + timedelta(hours=8)).timestamp())
         found = calculate_shift_results(store, shift, shift.end_s + 120.0)
-        return make_shift_html(found, "GT-75", "2026-03-02 14:02", metric=False)
+        return make_shift_html(found, "GT-75", "2026-03-02 14:02", is_metric=False)
 
 
 def _fill(store: Store) -> None:

@@ -103,7 +103,7 @@ def figures(store: Store, shift: Shift = EIGHT) -> ShiftResults:
 
 def test_parts_are_those_that_were_finished_in_the_shift(store: Store) -> None:
     found = figures(store)
-    assert [(p.program, p.parts, dict(p.incomplete_cycles)) for p in found.programs] == [
+    assert [(p.program, p.part_count, dict(p.incomplete_cycles)) for p in found.programs] == [
         ("pin.nc", 3, {}),
         ("cap.nc", 0, {"GIVEN UP": 1, "CUT OFF": 1}),
     ]
@@ -136,7 +136,7 @@ def test_offsets_are_told_with_who_and_when(store: Store) -> None:
     now = datetime.now(UTC).timestamp()
     found = calculate_shift_results(store, Shift(now - 60.0, now + 60.0), now)
     assert [(c.number, c.why, c.who) for c in found.offset_changes] == [(1, "wear", "proposed")]
-    page = make_shift_html(found, "GT-75", "now", metric=True)
+    page = make_shift_html(found, "GT-75", "now", is_metric=True)
     assert "proposed" in page
     assert "The shift is still running" in page
 
@@ -149,7 +149,7 @@ def test_an_empty_shift_says_so(store: Store) -> None:
         ("No part was started in this period.",),
     )
     assert found.unrecorded_s == 28_800.0
-    assert "none" in make_shift_html(found, "", "now", metric=False)
+    assert "none" in make_shift_html(found, "", "now", is_metric=False)
 
 
 def test_a_clock_that_was_set_back_is_told_and_lengths_stay(store: Store) -> None:
@@ -204,7 +204,7 @@ def test_times_that_are_none_are_refused(first: str, last: str, code: str, value
 def test_names_of_others_are_text_on_the_page(store: Store) -> None:
     row = cycle("p7", "10:00:00", "10:10:00", 600.0, 11)._replace(program="<script>alert(1)</script>")
     store.write(lambda c: part_cycles.save_cycle(c, row)).result()
-    page = make_shift_html(figures(store), "<b>", "now", metric=True)
+    page = make_shift_html(figures(store), "<b>", "now", is_metric=True)
     assert "<script>" not in page
     assert "&lt;script&gt;" in page
     assert "http" not in page.replace("http-equiv", "")  # nothing is loaded from anywhere

@@ -35,13 +35,13 @@ def test_a_diameter_that_is_too_large_wants_less() -> None:
     found = propose_correction(SPIGOT, inches(0.5012), TENTH, FULL)
     assert found.change_mm == pytest.approx(-0.0012 * IN)
     assert found.offset_change_mm == pytest.approx(-0.0006 * IN)
-    assert found.expected_size == pytest.approx(0.5 * IN)
+    assert found.expected_size_mm == pytest.approx(0.5 * IN)
 
 
 def test_half_a_step_goes_half_way() -> None:
     found = propose_correction(SPIGOT, inches(0.5012), TENTH)
     assert found.change_mm == pytest.approx(-0.0006 * IN)
-    assert found.expected_size == pytest.approx(0.5006 * IN)
+    assert found.expected_size_mm == pytest.approx(0.5006 * IN)
 
 
 def test_a_bore_that_is_too_small_wants_more() -> None:
@@ -52,7 +52,7 @@ def test_a_bore_that_is_too_small_wants_more() -> None:
 def test_a_tool_at_x_negative_wants_the_other_sign() -> None:
     found = propose_correction(replace(SPIGOT, grows=-1), inches(0.5012), TENTH, FULL)
     assert found.change_mm == pytest.approx(0.0012 * IN)
-    assert found.expected_size == pytest.approx(0.5 * IN)
+    assert found.expected_size_mm == pytest.approx(0.5 * IN)
 
 
 def test_a_length_is_no_diameter() -> None:
@@ -62,7 +62,7 @@ def test_a_length_is_no_diameter() -> None:
     )
     found = propose_correction(length, [30.02], 0.001, FULL)
     assert [found.change_mm, found.offset_change_mm] == pytest.approx([0.02, 0.02])
-    assert found.expected_size == pytest.approx(30.0)
+    assert found.expected_size_mm == pytest.approx(30.0)
 
 
 def test_the_middle_of_a_one_sided_tolerance_is_aimed_at() -> None:
@@ -76,7 +76,7 @@ def test_the_newest_readings_count() -> None:
     sizes = inches(0.52 - 0.018, 0.502, 0.5002, 0.5003, 0.5004, 0.5005, 0.5006)
     found = propose_correction(SPIGOT, sizes, TENTH, FULL)
     assert found.reading_count == 5
-    assert found.mean_deviation == pytest.approx(0.5004 * IN)
+    assert found.mean_deviation_mm == pytest.approx(0.5004 * IN)
 
 
 def test_within_the_dead_band_nothing_is_changed() -> None:

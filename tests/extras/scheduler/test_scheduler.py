@@ -15,7 +15,7 @@ from typing import NamedTuple
 import pytest
 
 from app.cli.proofs import proof_work
-from app.cli.proofs.proof_work import VersionMismatchError, prove_packed
+from app.cli.proofs.proof_work import VersionMismatchError, prove_pickled
 from core.language.source import ProgramSource
 from tests.benchmarks.bench_folder import program
 from tests.cli.conftest import Turndesk, home, offsets, turndesk
@@ -119,4 +119,4 @@ def test_jobs_and_scheduler_exclude_each_other(turndesk: Turndesk, parts: Path) 
 def test_a_worker_with_another_turndesk_proves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(proof_work, "get_code_hash", lambda: "another")
     with pytest.raises(VersionMismatchError):
-        prove_packed(b"", "ours", ProgramSource("a.nc", "M30\n"))
+        prove_pickled(b"", "ours", ProgramSource("a.nc", "M30\n"))

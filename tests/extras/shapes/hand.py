@@ -31,7 +31,7 @@ class Programmer:
     """At the shapes of an empty program. ``strokes`` counts keys as a person strikes them."""
 
     def __init__(self, tools: dict[int, ToolShape] | None = None, text: str = "") -> None:
-        self.shop = ShopData(max_acceleration=3048.0, tools=tools or {})
+        self.shop = ShopData(max_acceleration_mm_s2=3048.0, tools=tools or {})
         self.shapes = ShapesModel(shop_data=self.shop)
         self.strokes = 0
         self.open(text)
@@ -40,7 +40,7 @@ class Programmer:
         """Shift+F3 in the editor: two keys."""
         self.strokes += 2
         self.shapes.read_shop_data = lambda: self.shop
-        said = self.shapes.open("x.nc", text, line)
+        said = self.shapes.open_for_text("x.nc", text, line)
         self.shapes.worker.wait_for_results(60.0)
         return said
 
@@ -76,7 +76,7 @@ class Programmer:
 def setup_of(offsets: dict[int, SecondaryOffset] | None = None, *, strict: bool = False) -> Setup:
     """All tools are touched off at one place."""
     places = {n: ToolOffset(12.7, -76.2) for n in range(1, 33)}
-    return create_setup(machine(), tool_offsets=places, secondary_offsets=offsets or {}, strict=strict)
+    return create_setup(machine(), tool_offsets=places, secondary_offsets=offsets or {}, is_strict=strict)
 
 
 def proved(

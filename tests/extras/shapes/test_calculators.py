@@ -40,7 +40,7 @@ def test_a_taper_is_written_and_told() -> None:
     one = fill_shape(TAPER_CALCULATOR, {"SMALL": 0.5, "LARGE": 1.0, "LONG": 1.0}, INCH)
     assert not said(one, INCH)
     assert one.make_lines(INCH) == ["X.5Z0", "X1Z-1"]
-    assert TAPER_CALCULATOR.says(one, INCH) == (
+    assert TAPER_CALCULATOR.make_notes(one, INCH) == (
         "slant length 1.0308",
         "included angle 28.0725°",
         wording("shapes.taper-ratio", ratio="1 : 2"),
@@ -80,7 +80,7 @@ def test_speed_says_the_depth_of_a_rough_pass(work: str, depth: str) -> None:
     typed: dict[str, FieldValue] = {"MATERIAL": "STEEL", "WORK": work, "DIA": 0.5}
     words = [
         each
-        for each in SPEED_CALCULATOR.says(fill_shape(SPEED_CALCULATOR, typed, INCH), INCH)
+        for each in SPEED_CALCULATOR.make_notes(fill_shape(SPEED_CALCULATOR, typed, INCH), INCH)
         if "rough" in each
     ]
     assert words == ([f"roughing passes {depth.removeprefix('0')} deep per side"] if depth else [])
@@ -109,7 +109,7 @@ def test_passes_of_a_thread() -> None:
     one = fill_shape(THREAD_CALCULATOR, {**own, "PASSES": 9.0}, INCH)
     assert one.get_number("FIRST") == pytest.approx(0.01)
     assert one.make_lines(INCH) == ["G33X.44Z-1I.02K.05C"]
-    told = THREAD_CALCULATOR.says(one, INCH)
+    told = THREAD_CALCULATOR.make_notes(one, INCH)
     assert told[:2] == (
         wording("shapes.thread-depth", depth=".03", first=".01"),
         wording("shapes.starts-at", value=".48"),
@@ -128,7 +128,7 @@ def test_passes_of_a_thread() -> None:
 
 def written(keys: str, text: str = "") -> str:
     shapes = ShapesModel(shop_data=ShopData())
-    assert shapes.open("x.nc", text, len(text.splitlines()), helpers=True) == ""
+    assert shapes.open_for_text("x.nc", text, len(text.splitlines()), lists_helpers=True) == ""
     shapes.worker.wait_for_results(60.0)
     for key in keys:
         assert shapes.handle_key(key), (key, shapes.prompt_text())
@@ -162,7 +162,7 @@ def test_a_shape_is_not_opened_from_the_calculators() -> None:
         "G90G94F300G72(HEAD INCH UNIT DIAMETER WORDS STEEL MATERIAL ON COOLANT 1 CLEAR 300 RAPID)\nM08\nM30\n"
     )
     shapes = ShapesModel(shop_data=ShopData())
-    shapes.open("x.nc", head, 1, helpers=True)
+    shapes.open_for_text("x.nc", head, 1, lists_helpers=True)
     assert shapes.is_list_shown
     assert not shapes.listed_pieces
     assert not shapes.accepts_key("x")
@@ -188,14 +188,16 @@ def test_a_tap_goes_in_and_out_at_its_pitch() -> None:
 def test_the_hole_before_a_tap() -> None:
     """M10: minor diameter of 6H from 8.376 to 8.676 (ISO 965-1); G 1/2: from 18.631 to 19.172 (ISO 228-1)."""
     one = fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M10", "DEEP": 12.0}, MM)
-    assert TAPPING_SHAPE.says(one, MM) == (
+    assert TAPPING_SHAPE.make_notes(one, MM) == (
         wording("shapes.hole-before-tapping", size="8.53", smallest="8.38", largest="8.68"),
         "tap drill: 8.5 mm",
     )
     assert one.get_number("PITCH") == 1.5
     pipe = fill_shape(TAPPING_SHAPE, {"SERIES": "BSP", "SIZE": "1/2", "DEEP": 15.0}, MM)
     limits = {"smallest": "18.63", "largest": "19.17"}
-    assert TAPPING_SHAPE.says(pipe, MM)[0] == wording("shapes.hole-before-tapping", size="18.9", **limits)
+    assert TAPPING_SHAPE.make_notes(pipe, MM)[0] == wording(
+        "shapes.hole-before-tapping", size="18.9", **limits
+    )
 
 
 DRILLS = {
@@ -232,25 +234,25 @@ DRILLS = {
 )
 def test_the_drill_before_a_tap_is_that_of_the_charts(series: str, size: str) -> None:
     setting = MM if series.startswith("M") else INCH
-    told = TAPPING_SHAPE.says(
+    told = TAPPING_SHAPE.make_notes(
         fill_shape(TAPPING_SHAPE, {"SERIES": series, "SIZE": size, "DEEP": 1.0}, setting), setting
     )[1]
     assert told.removeprefix("tap drill: ").split(" mm")[0].split(",")[0] == DRILLS[series][size]
 
 
 def test_a_drill_in_the_other_unit_is_told_with_its_size() -> None:
-    inch = TAPPING_SHAPE.says(
+    inch = TAPPING_SHAPE.make_notes(
         fill_shape(TAPPING_SHAPE, {"SERIES": "M", "SIZE": "M6", "DEEP": 0.5}, INCH), INCH
     )
-    metric = TAPPING_SHAPE.says(
+    metric = TAPPING_SHAPE.make_notes(
         fill_shape(TAPPING_SHAPE, {"SERIES": "UNC", "SIZE": "1/4", "DEEP": 12.0}, MM), MM
     )
     assert (inch[1], metric[1]) == ("tap drill: 5 mm, .1969", "tap drill: #7, 5.105")
 
 
 def test_no_drill_is_told_where_none_is_sold() -> None:
-    assert find_tap_drill(0.2015, 0.2028, metric=False) is None
-    assert find_tap_drill(60.0, 61.0, metric=True) is None
+    assert find_tap_drill(0.2015, 0.2028, is_metric=False) is None
+    assert find_tap_drill(60.0, 61.0, is_metric=True) is None
 
 
 @pytest.mark.parametrize(

@@ -20,7 +20,7 @@ from tests.extras.shapes.hand import Programmer, bad, proved
 from tests.texts import shows
 from tests.texts import text as wording
 
-SHOP = ShopData(max_acceleration=3048.0)
+SHOP = ShopData(max_acceleration_mm_s2=3048.0)
 PROFILE = (
     ContourPoint(0.0, 0.0),
     ContourPoint(0.5, chamfer=0.05),

@@ -116,7 +116,7 @@ def test_a_depth_by_material_insert_and_machine(
     ],
 )  # fmt: skip
 def test_a_depth_by_the_power_of_the_machine_file(stated: str, depth: float) -> None:
-    text = resources.machine_file("gt75.toml").replace("[spindle]\n", f"[spindle]\n{stated}\n", 1)
+    text = resources.read_machine_file("gt75.toml").replace("[spindle]\n", f"[spindle]\n{stated}\n", 1)
     shop = make_shop_data(parse_machine(text, "t"), {1: CNMG})
     now = replace(setting("STEEL"), shop=shop)
     assert propose_roughing_depth(now, 1, 2.0) == pytest.approx(depth)

@@ -14,14 +14,14 @@ from core.language.source import Dialect
 from tests.extras.shapes.test_sinumerik_shapes import NEAR, metal, strike
 from tests.texts import begins
 
-SHOP = ShopData(max_acceleration=3048.0, chuck_codes=(69, 68))
+SHOP = ShopData(max_acceleration_mm_s2=3048.0, chuck_codes=(69, 68))
 HEAD = "G54 G18 G90 G95 G710 DIAMON\n"
 
 
 def written(keys: str, text: str = "", name: str = "x.mpf", shop: ShopData = SHOP) -> tuple[str, str]:
     """The text with what one calculator or template writes before its end; and what is told instead."""
     shapes = ShapesModel(lambda: shop, ProgramSettings(metric=True), shop_data=shop)
-    assert shapes.open(name, text, max(1, len(text.splitlines())), helpers=True) == ""
+    assert shapes.open_for_text(name, text, max(1, len(text.splitlines())), lists_helpers=True) == ""
     shapes.worker.wait_for_results(60.0)
     strike(shapes, keys)
     said = "" if shapes.form is None else shapes.prompt_text()

@@ -29,7 +29,7 @@ from tests.sinumerik.lathe import LINEAR
 
 LIVE = load_shipped_machine("sinumerik-live")
 BARS = replace(LIVE, m_codes={68: ("collet", True), 69: ("collet", False)})
-SHOP = ShopData(max_acceleration=3000.0, max_c_rpm=400.0, chuck_codes=(69, 68))
+SHOP = ShopData(max_acceleration_mm_s2=3000.0, max_c_rpm=400.0, chuck_codes=(69, 68))
 NEW = ProgramSettings(dialect=Dialect.SINUMERIK)
 
 Typed = dict[str, FieldValue]

@@ -23,12 +23,12 @@ from core.part.stock_spec import parse_specification
 from core.part.tool_shape import ToolKind, ToolShape
 from core.proving.part_proof import prove_with_part
 from core.proving.program_tools import PartSettings
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 from tests.extras.shapes.hand import machine, setup_of
 from tests.sinumerik.lathe import LINEAR
 from tests.texts import text
 
-SHOP = ShopData(max_acceleration=3048.0)
+SHOP = ShopData(max_acceleration_mm_s2=3048.0)
 OURS, THEIRS = Dialect.SINUMERIK, Dialect.OMNITURN
 NEAR = 0.0001 * 25.4  # mm of a radius
 PROFILE = (
@@ -97,7 +97,7 @@ def source(text: list[str], dialect: Dialect) -> ProgramSource:
 def setup_in(dialect: Dialect, nose: float = 0.0, *, right: bool = False) -> Setup:
     """Tools at one place. In SINUMERIK D2 lies 2 mm from D1: to the face, of a ``right`` D1 to the chuck."""
     tools = {n: ToolOffset(50.0, 100.0, nose, 3) for n in range(1, 10)}
-    edges = {make_edge_key(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
+    edges = {make_row_number(n, 2): ToolOffset(50.0, 102.0 if right else 98.0, nose, 4) for n in tools}
     return (
         create_setup(LINEAR, tool_offsets=tools | edges, secondary_offsets={})
         if dialect is OURS
@@ -333,22 +333,22 @@ def strike(shapes: ShapesModel, keys: str) -> None:
 
 def test_the_forms_write_the_language_of_the_program(desk: ShapesModel) -> None:
     """Head and a hole by keys into a program whose name says SINUMERIK; the hole is opened again from it."""
-    assert desk.open("x.mpf", "M30\n", 1) == ""
+    assert desk.open_for_text("x.mpf", "M30\n", 1) == ""
     strike(desk, "n§d6⏎15§")
     lines = desk.text.splitlines()
     assert lines[0].startswith("G54 G18 G90 G95 G710 DIAMON ; HEAD ")
     assert lines[-3:] == ["G18", "G0 Z25", "M30"]
-    assert desk.open("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
+    assert desk.open_for_text("x.mpf", desk.text, lines.index("CYCLE81(2.5, 0, 1.25, -15)") + 1) == ""
     assert desk.form is not None
     assert desk.form.filled_shape.get_number("DEEP") == 15.0
 
 
 def test_a_program_without_a_head_asks_for_it(desk: ShapesModel) -> None:
-    assert desk.open("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
+    assert desk.open_for_text("x.mpf", "%_N_X_MPF\nM30\n", 1) == ""
     strike(desk, "d")
     assert (desk.form, "PRESS N" in desk.notice) == (None, True)
 
 
 def test_a_language_that_the_forms_do_not_write_is_refused(desk: ShapesModel) -> None:
     for helpers in (False, True):
-        assert desk.open("x.h", "", 1, helpers=helpers) == text("shapes.other-language")
+        assert desk.open_for_text("x.h", "", 1, lists_helpers=helpers) == text("shapes.other-language")

@@ -68,10 +68,10 @@ def sections(text: str, made: Made) -> np.ndarray:
         gathered.add_span(span)
 
     prove(ProgramSource("x.nc", text), setup_of(), machine(), on_span=see)
-    moves = gathered.collected_steps()
+    moves = gathered.make_program_steps()
     assert moves is not None
     history = PartHistory(moves)
-    near = history.at(history.block_count, 0.0).x_plus_half
+    near = history.at(history.last_block_number, 0.0).x_plus_half
     assert near is not None
     return np.stack([near.inner_radii, near.outer_radii])
 

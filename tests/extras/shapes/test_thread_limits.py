@@ -13,10 +13,10 @@ from core.extras.shapes.threads.thread_series import (
     METRIC_SERIES,
     ThreadLimits,
     ThreadSeries,
-    calculate_limits,
-    find_size,
+    calculate_thread_limits,
+    find_thread_size,
     get_pipe_thread_length,
-    list_classes,
+    list_tolerance_classes,
 )
 from core.interpreter.shared.elementary_blocks import BlockKind
 from core.part.tool_shape import ToolKind, ToolShape
@@ -70,9 +70,9 @@ INSIDE = [
 
 
 def of(series: ThreadSeries, name: str, tolerance: str, *, inside: bool) -> ThreadLimits:
-    found = find_size(series, name)
+    found = find_thread_size(series, name)
     assert found is not None
-    return calculate_limits(series, found, tolerance, is_inside=inside)
+    return calculate_thread_limits(series, found, tolerance, is_inside=inside)
 
 
 def rounding(series: ThreadSeries) -> float:
@@ -109,7 +109,7 @@ def test_the_minor_diameter_of_half_inch_13_class_3b() -> None:
 def test_taper_pipe_at_its_small_end() -> None:
     """B1.20.1: E0 and K0 of 1/4-18 and 1/2-14, and L2."""
     for name, pitch, minor, long in (("1/4", 0.47739, 0.4329, 0.4018), ("1/2", 0.75843, 0.7013, 0.5337)):
-        found, known = of(ThreadSeries.NPT, name, "", inside=False), find_size(ThreadSeries.NPT, name)
+        found, known = of(ThreadSeries.NPT, name, "", inside=False), find_thread_size(ThreadSeries.NPT, name)
         assert known is not None
         assert found.pitch_diameter[0] == pytest.approx(pitch, abs=0.00002)
         assert found.root_diameter == pytest.approx(minor, abs=0.0001)
@@ -119,7 +119,7 @@ def test_taper_pipe_at_its_small_end() -> None:
 def test_how_long_a_taper_pipe_thread_is_useful() -> None:
     """ISO 7-1, basic gauge length: 1/8, 1/2, 1 and 2."""
     for name, long in (("1/8", 6.5), ("1/2", 13.2), ("1", 16.8), ("2", 23.4)):
-        known = find_size(ThreadSeries.BSPT, name)
+        known = find_thread_size(ThreadSeries.BSPT, name)
         assert known is not None
         assert get_pipe_thread_length(ThreadSeries.BSPT, known) == pytest.approx(long, abs=0.06)
 
@@ -137,20 +137,20 @@ def test_a_parallel_pipe_thread_goes_to_the_middle_of_its_limits(
 def test_the_nose_counts_in_a_pipe_thread_too() -> None:
     """G 1/2 class A, pitch 19.722: half of .9605 P behind the pitch line a point would end, and a nose of
     .2 lacks .2 (1 / sin 27.5 - 1) of that."""
-    size = find_size(ThreadSeries.BSP, "1/2")
+    size = find_thread_size(ThreadSeries.BSP, "1/2")
     assert size is not None
-    found = calculate_limits(ThreadSeries.BSP, size, "A", is_inside=False, nose_radius=0.2)
+    found = calculate_thread_limits(ThreadSeries.BSP, size, "A", is_inside=False, nose_radius=0.2)
     lack = 0.2 * (1.0 / math.sin(math.radians(27.5)) - 1.0)
     assert found.root_diameter == pytest.approx(19.722 - 0.960491 * 25.4 / 14 + 2 * lack, abs=0.001)
 
 
 def test_the_tool_goes_as_deep_as_its_nose_asks() -> None:
     """Of a sharp V half of its height lies behind the pitch line, and a nose of radius r lacks r of that."""
-    size = find_size(ThreadSeries.UNC, "1/2")
+    size = find_thread_size(ThreadSeries.UNC, "1/2")
     assert size is not None
-    sharp = calculate_limits(ThreadSeries.UNC, size, "2A", is_inside=False, nose_radius=1e-9)
-    usual = calculate_limits(ThreadSeries.UNC, size, "2A", is_inside=False)
-    nosed = calculate_limits(ThreadSeries.UNC, size, "2A", is_inside=False, nose_radius=0.005)
+    sharp = calculate_thread_limits(ThreadSeries.UNC, size, "2A", is_inside=False, nose_radius=1e-9)
+    usual = calculate_thread_limits(ThreadSeries.UNC, size, "2A", is_inside=False)
+    nosed = calculate_thread_limits(ThreadSeries.UNC, size, "2A", is_inside=False, nose_radius=0.005)
     assert sharp.root_diameter == pytest.approx(0.4460 - 0.866025 / 13, abs=0.0001)
     assert nosed.root_diameter - sharp.root_diameter == pytest.approx(0.010, abs=1e-6)
     assert sharp.root_diameter < nosed.root_diameter < usual.root_diameter
@@ -158,20 +158,20 @@ def test_the_tool_goes_as_deep_as_its_nose_asks() -> None:
 
 def test_names_as_people_type_them() -> None:
     for name in ("1/2", "1/2-13", " 1/2-13 "):
-        found = find_size(ThreadSeries.UNC, name)
+        found = find_thread_size(ThreadSeries.UNC, name)
         assert found is not None
         assert found.diameter == 0.5
-    ten = find_size(ThreadSeries.UNF, "#10")
+    ten = find_thread_size(ThreadSeries.UNF, "#10")
     assert ten is not None
     assert ten.diameter == pytest.approx(0.190)
-    fine = find_size(ThreadSeries.MF, "m10x1.25")
+    fine = find_thread_size(ThreadSeries.MF, "m10x1.25")
     assert fine is not None
     assert (fine.diameter, fine.pitch) == (10.0, 1.25)
-    assert find_size(ThreadSeries.UNC, "7/13") is None
+    assert find_thread_size(ThreadSeries.UNC, "7/13") is None
 
 
 def test_one_inch_is_not_number_one() -> None:
-    inch, number = find_size(ThreadSeries.UNC, "1"), find_size(ThreadSeries.UNC, "#1")
+    inch, number = find_thread_size(ThreadSeries.UNC, "1"), find_thread_size(ThreadSeries.UNC, "#1")
     assert inch is not None
     assert number is not None
     assert (inch.diameter, number.diameter) == (1.0, pytest.approx(0.073))
@@ -192,7 +192,7 @@ def test_a_class_of_the_other_side_is_refused() -> None:
     assert [each.text for each in one.find_errors(ProgramSettings())] == [
         wording("shapes.no-such-class", tolerance="2B", allowed="2A, 1A, 3A")
     ]
-    assert list_classes(ThreadSeries.UNC, is_inside=False) == ("2A", "1A", "3A")
+    assert list_tolerance_classes(ThreadSeries.UNC, is_inside=False) == ("2A", "1A", "3A")
 
 
 def test_a_metric_thread_in_an_inch_program() -> None:
@@ -272,7 +272,7 @@ def test_a_thread_of_its_own_figures_has_the_angle_of_its_tool() -> None:
 
 def test_what_a_thread_is_measured_by() -> None:
     """ASME B1.1, 1/2-13: 2A outside, 2B in a bore; M10 of 6g in mm (ISO 965-2)."""
-    says = SHAPES_BY_KEY["R"].says
+    says = SHAPES_BY_KEY["R"].make_notes
     assert says(thread({"SIZE": "1/2", "LONG": 0.5}), ProgramSettings()) == (
         "major diameter .4876 to .4985, pitch diameter .4435 to .4485",
     )
@@ -287,7 +287,7 @@ def test_what_a_thread_is_measured_by() -> None:
 
 def test_the_cone_before_a_pipe_thread() -> None:
     """1/2-14 NPT: E0 .7584 and .8 / 14 to the crest; 1 in 16 over the .5337 of L2 (B1.20.1)."""
-    assert SHAPES_BY_KEY["R"].says(thread({"SERIES": "NPT", "SIZE": "1/2"}), ProgramSettings()) == (
+    assert SHAPES_BY_KEY["R"].make_notes(thread({"SERIES": "NPT", "SIZE": "1/2"}), ProgramSettings()) == (
         wording("shapes.pitch-diameter", size=".7584"),
         wording("shapes.taper-before-thread", start=".8156", end=".849"),
     )
@@ -295,7 +295,7 @@ def test_the_cone_before_a_pipe_thread() -> None:
 
 def test_nothing_is_told_of_a_thread_of_its_own_figures() -> None:
     own: dict[str, float | str] = {"SERIES": "OWN", "PITCH": 0.05, "CREST": 0.5, "ROOT": 0.44, "LONG": 0.5}
-    assert SHAPES_BY_KEY["R"].says(thread(own), ProgramSettings()) == ()
+    assert SHAPES_BY_KEY["R"].make_notes(thread(own), ProgramSettings()) == ()
 
 
 def test_every_start_of_a_tapered_thread_lies_on_the_same_cone() -> None:

@@ -36,7 +36,7 @@ def prepare(desk: Desk, journal: Journal, folder: Path) -> None:
         better.write_bytes(better.read_bytes().replace(b"G95F.008", b"G95F.010"))
         other.synchronize()
     made.synchronize()
-    before = desk.page_registry.find(SharingModel)
+    before = desk.page_registry.find_model(SharingModel)
     if before is not None:
         before.close()
     desk.page_registry.attach_model(SharingModel(desk, made))

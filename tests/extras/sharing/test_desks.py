@@ -16,7 +16,7 @@ from app.programs import atomic_files
 from app.programs.atomic_files import FileOperationError
 from core.extras.sharing.shared_location import PublishedVersion, SharingError
 from core.extras.sharing.shared_versions import ProgramVersions, SharedVersion
-from core.extras.sharing.version_record import MachineState
+from core.extras.sharing.version_record import PublishedMachineState
 from tests.coded import raises_code
 from tests.extras.sharing.conftest import MakeDesk
 from tests.extras.sharing.rigs import PowerCut, Rig
@@ -338,7 +338,7 @@ def test_a_restore_in_the_middle_of_a_look_is_told_and_ends_nothing(
     (folder_of(one) / "PART.NC").unlink()
     store, put = one._store(), one.location.publish
 
-    def closed_meanwhile(versions: Sequence[PublishedVersion], state: MachineState) -> None:
+    def closed_meanwhile(versions: Sequence[PublishedVersion], state: PublishedMachineState) -> None:
         put(versions, state)
         store.close()
 

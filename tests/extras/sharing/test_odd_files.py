@@ -72,7 +72,7 @@ def test_a_pipe_in_the_place_of_a_version_is_put_aside(place: SharedFolder, tmp_
     os.mkfifo(path)
     assert in_time(lambda: cause_of(place.read_text, one.version))[0] is SharingErrorCause.DAMAGED
     in_time(lambda: place.publish([one], state()))
-    assert place.read_text(one.version) == one.text
+    assert place.read_text(one.version) == one.program_text
 
 
 @pytest.mark.parametrize("name", [f"{VERSIONS}/{'a' * 64}.version", f"{DESKS}/{HOME}.json"])

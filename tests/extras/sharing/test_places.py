@@ -18,7 +18,7 @@ from core.extras.sharing.shared_location import (
     SharingError,
     SharingErrorCause,
 )
-from core.extras.sharing.version_record import MachineState, make_version
+from core.extras.sharing.version_record import PublishedMachineState, make_version
 from tests.extras.sharing.rigs import PostgresRig, PowerCut, Rig, rig_of
 
 AT = "2026-01-02T03:04:05.678Z"
@@ -30,8 +30,10 @@ def published(number: int, program: str = "PART.NC") -> PublishedVersion:
     return PublishedVersion(make_version(program, text, (), "LATHE 1", AT, "saved"), text)
 
 
-def state(*versions: PublishedVersion) -> MachineState:
-    return MachineState(HOME, "LATHE 1", AT, {each.version.program: each.version.id for each in versions})
+def state(*versions: PublishedVersion) -> PublishedMachineState:
+    return PublishedMachineState(
+        HOME, "LATHE 1", AT, {each.version.program: each.version.id for each in versions}
+    )
 
 
 def cause_of(call: object, *args: object) -> tuple[SharingErrorCause, str]:
@@ -50,7 +52,7 @@ def test_what_one_desk_publishes_another_finds_and_reads(rig: Rig) -> None:
     assert set(found.unknown_versions) == {one.version, two.version}
     assert found.stored_ids == {one.version.id, two.version.id}
     assert found.machine_states == (state(one, two),)
-    assert [other.read_text(each.version) for each in (one, two)] == [one.text, two.text]
+    assert [other.read_text(each.version) for each in (one, two)] == [one.program_text, two.program_text]
 
 
 def test_what_is_known_is_told_as_there_and_not_read_again(rig: Rig) -> None:
@@ -74,7 +76,7 @@ def test_publishing_the_same_again_changes_nothing(rig: Rig) -> None:
 def test_a_desk_tells_another_state_in_the_place_of_its_own(rig: Rig) -> None:
     one, place = published(1), rig.place()
     place.publish([one], state(one))
-    other = MachineState("f" * 32, "LATHE 2", AT, {})
+    other = PublishedMachineState("f" * 32, "LATHE 2", AT, {})
     rig.place(2).publish([], other)
     place.publish([], state())
     desks = {each.machine_id: each for each in rig.place(2).read_contents({}).machine_states}
@@ -142,7 +144,7 @@ def test_cut_in_the_middle_of_publishing_each_version_is_whole_or_not_there(
     after = rig.place(2).read_contents({})
     assert {each.id for each in after.unknown_versions} == {each.version.id for each in (first, *more)}
     assert after.machine_states == (state(*more),)
-    assert [rig.place(2).read_text(each.version) for each in more] == [each.text for each in more]
+    assert [rig.place(2).read_text(each.version) for each in more] == [each.program_text for each in more]
 
 
 def test_a_text_that_is_not_there_is_refused(rig: Rig) -> None:
@@ -208,7 +210,7 @@ def test_a_version_that_was_cut_off_on_the_disk_is_no_version_and_comes_again(fo
     assert place.read_contents({}).foreign_items == (file.name,)
     assert cause_of(place.read_text, one.version)[0] is SharingErrorCause.DAMAGED
     place.publish([one], state(one))
-    assert place.read_text(one.version) == one.text
+    assert place.read_text(one.version) == one.program_text
     assert place.read_contents({}).foreign_items == (
         f"{file.name}.damaged",
     )  # what was there is not lost either

@@ -32,7 +32,7 @@ class Shop:
             self.sharing(number, f'folder = "{folder / "shop"}"\ndesk = "LATHE {number}"\n')
 
     def sharing(self, number: int, table: str) -> None:
-        text = resources.machine_file("gt75.toml") + f"\n[sharing]\n{table}"
+        text = resources.read_machine_file("gt75.toml") + f"\n[sharing]\n{table}"
         (self.folder / f"lathe{number}.toml").write_text(text)
 
     def program(self, number: int, name: str) -> Path:
@@ -145,14 +145,14 @@ def test_a_machine_file_without_a_place(turndesk: Turndesk) -> None:
 )
 def test_tables_that_are_refused(table: str, code: str, value: str) -> None:
     with raises_code(MachineFileError, code, value):
-        parse_machine(resources.machine_file("gt75.toml") + f"[sharing]\n{table}\n", "m.toml")
+        parse_machine(resources.read_machine_file("gt75.toml") + f"[sharing]\n{table}\n", "m.toml")
 
 
 def test_machine_check_has_a_row_for_the_place(shop: Shop) -> None:
     shop.share(1, "publish")
     for name, state in (("shop", "ok"), ("gone", "no answer")):
         table = f'[sharing]\nfolder = "{shop.folder / name}"\n'
-        machine = parse_machine(resources.machine_file("gt75.toml") + table, "m.toml")
+        machine = parse_machine(resources.read_machine_file("gt75.toml") + table, "m.toml")
         (row,) = (row for row in check_machine(machine).rows if row.name == "sharing")
         assert (row.state, "LATHE 1" in row.detail) == (state, state == "ok")
 

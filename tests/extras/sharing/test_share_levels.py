@@ -20,7 +20,7 @@ pytestmark = pytest.mark.usefixtures("any_pin")
 def test_a_shared_program_has_the_name_in_the_log(say: Say, people: None, home: Path, tmp_path: Path) -> None:
     (tmp_path / "shop").mkdir()
     table = f'[sharing]\nfolder = "{tmp_path / "shop"}"\ndesk = "LATHE 1"\n'
-    (tmp_path / "own.toml").write_text(f"{resources.machine_file('gt75.toml')}\n{table}")
+    (tmp_path / "own.toml").write_text(f"{resources.read_machine_file('gt75.toml')}\n{table}")
     named = ("--machine", tmp_path / "own.toml", "--as")
     assert say("share", "begin", *named, "ben")[0] == 2
     assert say("share", "begin", *named, "anna")[0] == 0
@@ -36,7 +36,7 @@ def test_a_shared_program_is_taken_from_setup_on(
 ) -> None:
     file, shop = tmp_path / "lathe.toml", tmp_path / "shop"
     shop.mkdir()
-    file.write_text(resources.machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
+    file.write_text(resources.read_machine_file("gt75.toml") + f'\n[sharing]\nfolder = "{shop}"\n')
     assert say("share", "begin", "--machine", file, "--as", "anna")[0] == 0
     status, told = say("share", "take", "peg.nc", "--machine", file)
     assert (status, codes(refusals)) == (2, ["unknown-person"])

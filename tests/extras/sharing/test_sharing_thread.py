@@ -24,12 +24,12 @@ class Dead:
 def test_a_look_that_hangs_is_counted_until_it_ends() -> None:
     now, dead, heard = [100.0], Dead(), threading.Event()
     thread = SharingThread(cast("ProgramSharing", dead), 3600.0, lambda _shared: heard.set(), lambda: now[0])
-    assert thread.get_waiting_time() == 0.0
+    assert thread.get_waiting_time_s() == 0.0
     thread.start()
     assert dead.asked.wait(60.0)
     now[0] = 140.0
-    assert thread.get_waiting_time() == 40.0
+    assert thread.get_waiting_time_s() == 40.0
     dead.answers.set()
     assert heard.wait(60.0)
-    assert thread.get_waiting_time() == 0.0
+    assert thread.get_waiting_time_s() == 0.0
     thread.close()

@@ -6,18 +6,18 @@ from pathlib import Path
 
 import pytest
 
-from core.extras.tool_tables.csv_table import written
-from core.extras.tool_tables.tool_entry import Reading, ToolTableError
+from core.extras.tool_tables.csv_table import format_table
+from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTableError
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
 
-RADIUS = Reading(unit="in", x="radius")
+RADIUS = ReadingOptions(unit="in", x_meaning="radius")
 
 
 def test_headings_of_a_lathe_are_recognized(tmp_path: Path) -> None:
     text = "Tool,Description,X Offset,Z Offset,Tip Radius,Tip Direction,X Wear\n3,rough,1.5,-2,.0156,3,.001\n"
     table = table_of(tmp_path, "a.csv", text, RADIUS)
-    assert table.tools[3].offset == {
+    assert table.tools[3].offset_values == {
         "x": pytest.approx(38.1),
         "z": pytest.approx(-50.8),
         "nose_radius": pytest.approx(0.39624),
@@ -29,28 +29,33 @@ def test_headings_of_a_lathe_are_recognized(tmp_path: Path) -> None:
 
 def test_a_diameter_is_halved(tmp_path: Path) -> None:
     text = "T,X,Z\nT1,3,1\n"
-    assert tool_of(tmp_path, "a.csv", text, Reading("in", "diameter")).offset["x"] == pytest.approx(38.1)
+    assert tool_of(tmp_path, "a.csv", text, ReadingOptions("in", "diameter")).offset_values[
+        "x"
+    ] == pytest.approx(38.1)
     text = "T,X Dia (mm),Z (mm),Nose diameter (mm)\n1,30,10,0.8\n"
-    offset = tool_of(tmp_path, "a.csv", text, Reading()).offset
+    offset = tool_of(tmp_path, "a.csv", text, ReadingOptions()).offset_values
     assert offset == {"x": 15.0, "z": 10.0, "nose_radius": 0.4}
 
 
 def test_columns_are_assigned(tmp_path: Path) -> None:
     columns = {"number": "pos", "x": "Dia", "z": "Length"}
     text = "Pos;Dia;Length;X\n7;76,2;-50,8;99\n"
-    tool = tool_of(tmp_path, "a.csv", text, Reading("mm", "", columns))
-    assert (tool.number, dict(tool.offset)) == (7, {"x": 38.1, "z": -50.8})
+    tool = tool_of(tmp_path, "a.csv", text, ReadingOptions("mm", "", columns))
+    assert (tool.number, dict(tool.offset_values)) == (7, {"x": 38.1, "z": -50.8})
 
 
 def test_a_unit_in_the_heading_precedes_the_option(tmp_path: Path) -> None:
     text = "T,X radius [in],Z (mm)\n1,1,10\n"
-    assert dict(tool_of(tmp_path, "a.csv", text, Reading("mm")).offset) == {"x": 25.4, "z": 10.0}
+    assert dict(tool_of(tmp_path, "a.csv", text, ReadingOptions("mm")).offset_values) == {
+        "x": 25.4,
+        "z": 10.0,
+    }
 
 
 def test_shapes_are_read(tmp_path: Path) -> None:
     text = "T\tKind\tHand\tInsert\tHolder\tStick out\n5\tBoring\tL\tCCMT 060204\tS16R-SCLCL06\t2\n"
     tool = tool_of(tmp_path, "a.csv", text, RADIUS)
-    assert tool.shape == {
+    assert tool.shape_values == {
         "kind": "boring",
         "hand": "left",
         "insert": "CCMT 060204",
@@ -61,7 +66,7 @@ def test_shapes_are_read(tmp_path: Path) -> None:
 
 def test_quotes_line_ends_and_byte_order_marks(tmp_path: Path) -> None:
     text = b'\xef\xbb\xbf"T","Remark"\r\n"2","one, ""two"""\r\n\r\n'
-    assert tool_of(tmp_path, "a.csv", text, RADIUS).offset == {"remark": 'one, "two"'}
+    assert tool_of(tmp_path, "a.csv", text, RADIUS).offset_values == {"remark": 'one, "two"'}
 
 
 @pytest.mark.parametrize(
@@ -100,12 +105,12 @@ def test_x_without_radius_or_diameter_is_asked(tmp_path: Path) -> None:
 
 def test_a_unit_that_is_not_specified_is_asked(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
-        table_of(tmp_path, "a.csv", "T,Z\n1,1\n", Reading())
+        table_of(tmp_path, "a.csv", "T,Z\n1,1\n", ReadingOptions())
 
 
 def test_an_assigned_column_that_does_not_exist(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unknown-column", "did you mean Diam"):
-        table_of(tmp_path, "a.csv", "T,Diam\n1,1\n", Reading("in", "", {"x": "Dia"}))
+        table_of(tmp_path, "a.csv", "T,Diam\n1,1\n", ReadingOptions("in", "", {"x": "Dia"}))
 
 
 def test_a_binary_table_of_mach_is_named(tmp_path: Path) -> None:
@@ -115,7 +120,7 @@ def test_a_binary_table_of_mach_is_named(tmp_path: Path) -> None:
 
 def test_a_text_table_of_mach(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "tools.dat", "Tool,Name,X Offset,Z Offset\n1,rough,1,2\n", RADIUS)
-    assert tool.offset["remark"] == "rough"
+    assert tool.offset_values["remark"] == "rough"
 
 
 def test_a_table_without_end(tmp_path: Path) -> None:
@@ -130,11 +135,11 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
         "2,1,-1,,7,drill,,,.25,2,118,,drill\n"
     )
     tools = table_of(tmp_path, "a.csv", text).tools
-    out = written(tools.values(), "mm")
+    out = format_table(tools.values(), "mm")
     assert "\n1,38.1" in out
     assert ", =HYPERLINK" in out  # no formula for a spreadsheet
-    again = table_of(tmp_path, "b.csv", out, Reading()).tools
+    again = table_of(tmp_path, "b.csv", out, ReadingOptions()).tools
     assert again.keys() == tools.keys()
     for number, tool in tools.items():
-        assert again[number].offset == pytest.approx(tool.offset, abs=2e-6)
-        assert again[number].shape == pytest.approx(tool.shape, abs=2e-6)
+        assert again[number].offset_values == pytest.approx(tool.offset_values, abs=2e-6)
+        assert again[number].shape_values == pytest.approx(tool.shape_values, abs=2e-6)

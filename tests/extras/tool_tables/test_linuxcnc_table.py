@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from core.extras.tool_tables.linuxcnc_table import written
-from core.extras.tool_tables.tool_entry import Reading, ToolTableError
+from core.extras.tool_tables.linuxcnc_table import format_table
+from core.extras.tool_tables.tool_entry import ReadingOptions, ToolTableError
 from core.tool_edges import TIP_DIRECTIONS
 from tests.coded import raises_code
 from tests.extras.tool_tables.hand import table_of, tool_of
@@ -16,19 +16,23 @@ from tests.extras.tool_tables.hand import table_of, tool_of
 def test_a_line_in_inches(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T3 P3 X1.5 Z-2 D0.0312 I85 J25 Q2 ;roughing\n")
     assert tool.number == 3
-    assert tool.offset == {
+    assert tool.offset_values == {
         "x": pytest.approx(38.1),
         "z": pytest.approx(-50.8),
         "nose_radius": pytest.approx(0.39624),  # half of .0312 in
         "quadrant": 3,
         "remark": "roughing",
     }
-    assert tool.shape == {}
+    assert tool.shape_values == {}
 
 
 def test_millimeters_and_points_first(tmp_path: Path) -> None:
-    tool = tool_of(tmp_path, "a.tbl", "T1 P1 X.5 Z+1. D.8\r\n", Reading(unit="mm"))
-    assert (tool.offset["x"], tool.offset["z"], tool.offset["nose_radius"]) == (0.5, 1.0, 0.4)
+    tool = tool_of(tmp_path, "a.tbl", "T1 P1 X.5 Z+1. D.8\r\n", ReadingOptions(unit="mm"))
+    assert (tool.offset_values["x"], tool.offset_values["z"], tool.offset_values["nose_radius"]) == (
+        0.5,
+        1.0,
+        0.4,
+    )
 
 
 @pytest.mark.parametrize(
@@ -40,18 +44,23 @@ def test_the_tip_points_as_in_the_compensation_of_linuxcnc(
 ) -> None:
     """LinuxCNC subtracts the radius from X for 1, 2 and 6, and from Z for 2, 3 and 7."""
     tool = tool_of(tmp_path, "a.tbl", f"T1 X1 Z1 D.03 Q{orientation}\n")
-    assert TIP_DIRECTIONS[int(tool.offset["quadrant"])] == (z, x)
+    assert TIP_DIRECTIONS[int(tool.offset_values["quadrant"])] == (z, x)
 
 
 def test_codes_in_the_remark_are_the_shape(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T1 P1 X1 Z1 D.0315 Q2 ;OD CNMG 431 MCLNR-124B\n")
-    assert tool.shape == {"kind": "turning", "hand": "right", "insert": "CNMG431", "holder": "MCLNR-124B"}
+    assert tool.shape_values == {
+        "kind": "turning",
+        "hand": "right",
+        "insert": "CNMG431",
+        "holder": "MCLNR-124B",
+    }
     assert tool.notes == ()  # 1/64 in is half of .0315 in
 
 
 def test_a_radius_entered_as_diameter_is_noted(tmp_path: Path) -> None:
-    tool = tool_of(tmp_path, "a.tbl", "T1 D.8 ;CNMG120408\n", Reading(unit="mm"))
-    assert tool.offset["nose_radius"] == 0.4
+    tool = tool_of(tmp_path, "a.tbl", "T1 D.8 ;CNMG120408\n", ReadingOptions(unit="mm"))
+    assert tool.offset_values["nose_radius"] == 0.4
     (note,) = tool.notes
     assert "0.400" in note
     assert "0.800" in note
@@ -59,19 +68,21 @@ def test_a_radius_entered_as_diameter_is_noted(tmp_path: Path) -> None:
 
 def test_a_drill_has_a_diameter_and_no_nose(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T4 Z2 X1 D.25 ;1/4 drill\n")
-    assert tool.shape == {"kind": "drill", "diameter": pytest.approx(6.35)}
-    assert "nose_radius" not in tool.offset
+    assert tool.shape_values == {"kind": "drill", "diameter": pytest.approx(6.35)}
+    assert "nose_radius" not in tool.offset_values
 
 
 def test_a_tool_at_zero_is_not_measured(tmp_path: Path) -> None:
     tool = tool_of(tmp_path, "a.tbl", "T1 P1 X0 Z0 A0 B0 C0 U0 V0 W0 D.03 I0 J0 Q2 ;rem\n")
-    assert tool.offset.keys() == {"nose_radius", "quadrant", "remark"}
+    assert tool.offset_values.keys() == {"nose_radius", "quadrant", "remark"}
     assert len(tool.notes) == 1
 
 
 def test_only_some_tools_are_read(tmp_path: Path) -> None:
     text = "T1 X1 Z1\nT2 X1 Z1\nT10001 X1 Z1\n"
-    table = table_of(tmp_path, "a.tbl", text, Reading(unit="in", only=frozenset({2, 3})))
+    table = table_of(
+        tmp_path, "a.tbl", text, ReadingOptions(unit="in", selected_tool_numbers=frozenset({2, 3}))
+    )
     assert list(table.tools) == [2]
 
 
@@ -112,8 +123,10 @@ def test_rejected_lines(tmp_path: Path, text: str, code: str, place: str) -> Non
 
 def test_a_unit_that_is_not_specified_is_asked_once(tmp_path: Path) -> None:
     with raises_code(ToolTableError, "unit-missing", "--unit"):
-        table_of(tmp_path, "a.tbl", "T1 X1 Z1\nT2 X1 Z1\n", Reading())
-    assert list(table_of(tmp_path, "a.tbl", "T1 P1 Q2 X0\n", Reading()).tools) == [1]  # without a length
+        table_of(tmp_path, "a.tbl", "T1 X1 Z1\nT2 X1 Z1\n", ReadingOptions())
+    assert list(table_of(tmp_path, "a.tbl", "T1 P1 Q2 X0\n", ReadingOptions()).tools) == [
+        1
+    ]  # without a length
 
 
 def test_many_mistakes_are_one_short_error(tmp_path: Path) -> None:
@@ -142,8 +155,10 @@ def test_what_is_written_is_read_again(tmp_path: Path) -> None:
     text = "T3 X1.5 Z-2 D.0315 Q2 ;CNMG431 rough\nT4 X1 Z2 D.25 Q7 ;drill\nT5 X2 Z1 D.02 Q9\n"
     tools = table_of(tmp_path, "a.tbl", text).tools
     for unit in ("in", "mm"):
-        again = table_of(tmp_path, "b.tbl", written(tools.values(), unit), Reading(unit=unit)).tools
+        again = table_of(
+            tmp_path, "b.tbl", format_table(tools.values(), unit), ReadingOptions(unit=unit)
+        ).tools
         assert again.keys() == tools.keys()
         for number, tool in tools.items():
-            assert again[number].offset == pytest.approx(tool.offset, abs=2e-5)
-            assert again[number].shape == pytest.approx(tool.shape, abs=2e-5)
+            assert again[number].offset_values == pytest.approx(tool.offset_values, abs=2e-5)
+            assert again[number].shape_values == pytest.approx(tool.shape_values, abs=2e-5)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.extras.tool_tables.import_command import IMPORT
+from app.extras.tool_tables.import_command import IMPORT_OUTPUT
 from core.access.access_table import AccessLevel
 from core.message import CodedError
 from core.store.store import Store
@@ -118,7 +118,7 @@ def test_json_is_a_preview(turndesk: Turndesk, table: Path, home: Path) -> None:
     assert {"table": "tool", "field": "x", "old": 1.0, "new": 1.5} in first["changes"]
     assert (first["saved"], second["status"], bool(second["notes"])) == (False, "left-out", True)
     assert rows(home)[0][1].x == 25.4
-    declared_alone([told], IMPORT.keys)
+    declared_alone([told], IMPORT_OUTPUT.keys)
 
 
 def test_json_with_yes_saves(turndesk: Turndesk, table: Path, home: Path) -> None:

@@ -76,7 +76,7 @@ def test_what_starts_is_told_and_coolant_only_as_chosen() -> None:
         if isinstance(step, FunctionStep)
     ]
     assert told == [SpindleRun(800.0, None), CoolantSwitch(True)]
-    without = make_lathe_start(FOUND, STANDS, OperatorChoices(coolant=False))
+    without = make_lathe_start(FOUND, STANDS, OperatorChoices(uses_coolant=False))
     assert not without.checkpoint.modal.coolant
     assert "M08" not in order(without.approach)
 

@@ -50,10 +50,10 @@ def check(source: ProgramSource, given: Setup) -> int:
             rest = full[len(full) - len(again) :]
             again = [replace(block, n=0) for block in again]
             rest = [replace(block, n=0) for block in rest]
-        assert [told(block) for block in again] == [told(block) for block in rest], found.line
+        assert [told(block) for block in again] == [told(block) for block in rest], found.line_number
         once = found.visit.visit_count == 1 and not found.visit.enclosing_levels
-        assert not (again and once) or again[0].line >= found.line or again[0].line in _called(source)
-    return len({found.line for found in good})
+        assert not (again and once) or again[0].line >= found.line_number or again[0].line in _called(source)
+    return len({found.line_number for found in good})
 
 
 def _called(source: ProgramSource) -> set[int]:

@@ -23,7 +23,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.shared.job_setup import Setup, ToolOffset, ZeroOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.language.source import ProgramSource
-from core.tool_edges import make_edge_key
+from core.tool_edges import make_row_number
 from tests.texts import text
 
 PLATE = """\
@@ -133,12 +133,12 @@ def told(block: Block) -> tuple[object, ...]:
 
 
 def whole(of: tuple[SharedProgram, Setup]) -> list[Block]:
-    return list(of[0].start_pass(of[1]).generate_blocks(to_first_error=True))
+    return list(of[0].start_pass(of[1]).generate_blocks(stops_at_first_error=True))
 
 
 def restarted(of: tuple[SharedProgram, Setup], begin: PassStart, start: tuple[float, ...]) -> list[Block]:
     run = of[0].start_pass(replace(of[1], start=start, begin=begin))
-    blocks = list(run.generate_blocks(to_first_error=True))
+    blocks = list(run.generate_blocks(stops_at_first_error=True))
     assert not run.has_errors, run.diagnostics
     return blocks
 
@@ -318,7 +318,7 @@ def test_on_a_lathe_what_was_left_out_is_no_matter_of_heights() -> None:
     cut = next(each for each in whole(of) if each.line == 3)
     found = searched(of, 7, broken=Interruption(cut.n, 1, (30.0, -10.0, 0.0), cut.n))
     assert isinstance(found, RestartPoint), found
-    assert (found.line, found.checkpoint.x, found.checkpoint.z) == (7, 40.0, -30.0)
+    assert (found.line_number, found.checkpoint.x, found.checkpoint.z) == (7, 40.0, -30.0)
 
 
 def test_comments_and_lines_behind_the_end_are_told_apart() -> None:
@@ -369,7 +369,7 @@ M30
 
 def edged(program: str = CONTOUR) -> tuple[SharedProgram, Setup]:
     reading, around = lathe(program)
-    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), make_edge_key(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
+    tools = {1: ToolOffset(30.0, 40.0, 0.8, 3), make_row_number(1, 2): ToolOffset(31.0, 38.0, 0.4, 3)}
     return reading, replace(around, tools=tools)
 
 
@@ -481,7 +481,7 @@ def test_a_block_that_is_deleted_is_no_place_to_go_on() -> None:
     reading, setup = milled(FLATS.replace("Z2\nG1", "/Z2\nG1"))
     deleted = refused((reading, replace(setup, block_delete=True)), 9)
     assert deleted.why == text("search.never-reached", line=9)
-    assert good((reading, setup), 9).line == 9
+    assert good((reading, setup), 9).line_number == 9
 
 
 @pytest.mark.parametrize(

@@ -165,7 +165,7 @@ def ways_in(source: ProgramSource, given: Setup) -> tuple[int, int]:
         clear = (found.checkpoint.machine[0], cut.max_machine_z + 1.0, 0.0)
         steps = plan_lathe_approach(found, PresentState(clear, ModalState()), OperatorChoices())
         wrong = spoiled(Metal(cut, tool, row), steps, clear[:2], cut.tool_offsets[tool])
-        assert not wrong, (found.line, found.visit, wrong)
+        assert not wrong, (found.line_number, found.visit, wrong)
         assert modal.tool in cut.tool_offsets or not cut.tool_offsets
     return len(good), len(said)
 

@@ -22,7 +22,7 @@ def drawn(writer: Writer) -> Writer:
     writer.write(PART)
     page = writer.editor
     writer.sees(lambda: writer.proved() and page.path_view.has_path)
-    assert page.path_view.picture is page.editor.live_proof.current.picture
+    assert page.path_view.picture is page.editor.live_proof.current_findings.picture
     return writer
 
 
@@ -56,7 +56,7 @@ def test_what_the_line_of_the_cursor_draws_is_marked(drawn: Writer) -> None:
     drawn.editor.move_cursor_to(6)
     picture = drawn.editor.path_view.picture
     assert picture is not None
-    drawn.sees(lambda: drawn.editor.path_view.tip_position.block == picture.find_block_for_line(6))
+    drawn.sees(lambda: drawn.editor.path_view.tip_position.active_block == picture.find_block_for_line(6))
     ((start, end),) = drawn.editor.path_view.panes[0].marked_point_ranges
     points = [(picture.z[k], picture.x[k]) for k in range(start - 1, end)]
     assert points == [pytest.approx(inch(-1, 0.5)), pytest.approx(inch(-2, 1.5))]
@@ -127,7 +127,7 @@ def test_zoom_keys_work_while_one_looks(drawn: Writer) -> None:
     nearer = drawn.editor.path_view.first_projection
     assert before is not None
     assert nearer is not None
-    assert nearer.scale > before.scale
+    assert nearer.pixels_per_mm > before.pixels_per_mm
     drawn.key(Key.Key_Right, CTRL)
     assert drawn.editor.path_view.first_projection != nearer
     drawn.key(Key.Key_F5)

@@ -49,7 +49,7 @@ def inks(field: ProgramTextField, line: int) -> list[tuple[str, str]]:
 
 
 def test_words_are_coloured_as_the_lexer_reads_them(field: ProgramTextField) -> None:
-    field.put_text("g0 1X.5F.1(G05)T1", as_new=True)
+    field.replace_text("g0 1X.5F.1(G05)T1", as_new=True)
     field.apply_theme()
     assert inks(field, 1) == [
         ("g0 1", DARK_PALETTE.accent),
@@ -61,7 +61,7 @@ def test_words_are_coloured_as_the_lexer_reads_them(field: ProgramTextField) -> 
 
 
 def test_statements_of_a_plane_are_no_comments(field: ProgramTextField) -> None:
-    field.put_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", as_new=True)
+    field.replace_text("M19\n(~PLXC)\n(G02X.5 Y.2I.1J0F8)\n(X?)\n(END)\n(DONE)\nX1", as_new=True)
     field.apply_theme()
     assert inks(field, 2) == [("(~PLXC)", DARK_PALETTE.accent)]
     assert inks(field, 3)[1:4] == [
@@ -75,7 +75,7 @@ def test_statements_of_a_plane_are_no_comments(field: ProgramTextField) -> None:
 
 
 def test_a_plane_that_is_taken_out_leaves_comments(field: ProgramTextField) -> None:
-    field.put_text("(~PLXC)\n(X.5)", as_new=True)
+    field.replace_text("(~PLXC)\n(X.5)", as_new=True)
     field.apply_theme()
     assert inks(field, 2) == [("X.5", DARK_PALETTE.text)]
     field.replace_ranges((1,), 1, "")  # the mark of the entry
@@ -83,15 +83,15 @@ def test_a_plane_that_is_taken_out_leaves_comments(field: ProgramTextField) -> N
 
 
 def test_what_cannot_be_read_is_marked_and_a_mended_line_is_not(field: ProgramTextField) -> None:
-    field.put_text("X1?", as_new=True)
+    field.replace_text("X1?", as_new=True)
     field.apply_theme()
     assert ("?", DARK_PALETTE.alarm) in inks(field, 1)
-    field.put_text("X1", as_new=True)
+    field.replace_text("X1", as_new=True)
     assert DARK_PALETTE.alarm not in {ink for _text, ink in inks(field, 1)}
 
 
 def test_other_colours_reach_the_text(field: ProgramTextField) -> None:
-    field.put_text("G01", as_new=True)
+    field.replace_text("G01", as_new=True)
     field.apply_theme()
     field.theme.set_palette(LIGHT_PALETTE)
     field.apply_theme()
@@ -122,7 +122,7 @@ def test_versions_are_in_the_store(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     journal = Journal.open_default()
     desk, executor = create_desk_and_executor(None, lambda: NO_OFFSETS, ManualClock(), journal)
     executor.run_tick()
-    editor = desk.page_registry.find(EditorModel)
+    editor = desk.page_registry.find_model(EditorModel)
     assert editor is not None
     editor.pending_name = "new"
     assert open_editor(desk, editor)
@@ -147,7 +147,7 @@ def test_times_are_those_of_the_shop() -> None:
 
 def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: ProgramTextField) -> None:
     field.highlighter.set_dialect(Dialect.SINUMERIK)
-    field.put_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", as_new=True)
+    field.replace_text("N10 G1 X=IC(5) F100 ; (in)\nNUT P2\nG0 T1\nG0 H1", as_new=True)
     field.apply_theme()
     assert inks(field, 1) == [
         ("N10", DARK_PALETTE.soft),
@@ -162,7 +162,7 @@ def test_a_sinumerik_program_has_the_colours_of_its_own_words(field: ProgramText
 
 
 def test_another_language_colours_anew(field: ProgramTextField) -> None:
-    field.put_text("G0X1(a)", as_new=True)
+    field.replace_text("G0X1(a)", as_new=True)
     before = inks(field, 1)
     field.highlighter.set_dialect(Dialect.SINUMERIK)
     assert inks(field, 1) != before

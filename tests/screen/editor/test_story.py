@@ -38,7 +38,7 @@ def test_a_program_from_nothing_with_an_error_mended(writer: Writer, tmp_path: P
     writer.sees(lambda: writer.editor.head_line.heading.mark == "NEW")
     writer.write(GOOD.replace("Z-.5", "Z-.5.5"))
     writer.sees(writer.proved)
-    found = writer.editor.text_field.finding_at(5)
+    found = writer.editor.text_field.find_finding(5)
     assert found is not None
     assert found.severity is Severity.ERROR
     writer.key(Key.Key_F6)
@@ -99,7 +99,7 @@ def test_without_a_program_or_a_name_there_is_nothing_to_edit(writer: Writer) ->
 
 
 @pytest.mark.parametrize(
-    "state", [MachineState.RUN, MachineState.HOLD, MachineState.BLOCK_END, MachineState.WAIT]
+    "state", [MachineState.RUN, MachineState.HOLD, MachineState.SINGLE_BLOCK_STOP, MachineState.WAIT]
 )
 def test_a_text_is_written_while_a_program_runs_as_it_was_loaded(writer: Writer, state: MachineState) -> None:
     writer.load("pin")
@@ -312,7 +312,7 @@ def test_who_only_looks_at_a_program_changes_nothing_on_the_desk(writer: Writer,
     on_desk, posted, model = (
         writer.desk.program_loader.loaded,
         len(writer.machine.posted),
-        writer.desk.page_registry.find(ProgramListModel),
+        writer.desk.page_registry.find_model(ProgramListModel),
     )
     assert model is not None
     for leaves in (Key.Key_F1, Key.Key_F3, Key.Key_Escape):
@@ -370,17 +370,17 @@ def test_another_document_does_not_show_the_findings_of_the_last_one(writer: Wri
     writer.new("first")
     writer.write("G90G94\nQ\n")
     editor = writer.editor.editor
-    writer.sees(lambda: editor.live_proof.current.error_count > 0)
+    writer.sees(lambda: editor.live_proof.current_findings.error_count > 0)
     writer.key(Key.Key_F1)
     writer.sees(lambda: writer.front == page_table.MENU)
     other = tmp_path / "other" / "first.nc"
     other.parent.mkdir()
     other.write_text(GOOD)
-    editor.live_proof.worker.cancel()
+    editor.live_proof.worker.cancel_request()
     editor.open_program(other)
     while editor.document is None:
         editor.poll()
-    assert editor.live_proof.current.error_count == 0  # before its own proof
+    assert editor.live_proof.current_findings.error_count == 0  # before its own proof
 
 
 def test_the_program_on_the_desk_is_read_anew_when_its_text_has_changed(
@@ -410,7 +410,7 @@ def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer,
     assert writer.desk.program_choice.load_by_name("mine")
     writer.sees(lambda: writer.desk.program_loader.loaded.phase is LoadingPhase.READY)
     writer.frame.open_page(page_table.PROGRAMS)
-    model = writer.desk.page_registry.find(ProgramListModel)
+    model = writer.desk.page_registry.find_model(ProgramListModel)
     assert model is not None
     writer.sees(lambda: bool(model.listed_programs))
     writer.type("NOSUCHNAME")
@@ -424,7 +424,7 @@ def test_f3_of_the_list_begins_a_program_of_a_name_that_none_has(writer: Writer,
 
 def test_f3_of_an_empty_list_edits_nothing(writer: Writer) -> None:
     writer.frame.open_page(page_table.PROGRAMS)
-    model = writer.desk.page_registry.find(ProgramListModel)
+    model = writer.desk.page_registry.find_model(ProgramListModel)
     assert model is not None
     writer.sees(lambda: bool(model.listed_programs))
     model.all_programs, model.listed_programs = (), ()

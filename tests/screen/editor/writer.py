@@ -53,5 +53,11 @@ class Writer(Hands):
         """Whether what is typed is proved."""
         page = self.editor
         proof = page.editor.live_proof
-        fresh = not page.typed_text.is_stale and not proof.is_outdated  # what was typed has come to the proof
-        return fresh and page.finding_list.findings is proof.current and proof.current.number > 0
+        fresh = (
+            not page.text_synchronizer.is_stale and not proof.is_outdated
+        )  # what was typed has come to the proof
+        return (
+            fresh
+            and page.finding_list.findings is proof.current_findings
+            and proof.current_findings.number > 0
+        )

@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QDialog, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.jog.manual_functions import LANGUAGE_CODES
+from app.jog.manual_functions import CODES_BY_LANGUAGE
 from app.screen import page_table
 from core.executor.snapshot import MachineState
 from tests.screen.hands import LIMIT
@@ -118,7 +118,7 @@ def by_key(jog: JogBench) -> None:
 def by_finger(jog: JogBench) -> None:
     hand = jog.page.manual_panel
     hand.grab()
-    stop = next(each for each in hand.controls if each.acts_when_late)
+    stop = next(each for each in hand.controls if each.stops_machine)
     QTest.mouseClick(hand, Qt.MouseButton.LeftButton, pos=stop.box.center().toPoint())
 
 
@@ -378,4 +378,4 @@ def test_a_finger_chooses_and_the_pad_takes_the_speed(jog: JogBench) -> None:
 
 
 def test_every_language_says_it() -> None:
-    assert set(LANGUAGE_CODES) == {"omniturn", "sinumerik", "klartext"}
+    assert set(CODES_BY_LANGUAGE) == {"omniturn", "sinumerik", "klartext"}

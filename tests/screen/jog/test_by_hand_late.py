@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.jog.skim_and_setter import SkimCutStep
+from app.jog.skim_cut_and_setter import SkimCutStep
 from app.screen import page_table
 from core.executor.commands import CycleStart
 from core.executor.snapshot import MachineState, StartAction

@@ -27,7 +27,7 @@ def moves(jog: JogBench, seconds: float = 1.0) -> bool:
     """Whether anything moves within this time."""
     before = jog.shot.demand
     jog.run(seconds)
-    return jog.shot.demand != before or jog.shot.state in {MachineState.JOG, MachineState.HOME}
+    return jog.shot.demand != before or jog.shot.state in {MachineState.JOG, MachineState.HOMING}
 
 
 def test_an_arrow_pressed_and_released_in_a_stall_does_nothing(jog: JogBench) -> None:
@@ -35,7 +35,7 @@ def test_an_arrow_pressed_and_released_in_a_stall_does_nothing(jog: JogBench) ->
     jog.window.set_late(is_late=True)
     jog.up(Key.Key_Right)
     assert not moves(jog)
-    assert jog.page.model.held_jog.keys_down == set()
+    assert jog.page.model.held_jog.pressed_keys == set()
     assert told(jog, StartingAction.JOG)
 
 
@@ -123,4 +123,4 @@ def test_a_late_letter_still_asks_for_its_value(jog: JogBench) -> None:
     jog.window.set_late(is_late=True)
     jog.type("t")
     jog.window.set_late(is_late=False)
-    assert jog.page.model.is_asking
+    assert jog.page.model.is_entry_open

@@ -69,7 +69,7 @@ def test_a_new_tool_is_found_by_two_touches_and_kept_by_return(setter: JogBench)
     hold(setter, Key.Key_Left)
     setter.key(Key.Key_Return)
     setter.saved()
-    row = setter.desk.offset_book.tools[3]
+    row = setter.desk.offset_book.tool_offsets[3]
     assert (row.x, row.z) == pytest.approx((TIP[0] * INCH, TIP[1] * INCH), abs=0.002)
     assert shows(setter.desk.offset_book.read_history(OffsetKind.TOOL)[0].why, "jog.reason-setter", way="Z−")
 
@@ -85,18 +85,18 @@ def test_a_tool_that_was_set_shows_the_difference_and_a_large_one_is_asked_once(
     assert not setter.desk.confirm_key
     setter.key(Key.Key_Escape)
     setter.saved()
-    assert setter.desk.offset_book.tools[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
+    assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx(0.14 * INCH)  # nothing was kept
     given(setter, 2, ToolRow(x=0.11 * INCH, z=-1.6 * INCH, quadrant=3))
     put(setter, ABOVE)
     setter.key(Key.Key_P)
     hold(setter, Key.Key_Up)
     assert shows(setter.prompt, "offsets.suspicious", changes=Pattern(r"T2 X R \+0\.11000 → \+0\.1[45].*"))
-    assert not setter.page.model.is_asking  # Return is no second question
+    assert not setter.page.model.is_entry_open  # Return is no second question
     setter.key(Key.Key_Return)
     setter.saved()
-    assert setter.desk.offset_book.tools[2].x == pytest.approx(0.11 * INCH)
+    assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx(0.11 * INCH)
     setter.confirm()
-    assert setter.desk.offset_book.tools[2].x == pytest.approx(TIP[0] * INCH, abs=0.002)
+    assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx(TIP[0] * INCH, abs=0.002)
 
 
 def test_a_figure_that_is_typed_changes_nothing_of_what_was_found(setter: JogBench) -> None:
@@ -176,7 +176,7 @@ def test_of_a_round_tip_the_centre_is_set(setter: JogBench) -> None:
     hold(setter, Key.Key_Up)
     setter.confirm()
     # The contact is at .15; the centre of the nose is .03 further out.
-    assert setter.desk.offset_book.tools[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
+    assert setter.desk.offset_book.tool_offsets[2].x == pytest.approx((0.15 - 0.03) * INCH, abs=0.002)
 
 
 def test_what_is_refused_before_anything_moves(setter: JogBench) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from app.jog.skim_and_setter import SkimCutStep
+from app.jog.skim_cut_and_setter import SkimCutStep
 from core.executor.commands import JogByStep
 from core.executor.snapshot import MachineState
 from tests.screen.jog.bench import INCH, JogBench, Key
@@ -61,7 +61,7 @@ def cut(jog: JogBench) -> float:
 
 def rows(jog: JogBench) -> dict[int, object]:
     jog.saved()
-    return dict(jog.desk.offset_book.tools)
+    return dict(jog.desk.offset_book.tool_offsets)
 
 
 def test_a_diameter(jog: JogBench) -> None:
@@ -84,7 +84,7 @@ def test_a_diameter(jog: JogBench) -> None:
     jog.enter("0")
     jog.saved()
     jog.run(0.1)
-    row = jog.desk.offset_book.tools[1]
+    row = jog.desk.offset_book.tool_offsets[1]
     assert row.x == pytest.approx(x - 0.25 * INCH, abs=1e-6)  # machine X less half of the diameter
     jog.key(Key.Key_F4)
     jog.confirm()
@@ -105,7 +105,7 @@ def test_a_set_tool_shows_old_and_new_and_its_history_says_how(jog: JogBench) ->
     jog.key(Key.Key_Return)
     jog.confirm()
     jog.run(0.1)
-    assert jog.desk.offset_book.tools[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
+    assert jog.desk.offset_book.tool_offsets[1].x == pytest.approx(x - 0.15 * INCH, abs=1e-6)
     assert jog.store.offsets.read_history(limit=1)[0].why == "skim cut Ø .3"
 
 
@@ -119,7 +119,7 @@ def test_a_face(jog: JogBench) -> None:
     goes(jog, Key.Key_Down)  # retract in X, Z is kept
     jog.type("0")
     jog.until(lambda: jog.page.model.tool_setting.question_name == "touch z")
-    assert jog.page.model.tool_setting.touch_off.touch_position == pytest.approx(z, abs=1e-6)
+    assert jog.page.model.tool_setting.touch_off.touch_position_mm == pytest.approx(z, abs=1e-6)
 
 
 def test_x_that_has_moved_is_told_and_the_cut_counts_no_more(jog: JogBench) -> None:

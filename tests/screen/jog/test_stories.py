@@ -148,7 +148,7 @@ def test_a_touch_is_active_at_once_for_the_loaded_tool(jog: JogBench) -> None:
     jog.key(Key.Key_F1)
     jog.key(Key.Key_F5)
     before = jog.executor.snapshot.modal
-    jog.executor._control.status.modal = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
+    jog.executor._control.status.modal_state = before._replace(tool=1, tool_x=-5.0, tool_z=-50.0)
     jog.run(0.05)
     touch(jog, "x", "1")
     jog.confirm()
@@ -232,7 +232,7 @@ def test_home_asks_once_and_takes_the_axes_in_their_order(lost: JogBench) -> Non
     assert lost.shot.state is MachineState.IDLE  # never the key that asked
     yes(lost.window, Key.Key_Return)
     lost.run(0.05)
-    assert lost.shot.state is MachineState.HOME
+    assert lost.shot.state is MachineState.HOMING
     seen = []
 
     def done() -> bool:

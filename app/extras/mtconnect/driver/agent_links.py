@@ -54,13 +54,13 @@ def format_utc_time(time: datetime) -> str:
     return time.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-def make_pong(heartbeat: float) -> bytes:
+def make_pong(heartbeat_s: float) -> bytes:
     """Return the reply to a PING.
 
-    ``heartbeat`` is in seconds. The reply states it in milliseconds, limited to 1 ms to just under half an
+    ``heartbeat_s`` is in seconds. The reply states it in milliseconds, limited to 1 ms to just under half an
     hour.
     """
-    return b"* PONG %d\n" % min(max(round(1000 * heartbeat), 1), _LONGEST_BEAT)
+    return b"* PONG %d\n" % min(max(round(1000 * heartbeat_s), 1), _LONGEST_BEAT)
 
 
 def format_value(item: DataItem, value: ItemValue) -> str:
@@ -83,32 +83,33 @@ def replace_separators(text: str) -> str:
     return "'" + text[1:] if text.startswith('"') else text
 
 
-def make_values_line(time: str, pairs: Mapping[str, str]) -> str:
+def make_values_line(time_text: str, pairs: Mapping[str, str]) -> str:
     """Return the line with the samples and events of one instant."""
-    return "|".join((time, *(part for pair in pairs.items() for part in pair))) + "\n"
+    return "|".join((time_text, *(part for pair in pairs.items() for part in pair))) + "\n"
 
 
-def make_active_line(time: str, key: str, active: ActiveCondition) -> str:
+def make_active_line(time_text: str, key: str, active_condition: ActiveCondition) -> str:
     """Return the line for a condition that becomes active or changes its text.
 
     The fields for severity and qualifier are empty.
     """
     return (
-        f"{time}|{key}|{active.level}|{replace_separators(active.code)}|||{replace_separators(active.text)}\n"
+        f"{time_text}|{key}|{active_condition.level}|{replace_separators(active_condition.code)}|||"
+        f"{replace_separators(active_condition.text)}\n"
     )
 
 
-def make_cleared_line(time: str, key: str, code: str = "") -> str:
+def make_cleared_line(time_text: str, key: str, code: str = "") -> str:
     """Return the line for the end of one code of a condition.
 
     If ``code`` is empty, the whole condition ends.
     """
-    return f"{time}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
+    return f"{time_text}|{key}|{NORMAL_LEVEL}|{replace_separators(code)}|||\n"
 
 
-def make_unknown_line(time: str, key: str) -> str:
+def make_unknown_line(time_text: str, key: str) -> str:
     """Return the line for a condition whose state is not known."""
-    return f"{time}|{key}|{UNAVAILABLE}||||\n"
+    return f"{time_text}|{key}|{UNAVAILABLE}||||\n"
 
 
 # --- Sent values, so that only changes are sent. --------------------
@@ -211,16 +212,18 @@ class AgentDisconnectedError(AgentLostError):
 class AgentLink:
     """Connection of an agent on a non-blocking socket.
 
-    The constructor takes the requested PING interval in seconds as ``heartbeat``. ``waiting_since`` is the
+    The constructor takes the requested PING interval in seconds as ``heartbeat_s``. ``waiting_since`` is the
     time in seconds at which the agent connected while all connections were in use, or None if the agent
     receives data.
     """
 
-    def __init__(self, wire: socket.socket, heartbeat: float, waits_since: float | None = None) -> None:
-        self.agent_socket = wire
-        self.waiting_since = waits_since
+    def __init__(
+        self, agent_socket: socket.socket, heartbeat_s: float, waiting_since: float | None = None
+    ) -> None:
+        self.agent_socket = agent_socket
+        self.waiting_since = waiting_since
         self.ignored_line_count = 0  # received lines other than PING
-        self._heartbeat = heartbeat
+        self._heartbeat = heartbeat_s
         self._heard: float | None = None  # time of the last PING; None if the agent has never sent one
         self._in = b""
         self._out = bytearray()
@@ -259,7 +262,7 @@ class AgentLink:
             ) from error
         del self._out[:sent]
 
-    def read(self, now: float) -> None:
+    def read_data(self, now_s: float) -> None:
         """Read received data, reply to each PING, and count other lines.
 
         Raises AgentLostError.
@@ -276,7 +279,7 @@ class AgentLink:
             raise AgentDisconnectedError("the agent closed the connection")
         *lines, self._in = (self._in + come).split(b"\n")
         for line in lines:
-            self._obey(line.strip(), now)
+            self._obey(line.strip(), now_s)
         if len(self._in) > MAX_LINE_LENGTH:
             raise AgentLostError("the agent sent data that is not a valid line")
 
@@ -287,17 +290,17 @@ class AgentLink:
         elif line:
             self.ignored_line_count += 1
 
-    def check_timeout(self, now: float) -> None:
+    def check_timeout(self, now_s: float) -> None:
         """Raise AgentLostError if the PING of an agent is overdue.
 
         This applies to an agent that has stopped sending PING, and to an agent that waits for a free
         connection without sending PING.
         """
-        if self.waiting_since is not None and now - self.waiting_since > PING_TIMEOUT_S:
+        if self.waiting_since is not None and now_s - self.waiting_since > PING_TIMEOUT_S:
             raise AgentDisconnectedError("all connections are in use, and this agent does not send PING")
-        if self._heard is not None and now - self._heard > 2.0 * self._heartbeat + _GRACE:
+        if self._heard is not None and now_s - self._heard > 2.0 * self._heartbeat + _GRACE:
             raise AgentLostError(
-                Message("no PING from the agent for {now} s", now=f"{now - self._heard:.0f}")
+                Message("no PING from the agent for {now} s", now=f"{now_s - self._heard:.0f}")
             )
 
 
@@ -309,20 +312,20 @@ _SEND = 64 * 1024  # bytes that the system buffers for a slow agent, so that its
 _UNANSWERED = 30_000  # ms without a response after which the other computer counts as gone
 
 
-def open_listening_socket(bind: str, port: int) -> socket.socket:
+def open_listening_socket(bind_address: str, port: int) -> socket.socket:
     """Return a bound, listening socket.
 
     Raises DriverError with the cause.
     """
     try:
         family, kind, proto, _, address = socket.getaddrinfo(
-            bind, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+            bind_address, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
         )[0]
         wire = socket.socket(family, kind, proto)
     except OSError as error:
         raise DriverError(
             "[mtconnect] bind = {bind} is not an address of this computer: {cause}",
-            bind=f"{bind!r}",
+            bind=f"{bind_address!r}",
             cause=error.strerror,
         ) from error
     try:
@@ -335,7 +338,7 @@ def open_listening_socket(bind: str, port: int) -> socket.socket:
         raise DriverError(
             "[mtconnect] port {port} of {bind} cannot be opened ({cause}): choose another "
             "port, or end the program that uses this port",
-            bind=bind,
+            bind=bind_address,
             port=port,
             cause=error.strerror,
         ) from error

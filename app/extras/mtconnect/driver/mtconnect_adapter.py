@@ -43,9 +43,9 @@ _log = logging.getLogger(__name__)
 class ConnectionCounts:
     """Numbers of connections and ignored lines since the adapter was opened."""
 
-    accepted: int = 0
+    accepted_count: int = 0
     rejected_count: int = 0  # connections beyond the limit
-    lost: int = 0
+    lost_count: int = 0
     ignored_line_count: int = 0  # lines other than PING from agents that are gone
 
 
@@ -57,19 +57,19 @@ def get_utc_now() -> datetime:
 class MtconnectAdapter:
     """Adapter that reports the machine to agents.
 
-    The owner calls ``run_once`` repeatedly. The constructor parameter ``report`` is a function that returns
-    the present state of the machine.
+    The owner calls ``run_once`` repeatedly. The constructor parameter ``read_report`` is a function that
+    returns the present state of the machine.
     """
 
     def __init__(
         self,
         settings: MtconnectTable,
         items: tuple[DataItem, ...],
-        report: Callable[[], MachineReport],
+        read_report: Callable[[], MachineReport],
         clock: Clock,
-        utc: Callable[[], datetime] = get_utc_now,
+        get_utc: Callable[[], datetime] = get_utc_now,
     ) -> None:
-        self._settings, self._report, self._clock, self._utc = settings, report, clock, utc
+        self._settings, self._report, self._clock, self._utc = settings, read_report, clock, get_utc
         self._sent = SentState(items)
         self._door: socket.socket | None = None
         self._selector = selectors.DefaultSelector()
@@ -164,7 +164,7 @@ class MtconnectAdapter:
 
     def _admit(self, link: AgentLink) -> None:
         link.waiting_since = None
-        self.counts.accepted += 1
+        self.counts.accepted_count += 1
         self._tell(link, self._sent.make_complete_state(format_utc_time(self._utc())).encode("utf-8"))
 
     def _make_room(self, link: AgentLink) -> None:
@@ -187,7 +187,7 @@ class MtconnectAdapter:
 
     def _serve(self, link: AgentLink) -> None:
         try:
-            link.read(self._clock.now())
+            link.read_data(self._clock.now())
             if link.waiting_since is not None and link.has_pinged:
                 self._make_room(link)
             else:
@@ -196,7 +196,7 @@ class MtconnectAdapter:
             self._lose(link, lost)
 
     def _lose(self, link: AgentLink, why: AgentLostError) -> None:
-        self.counts.lost += 1
+        self.counts.lost_count += 1
         level = logging.INFO if isinstance(why, AgentDisconnectedError) else logging.WARNING
         _log.log(
             level,
@@ -270,7 +270,7 @@ _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
 
 
-def make_devices_xml(device: Component, description_text: str, time: datetime) -> str:
+def make_devices_xml(device: Component, description_text: str, creation_time: datetime) -> str:
     """Return the XML document of the device model.
 
     ``description_text`` is for people. The uuid depends only on the name of the device. Raises DriverError
@@ -284,7 +284,7 @@ def make_devices_xml(device: Component, description_text: str, time: datetime) -
     root = Element(
         "MTConnectDevices", {"xmlns": SCHEMA_NAMESPACE, "xmlns:xsi": _XSI, "xsi:schemaLocation": _SCHEMA}
     )
-    root.append(_header(time))
+    root.append(_header(creation_time))
     inner = _element(device, device.name, SubElement(root, "Devices"))
     inner.set("uuid", str(uuid.uuid5(uuid.NAMESPACE_URL, f"urn:turndesk:{device.name}")))
     description = Element("Description")

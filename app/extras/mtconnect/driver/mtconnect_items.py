@@ -44,11 +44,11 @@ class Component:
     items: tuple[DataItem, ...] = ()
     sub_components: tuple[Component, ...] = ()
 
-    def all_items(self) -> Iterator[DataItem]:
+    def iterate_items(self) -> Iterator[DataItem]:
         """Yield the items of the component and of all its sub-components."""
         yield from self.items
         for part in self.sub_components:
-            yield from part.all_items()
+            yield from part.iterate_items()
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,14 +66,14 @@ class MachineLayout:
     has_chuck: bool
 
 
-def make_machine_items(layout: MachineLayout, name: str) -> Component:
+def make_machine_items(layout: MachineLayout, device_name: str) -> Component:
     """Return the device with all its items.
 
     Units are millimeters, degrees, mm/s, rpm and percent.
     """
     return Component(
         "Device",
-        name,
+        device_name,
         (_event("avail", "AVAILABILITY"),),
         (
             Component("Axes", "base", sub_components=(*_linear(layout), *_rotary(layout), _spindle(layout))),

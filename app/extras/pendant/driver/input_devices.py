@@ -150,10 +150,10 @@ class DeviceEntry:
     able: frozenset[tuple[int, int]]  # kind and code of all possible events
 
 
-def list_devices(sysfs: Path = SYSFS) -> list[DeviceEntry]:
+def list_devices(sysfs_folder: Path = SYSFS) -> list[DeviceEntry]:
     """Return all connected input devices."""
     found = []
-    for path in sorted(sysfs.glob("event*")):
+    for path in sorted(sysfs_folder.glob("event*")):
         with contextlib.suppress(OSError):  # The device was unplugged in the meantime.
             found.append(_entry(path))
     return found

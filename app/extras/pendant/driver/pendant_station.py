@@ -47,29 +47,29 @@ class PendantState:
 class PendantReader:
     """Reader of a pendant.
 
-    The ``find`` parameter opens the nodes of the device, and raises DriverError if they cannot be opened.
-    The ``now`` parameter reads the clock of the events. ``start`` reads the device in a separate thread. A
-    test can call ``process_events`` without a thread.
+    The ``open_device`` parameter opens the nodes of the device, and raises DriverError if they cannot be
+    opened. The ``now`` parameter reads the clock of the events. ``start`` reads the device in a separate
+    thread. A test can call ``process_events`` without a thread.
     """
 
     def __init__(
         self,
-        bound: Mapping[str, PendantControl],
-        stops: frozenset[str],
+        control_by_name: Mapping[str, PendantControl],
+        stop_inputs: frozenset[str],
         wheel: PendantControl | None,
-        find: Callable[[], Sequence[EventSource]],
-        now: Callable[[], float],
+        open_device: Callable[[], Sequence[EventSource]],
+        read_clock: Callable[[], float],
         *,
-        place: bool = False,
-        ring: Callable[[], None] = lambda: None,
+        has_absolute_wheel: bool = False,
+        report_change: Callable[[], None] = lambda: None,
     ) -> None:
         """Create the reader.
 
-        ``ring`` is called after each change.
+        ``report_change`` is called after each change.
         """
-        self._ring = ring
-        self._buttons = PendantButtons(bound, stops, wheel, place)
-        self._find, self.clock = find, now
+        self._ring = report_change
+        self._buttons = PendantButtons(control_by_name, stop_inputs, wheel, has_absolute_wheel)
+        self._find, self.read_clock = open_device, read_clock
         self._lock = threading.Lock()
         self._nodes: dict[EventSource, PacketParser] = {}
         self._away = "the search for the pendant has not started yet"
@@ -86,7 +86,7 @@ class PendantReader:
         with self._lock:
             buttons = self._buttons
             away = self._away
-            if self._nodes and self.clock() - self._looked > _SILENT:
+            if self._nodes and self.read_clock() - self._looked > _SILENT:
                 away = "the software thread that reads the pendant has stopped"
             held = {name: not away and name in buttons.pressed_names for name in buttons.control_by_name}
             return PendantState(held, buttons.wheel_counts, away, self._broke)
@@ -112,14 +112,14 @@ class PendantReader:
             if not self._nodes:
                 self._ending.wait(_AGAIN)
 
-    def process_events(self, seconds: float) -> None:
-        """Wait up to ``seconds`` for events and process them, or search for a missing device."""
-        self._looked = self.clock()
+    def process_events(self, timeout_s: float) -> None:
+        """Wait up to ``timeout_s`` for events and process them, or search for a missing device."""
+        self._looked = self.read_clock()
         if not self._nodes:
             self._open()
             return
         try:
-            for node in select.select(list(self._nodes), (), (), seconds)[0]:
+            for node in select.select(list(self._nodes), (), (), timeout_s)[0]:
                 self._take(node)
         except (OSError, ValueError):
             self._drop("the pendant was unplugged: plug it in again")
@@ -139,7 +139,7 @@ class PendantReader:
             return
         with self._lock:
             self._nodes = {node: PacketParser() for node in nodes}
-            self._buttons.start(keys, ranges)
+            self._buttons.set_initial_state(keys, ranges)
             self._away = ""
         self._ring()
 
@@ -151,17 +151,17 @@ class PendantReader:
             again = _pressed(list(self._nodes)) if packet.has_lost_events else None
             with self._lock:
                 if again is None:
-                    self._buttons.apply_packet(packet, self.clock())
+                    self._buttons.apply_packet(packet, self.read_clock())
                 else:
-                    self._buttons.start(*again)
-                    self._broke = self.clock()
+                    self._buttons.set_initial_state(*again)
+                    self._broke = self.read_clock()
         self._ring()
 
     def _drop(self, why: str) -> None:
         nodes, self._nodes = self._nodes, {}
         with self._lock:
             self._buttons.release_all()
-            self._away, self._broke = why, self.clock()
+            self._away, self._broke = why, self.read_clock()
         self._ring()
         for node in nodes:
             with contextlib.suppress(OSError):
@@ -195,9 +195,9 @@ class PendantStation:
     button, unplugging it causes one feed hold. The pendant cannot start any motion.
     """
 
-    def __init__(self, station: Station, pendant: PendantReader, *, stops: bool, wheel: bool) -> None:
+    def __init__(self, station: Station, pendant: PendantReader, *, has_stops: bool, has_wheel: bool) -> None:
         self._station, self._pendant = station, pendant
-        self._stops, self._wheel = stops, wheel
+        self._stops, self._wheel = has_stops, has_wheel
 
     @property
     def missing_reason(self) -> str:
@@ -207,7 +207,7 @@ class PendantStation:
     def read_state(self) -> StationState:
         """Return the state of the station, including the pendant."""
         state, pendant = self._station.read_state(), self._pendant.get_state()
-        just = self._pendant.clock() - pendant.lost_at_s < _TOLD
+        just = self._pendant.read_clock() - pendant.lost_at_s < _TOLD
         lost = pendant.missing_reason if pendant.missing_reason and (self._stops or just) else ""
         return dataclasses.replace(
             state,
@@ -232,19 +232,19 @@ class PendantIO:
         """Return the inputs of the machine and of the pendant."""
         return {**self._io.inputs(), **self._pendant.get_state().inputs}
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return the outputs of the machine.
 
         A pendant has no outputs.
         """
-        return self._io.outputs()
+        return self._io.get_outputs()
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Write an output of the machine.
 
         Raises DriverError.
         """
-        self._io.write(name, on)
+        self._io.write(name, is_on)
 
     def switch_to_safe_state(self) -> None:
         """Set every output to its safe state."""
@@ -281,21 +281,21 @@ class PendantButtons:
     ineffective_names: set[str] = field(
         default_factory=set
     )  # pressed, but without effect until they are released
-    ranges: dict[int, AxisRange] = field(default_factory=dict)
+    axis_ranges: dict[int, AxisRange] = field(default_factory=dict)
     _at: int | None = None  # position of a wheel that reports positions
 
-    def start(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
+    def set_initial_state(self, keys: Iterable[int], ranges: Mapping[int, AxisRange]) -> None:
         """Set the present state of the device.
 
         Buttons that are already pressed have no effect, except stop buttons.
         """
-        self.ranges = dict(ranges)
+        self.axis_ranges = dict(ranges)
         pressed, self._at = set(keys), None
         held = {name for name, control in self.control_by_name.items() if self._held(control, pressed)}
         self.pressed_names = held & self.stop_inputs
         self.ineffective_names = held - self.stop_inputs
-        if self.wheel is not None and self.wheel.kind == ABS and self.wheel.code in self.ranges:
-            self._at = self.ranges[self.wheel.code].value
+        if self.wheel is not None and self.wheel.kind == ABS and self.wheel.code in self.axis_ranges:
+            self._at = self.axis_ranges[self.wheel.code].value
 
     def release_all(self) -> None:
         """Release all buttons and discard the position of the wheel because the device is disconnected."""
@@ -303,13 +303,13 @@ class PendantButtons:
         self.ineffective_names.clear()
         self._at = None
 
-    def apply_packet(self, packet: EventPacket, now: float) -> None:
+    def apply_packet(self, packet: EventPacket, now_s: float) -> None:
         """Apply the events of a packet.
 
         ``now`` is the present time in seconds on the clock of the events.
         """
         for event in packet.events:
-            late = now - event.time_s > MAX_EVENT_AGE_S
+            late = now_s - event.time_s > MAX_EVENT_AGE_S
             if self.wheel is not None and (event.kind, event.code) == self.wheel[:2]:
                 self._turn(event, late)
             for name, control in self.control_by_name.items():
@@ -342,16 +342,16 @@ class PendantButtons:
             return
         if event.kind == ABS:
             self._keep(event)
-        reach = self.ranges.get(event.code) if event.kind == ABS else None
+        reach = self.axis_ranges.get(event.code) if event.kind == ABS else None
         size = reach.maximum - reach.minimum + 1 if reach is not None else _PLACES
         last, self._at = self._at, event.value
         if last is not None and not late and size > 1:
             self.wheel_counts += (event.value - last + size // 2) % size - size // 2
 
     def _keep(self, event: InputEvent) -> None:
-        reach = self.ranges.get(event.code)
+        reach = self.axis_ranges.get(event.code)
         if reach is not None:
-            self.ranges[event.code] = reach._replace(value=event.value)
+            self.axis_ranges[event.code] = reach._replace(value=event.value)
 
     def _held(self, control: PendantControl, keys: set[int]) -> bool:
         if control.kind == KEY:
@@ -363,7 +363,7 @@ class PendantButtons:
 
         The result is negative in the opposite direction.
         """
-        reach = self.ranges.get(control.code)
+        reach = self.axis_ranges.get(control.code)
         if reach is None or reach.maximum <= reach.minimum:
             return 0.0
         middle, half = (reach.maximum + reach.minimum) / 2.0, (reach.maximum - reach.minimum) / 2.0

@@ -15,7 +15,7 @@ from core.extras.shapes.common_fields import (
     make_rpm_field,
     make_surface_speed_field,
     make_tool_field,
-    propose_bar,
+    propose_bar_diameter,
 )
 from core.extras.shapes.cutting_data import Operation
 from core.extras.shapes.editor_shape import FilledShape, Shape
@@ -28,8 +28,8 @@ from core.extras.shapes.shape_fields import (
     FieldValues,
     ProgramSettings,
     ShapeField,
+    make_length_proposal,
     number,
-    propose_length,
 )
 from core.message import Message
 from core.part.tool_shape import ToolKind
@@ -95,7 +95,7 @@ class BladeWriter:
         """Return the programmed Z that positions the face-side corner of the blade at ``front``."""
         return self.calculate_z_at_chuck_corner(front - self.width)
 
-    def move_over(self, z: float, r: float) -> None:
+    def write_positioning(self, z: float, r: float) -> None:
         """Write a move along Z at the present radius, then a move to radius ``r``.
 
         Unnecessary moves are omitted.
@@ -227,7 +227,7 @@ PARTING_SHAPE = Shape(
     (
         make_tool_field(ToolKind.PARTING, ToolKind.GROOVING),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, FRONT, (FRONT, REAR)),
-        ShapeField("FROM", "DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("FROM", "DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("TO", "END DIAMETER", FieldKind.DIAMETER, 0.0, allows_zero=True),
         ShapeField("LONG", "PART LENGTH", FieldKind.LENGTH),
         BLADE_WIDTH_FIELD,
@@ -248,7 +248,7 @@ EACH, ONCE = "EACH PART", "ONCE"
 
 
 def _sub(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    return float(setting.free_subroutine)
+    return float(setting.free_subroutine_number)
 
 
 def _loop(filled: FilledShape, _setting: ProgramSettings, code: CodeWriter) -> None:
@@ -307,15 +307,15 @@ BAR_LOOP_SHAPE = Shape(
             "STOP", "TOOL USED AS STOP", FieldKind.TOOL, lambda _v, s: float(find_next_tool(s)), maximum=32
         ),
         ShapeField(
-            "STOCK", "FACING ALLOWANCE", FieldKind.LENGTH, propose_length(0.025, 0.6), allows_zero=True
+            "STOCK", "FACING ALLOWANCE", FieldKind.LENGTH, make_length_proposal(0.025, 0.6), allows_zero=True
         ),
-        ShapeField("RATE", "BAR FEED PER MINUTE", FieldKind.RATE, propose_length(50.0, 1200.0)),
+        ShapeField("RATE", "BAR FEED PER MINUTE", FieldKind.RATE, make_length_proposal(50.0, 1200.0)),
         ShapeField("SUB", "PART SUBROUTINE NUMBER", FieldKind.COUNT, _sub, maximum=9999),
     ),
     _loop,
     _sketch,
     _checks,
-    ends=_tail,
+    make_program_end_lines=_tail,
 )
 
 
@@ -338,5 +338,7 @@ def _sinumerik_tail(filled: FilledShape) -> tuple[str, ...]:
     return f"%_N_PART_{filled.get_number('SUB'):.0f}_SPF", "M17"
 
 
-SINUMERIK_BAR_LOOP_SHAPE = replace(BAR_LOOP_SHAPE, checks=_sinumerik_checks, ends=_sinumerik_tail)
+SINUMERIK_BAR_LOOP_SHAPE = replace(
+    BAR_LOOP_SHAPE, find_field_conflicts=_sinumerik_checks, make_program_end_lines=_sinumerik_tail
+)
 """The same with a subprogram, and M codes of the machine's own for the chuck."""

@@ -16,7 +16,7 @@ from core.extras.shapes.common_fields import (
     make_feed_field,
     make_rpm_field,
     make_tool_field,
-    propose_bar,
+    propose_bar_diameter,
 )
 from core.extras.shapes.cutting_data import Operation
 from core.extras.shapes.editor_shape import FilledShape, Shape
@@ -87,13 +87,15 @@ def _loop(filled_shape: FilledShape, code: CodeWriter, outer: float, first: floa
     """Write several grooves of one plunge each, as a loop with incremental moves."""
     deep = get_tool_side(filled_shape) * (outer - filled_shape.get_number("BOTTOM") / 2.0)
     code.write_rapid(z=first)
-    code.write(
+    code.append_lines(
         "G91",
         f"LS{filled_shape.get_number('COUNT'):.0f}",
         f"G95F{format_short_number(filled_shape.get_number('FEED'), 6)}{code.format_x(-deep)}",
     )
     code.write_dwell(filled_shape.get_number("DWELL"))
-    code.write(f"G00{code.format_x(deep)}", code.format_z(-filled_shape.get_number("PITCH")), "LF", "G90")
+    code.append_lines(
+        f"G00{code.format_x(deep)}", code.format_z(-filled_shape.get_number("PITCH")), "LF", "G90"
+    )
 
 
 def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: float, free: float) -> None:
@@ -103,7 +105,7 @@ def _one_groove(filled: FilledShape, blade: BladeWriter, outer: float, chuck: fl
         front - blade.width + (chuck - front + blade.width) * k / max(count - 1, 1) for k in range(count)
     ]
     for at in steps if count > 1 else [chuck]:
-        blade.move_over(blade.calculate_z_at_chuck_corner(at), outer)
+        blade.write_positioning(blade.calculate_z_at_chuck_corner(at), outer)
         blade.write_cut(bottom, feed=feed)
         if at == steps[-1] and count > 1:
             blade.write_cut(z=blade.calculate_z_at_face_corner(front))  # cut along the bottom
@@ -143,11 +145,11 @@ def _slanted_groove(
         walls.append((at - chuck) / at_chuck if at_chuck else deep)
         here = min(deep, *walls)
         if here > abs(free):
-            blade.move_over(blade.calculate_z_at_chuck_corner(at), outer)
+            blade.write_positioning(blade.calculate_z_at_chuck_corner(at), outer)
             blade.write_cut(top - math.copysign(here, free), feed=feed)
             blade.write_rapid(outer)
     back = blade.calculate_z_at_chuck_corner(chuck + deep * at_chuck)
-    blade.move_over(blade.calculate_z_at_face_corner(front + abs(free) * at_face), outer)
+    blade.write_positioning(blade.calculate_z_at_face_corner(front + abs(free) * at_face), outer)
     blade.write_cut(bottom, blade.calculate_z_at_face_corner(front - deep * at_face), feed=feed)
     blade.write_cut(z=back)
     blade.write_rapid(outer)
@@ -280,7 +282,7 @@ GROOVE_SHAPE = Shape(
     (
         make_tool_field(ToolKind.GROOVING),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, FRONT, (FRONT, REAR, INSIDE)),
-        ShapeField("TOP", "DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("TOP", "DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("BOTTOM", "BOTTOM DIAMETER", FieldKind.DIAMETER),
         ShapeField("AT", "DISTANCE FROM Z0 TO START", FieldKind.LENGTH, allows_zero=True),
         BLADE_WIDTH_FIELD,
@@ -342,7 +344,7 @@ def _sinumerik_groove(filled: FilledShape, setting: ProgramSettings, code: CodeW
             "",
             format_sinumerik_number(filled.get_number("DN")),
         )
-        code.write("CYCLE93(" + ", ".join(words) + ")")
+        code.append_lines("CYCLE93(" + ", ".join(words) + ")")
     code.clear_modal_state()
     if filled.get_number("OVER"):
         code.write_rapid(over)
@@ -381,8 +383,8 @@ def _sinumerik_checks(filled: FilledShape, setting: ProgramSettings) -> Iterator
 
 SINUMERIK_GROOVE_SHAPE = replace(
     GROOVE_SHAPE,
-    cut=_sinumerik_groove,
-    checks=_sinumerik_checks,
+    write_lines=_sinumerik_groove,
+    find_field_conflicts=_sinumerik_checks,
     fields=(
         *GROOVE_SHAPE.fields,
         ShapeField("DN", "CYCLE93: D OF OTHER CORNER", FieldKind.OFFSET, 0.0, maximum=9, allows_zero=True),

@@ -7,7 +7,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from core.extras.shapes import cutting_data
-from core.extras.shapes.common_fields import MAX_RPM, check_flute_length, make_tool_field, propose_bar
+from core.extras.shapes.common_fields import (
+    MAX_RPM,
+    check_flute_length,
+    make_tool_field,
+    propose_bar_diameter,
+)
 from core.extras.shapes.cutting_data import Operation
 from core.extras.shapes.editor_shape import FilledShape, Shape
 from core.extras.shapes.forms.drilling import _across
@@ -144,7 +149,7 @@ CROSS_HOLES_SHAPE = Shape(
         make_tool_field(ToolKind.DRILL, ToolKind.END_MILL),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, FRONT, (FRONT, REAR)),
         ShapeField("DIA", "DRILL DIAMETER", FieldKind.DIAMETER, _across, is_in_comment=True),
-        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("AT", "DISTANCE FROM Z0 TO CENTER", FieldKind.LENGTH),
         ShapeField("DEEP", "DEPTH", FieldKind.LENGTH),
         ShapeField("ANGLE", "FIRST ANGLE", FieldKind.ANGLE, 0.0, allows_zero=True),
@@ -263,7 +268,7 @@ FLATS_SHAPE = Shape(
     (
         make_tool_field(ToolKind.END_MILL),
         ShapeField("DIA", "CUTTER DIAMETER", FieldKind.DIAMETER, _across, is_in_comment=True),
-        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("FLATS", "FLATS", FieldKind.COUNT, 6.0, maximum=36),
         ShapeField("ACROSS", "ACROSS FLATS", FieldKind.DIAMETER),
         ShapeField(
@@ -352,7 +357,7 @@ SLOT_SHAPE = Shape(
     (
         make_tool_field(ToolKind.END_MILL),
         ShapeField("DIA", "CUTTER DIAMETER", FieldKind.DIAMETER, _across, is_in_comment=True),
-        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("FROM", "PART DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("AT", "DISTANCE FROM Z0 TO START", FieldKind.LENGTH, 0.0, allows_zero=True),
         ShapeField("LONG", "LENGTH ALONG Z", FieldKind.LENGTH, 0.0, allows_zero=True),
         ShapeField("TURN", "ANGLE AROUND THE PART", FieldKind.ANGLE, 0.0, allows_zero=True, maximum=3600),
@@ -398,7 +403,7 @@ def _live_checks(checks: ShapeCheck) -> ShapeCheck:
 def _spindle_two(shape: Shape) -> Shape:
     speed = ShapeField("LRPM", "LIVE TOOL SPEED", FieldKind.RPM, _LIVE_RPM, maximum=MAX_RPM)
     fields = (*shape.fields[:-1], speed, shape.fields[-1])
-    return replace(shape, fields=fields, checks=_live_checks(shape.checks))
+    return replace(shape, fields=fields, find_field_conflicts=_live_checks(shape.find_field_conflicts))
 
 
 SINUMERIK_CROSS, SINUMERIK_FLATS, SINUMERIK_SLOT = map(

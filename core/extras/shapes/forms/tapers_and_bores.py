@@ -11,7 +11,7 @@ from core.extras.shapes.common_fields import (
     make_rpm_field,
     make_surface_speed_field,
     make_tool_field,
-    propose_bar,
+    propose_bar_diameter,
 )
 from core.extras.shapes.contour import ContourPoint
 from core.extras.shapes.cutting_data import Operation
@@ -108,7 +108,7 @@ TAPER_SHAPE = Shape(
     "a taper defined by two diameters, or by one diameter and an angle",
     (
         make_tool_field(ToolKind.TURNING),
-        ShapeField("FROM", "STOCK DIAMETER", FieldKind.DIAMETER, propose_bar, allows_zero=True),
+        ShapeField("FROM", "STOCK DIAMETER", FieldKind.DIAMETER, propose_bar_diameter, allows_zero=True),
         ShapeField("SMALL", "DIAMETER AT THE FACE", FieldKind.DIAMETER),
         ShapeField("AT", "DISTANCE FROM Z0 TO START", FieldKind.LENGTH, 0.0, allows_zero=True),
         ShapeField("LONG", "LENGTH", FieldKind.LENGTH),
@@ -175,7 +175,7 @@ EDGE_SHAPE = Shape(
         make_tool_field(ToolKind.TURNING, ToolKind.BORING),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
         ShapeField("KIND", "KIND", FieldKind.CHOICE, CHAMFER, (CHAMFER, ROUND)),
-        ShapeField("DIAM", "DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("DIAM", "DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("EDGE", "SIZE", FieldKind.LENGTH),
         ShapeField("AT", "DISTANCE FROM Z0 TO FACE", FieldKind.LENGTH, 0.0, allows_zero=True),
         make_feed_field(Operation.FINISH),

@@ -17,7 +17,7 @@ from core.extras.shapes.common_fields import (
     make_rpm_field,
     make_surface_speed_field,
     make_tool_field,
-    propose_bar,
+    propose_bar_diameter,
 )
 from core.extras.shapes.contour import (
     POINT_TOLERANCE,
@@ -119,7 +119,7 @@ COMPENSATION_FIELD = ShapeField(
 
 
 def _next_label(_values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    return float(setting.free_subroutine)
+    return float(setting.free_subroutine_number)
 
 
 LABEL_FIELD = ShapeField(
@@ -279,7 +279,7 @@ def check_cutting_data(filled_shape: FilledShape, settings: ProgramSettings) -> 
             ),
         )
     stock, end = _stock_and_end(
-        {**filled_shape.shape.extent(filled_shape.contour_points), **filled_shape.values}
+        {**filled_shape.shape.calculate_extent(filled_shape.contour_points), **filled_shape.values}
     )
     if filled_shape.shape.find_field("ROUGH") is not None:
         yield from check_pass_depth(filled_shape, settings, "ROUGH", rough or abs(stock - end) / 2.0)
@@ -335,7 +335,12 @@ TURNING_SHAPE = Shape(
         make_tool_field(ToolKind.TURNING, ToolKind.BORING),
         ShapeField("SIDE", "SIDE", FieldKind.CHOICE, OUTSIDE, (OUTSIDE, INSIDE)),
         ShapeField(
-            "FROM", "STOCK DIAMETER", FieldKind.DIAMETER, propose_bar, allows_zero=True, applies_to=_outside
+            "FROM",
+            "STOCK DIAMETER",
+            FieldKind.DIAMETER,
+            propose_bar_diameter,
+            allows_zero=True,
+            applies_to=_outside,
         ),
         ShapeField("HOLE", "HOLE DIAMETER", FieldKind.DIAMETER, None, applies_to=lambda v: not _outside(v)),
         ROUGHING_DEPTH_FIELD,
@@ -349,8 +354,8 @@ TURNING_SHAPE = Shape(
     _turn,
     _turn_sketch,
     _contour_checks,
-    contour=True,
-    extent=_extent,
+    has_point_table=True,
+    calculate_extent=_extent,
 )
 
 
@@ -420,7 +425,7 @@ FACE = Shape(
     "the end of the part faced square, in one or more passes",
     (
         make_tool_field(ToolKind.TURNING),
-        ShapeField("FROM", "START DIAMETER", FieldKind.DIAMETER, propose_bar),
+        ShapeField("FROM", "START DIAMETER", FieldKind.DIAMETER, propose_bar_diameter),
         ShapeField("TO", "END DIAMETER", FieldKind.COORDINATE, _past_axis),
         ShapeField("AT", "FACE AT Z", FieldKind.COORDINATE, 0.0),
         ShapeField("STOCK", "STOCK ON THE FACE", FieldKind.LENGTH, 0.0, allows_zero=True),

@@ -49,16 +49,18 @@ def _omniturn(code: CodeWriter, bars: BarFeedLoop) -> None:
     G97 is only written for its comment, because a comment is not permitted inside a loop.
     """
     call, loop = f"P{bars.subroutine_number}", f"LS{bars.part_count}"
-    code.write("G97", loop) if bars.feeds_each_part else code.write("G97")
-    code.write(f"T{bars.stop_tool:.0f}")
+    code.append_lines("G97", loop) if bars.feeds_each_part else code.append_lines("G97")
+    code.append_lines(f"T{bars.stop_tool:.0f}")
     _write_stop_move(code, bars)
-    code.write("M13", f"G94F{format_short_number(bars.feed_rate)}{code.format_z(bars.facing_stock)}", "M12")
+    code.append_lines(
+        "M13", f"G94F{format_short_number(bars.feed_rate)}{code.format_z(bars.facing_stock)}", "M12"
+    )
     code.clear_modal_state()
     code.write_retract()
     if bars.feeds_each_part:
-        code.write(call, "LF")
+        code.append_lines(call, "LF")
     else:
-        code.write(loop, call, f"G10{code.format_point(0.0, -bars.part_length)}", "LF", "T0")
+        code.append_lines(loop, call, f"G10{code.format_point(0.0, -bars.part_length)}", "LF", "T0")
 
 
 def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
@@ -68,24 +70,24 @@ def _sinumerik(code: CodeWriter, bars: BarFeedLoop) -> None:
     """
     opens, closes = code.settings.shop.chuck_codes or (0, 0)
     begin, end = f"BAR_{bars.subroutine_number}", f"BAR_{bars.subroutine_number}_END"
-    code.write(*([f"{begin}:"] if bars.feeds_each_part else []), f"T{bars.stop_tool:.0f} D1", "M5")
+    code.append_lines(*([f"{begin}:"] if bars.feeds_each_part else []), f"T{bars.stop_tool:.0f} D1", "M5")
     code.clear_modal_state()
     _write_stop_move(code, bars)
-    code.write(
+    code.append_lines(
         f"M{opens}",
         f"G94 G1 {code.format_z(bars.facing_stock)} F{format_short_number(bars.feed_rate)}",
         f"M{closes}",
     )
     code.clear_modal_state()
     code.write_retract()
-    code.write(*([] if bars.feeds_each_part else [f"{begin}:"]), f"PART_{bars.subroutine_number}")
+    code.append_lines(*([] if bars.feeds_each_part else [f"{begin}:"]), f"PART_{bars.subroutine_number}")
     if not bars.feeds_each_part:
-        code.write(" ".join(("ATRANS", code.format_z(-bars.part_length))))
-    code.write(f"{end}:")
+        code.append_lines(" ".join(("ATRANS", code.format_z(-bars.part_length))))
+    code.append_lines(f"{end}:")
     if bars.part_count > 1:
-        code.write(" ".join(("REPEAT", begin, end, f"P={bars.part_count - 1}")))
+        code.append_lines(" ".join(("REPEAT", begin, end, f"P={bars.part_count - 1}")))
     if not bars.feeds_each_part:
-        code.write("TRANS")
+        code.append_lines("TRANS")
 
 
 def _write_stop_move(code: CodeWriter, bars: BarFeedLoop) -> None:
@@ -144,7 +146,7 @@ class CodeWriter:
         self._rapid = False
         self._feed = ""
 
-    def write(self, *lines: str) -> None:
+    def append_lines(self, *lines: str) -> None:
         """Append lines unchanged."""
         self.lines += lines
 
@@ -158,11 +160,11 @@ class CodeWriter:
         """Return the word for a radius, converted to a diameter if the program uses diameters."""
         s = self.settings
         value = 2.0 * radius if s.diameter else radius
-        return letter + format_short_number(round_length(value, metric=s.metric, is_diameter=s.diameter))
+        return letter + format_short_number(round_length(value, is_metric=s.metric, is_diameter=s.diameter))
 
     def format_z(self, value: float, letter: str = "Z") -> str:
         """Return the word for a length along Z, or for another length that is never a diameter."""
-        return letter + format_short_number(round_length(value, metric=self.settings.metric))
+        return letter + format_short_number(round_length(value, is_metric=self.settings.metric))
 
     def format_point(self, x: float | None, z: float | None) -> str:
         """Return the X and Z words of a move. A coordinate that is None has no word."""
@@ -181,9 +183,9 @@ class CodeWriter:
 
         The approach is a rapid to ``x`` at the tool change Z, and then a rapid to ``z``.
         """
-        self.write(f"T{tool:.0f}")
+        self.append_lines(f"T{tool:.0f}")
         if rpm:
-            self.write(f"{spindle_code}S{format_short_number(rpm, 0)}")
+            self.append_lines(f"{spindle_code}S{format_short_number(rpm, 0)}")
         self.clear_modal_state()
         self.write_rapid(x, self.settings.clear)
         if z is not None:
@@ -191,7 +193,7 @@ class CodeWriter:
 
     def write_rapid(self, x: float | None = None, z: float | None = None) -> None:
         """Write a rapid to a point; None omits an axis."""
-        self.write(("" if self._rapid else "G00") + self.format_point(x, z))
+        self.append_lines(("" if self._rapid else "G00") + self.format_point(x, z))
         self._rapid = True
 
     def write_cut(
@@ -201,7 +203,7 @@ class CodeWriter:
 
         If ``feed`` is 0, the active feed is used. ``suffix`` is text that follows the point.
         """
-        self.write(self.format_feed(feed) + self.format_point(x, z) + suffix)
+        self.append_lines(self.format_feed(feed) + self.format_point(x, z) + suffix)
 
     def format_feed(self, feed: float) -> str:
         """Return the words that make the next move a cut at ``feed`` per revolution.
@@ -218,24 +220,26 @@ class CodeWriter:
 
     def write_feed(self, feed: float) -> None:
         """Write a line that contains only a feed, for the following moves."""
-        self.write(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
+        self.append_lines(self.format_feed(feed) or f"F{format_short_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a straight line of a contour, with the corner to the next element."""
         corner = self.format_z(chamfer, "C") if chamfer else self.format_z(radius, "R") if radius else ""
-        self.write(self.format_feed(0.0) + self.format_point(x, z) + corner)
+        self.append_lines(self.format_feed(0.0) + self.format_point(x, z) + corner)
 
     def write_arc(self, x: float, z: float, radius: float, *, is_convex: bool) -> None:
         """Write an arc from the last point.
 
         A convex arc is like the rounded shoulder of a shaft, and a concave arc is like a fillet.
         """
-        self.write(f"{'G02' if is_convex else 'G03'}{self.format_point(x, z)}{self.format_z(radius, 'R')}")
+        self.append_lines(
+            f"{'G02' if is_convex else 'G03'}{self.format_point(x, z)}{self.format_z(radius, 'R')}"
+        )
 
     def write_dwell(self, seconds: float) -> None:
         """Write a dwell, unless ``seconds`` is 0."""
         if seconds:
-            self.write(f"G04F{format_short_number(seconds)}")
+            self.append_lines(f"G04F{format_short_number(seconds)}")
 
     def write_retract(self) -> None:
         """Write a rapid along Z to the tool change position."""
@@ -252,17 +256,17 @@ class CodeWriter:
         first = there[0]
         if turning.roughing_depth:
             self.write_feed(turning.roughing_feed)
-            self.write(
+            self.append_lines(
                 f"G75{self.format_z(turning.roughing_depth, 'I')}"
                 f"{self.format_z(turning.finish_allowance, 'U')}F{_feed(turning.roughing_feed)}"
             )
-            self.write(self.format_point(first[1], first[0]))
+            self.append_lines(self.format_point(first[1], first[0]))
             self.write_contour(turning.points)
-            self.write("RF")
+            self.append_lines("RF")
             self.write_rapid(x=first[1])
         if turning.compensation_offset:
             self.write_feed(turning.feed)
-            self.write(
+            self.append_lines(
                 "G42" if turning.is_inside else "G41",
                 f"{self.format_z(first[0])}D{turning.compensation_offset:.0f}",
             )
@@ -293,7 +297,7 @@ class CodeWriter:
     def cancel_compensation(self, offset: float) -> None:
         """Write the end of the nose compensation if a contour used this offset."""
         if offset:
-            self.write("G40")
+            self.append_lines("G40")
 
     def write_drilling(self, end: float, peck: float, feed: float, start: float) -> None:
         """Write a hole from the present position to ``end``, with pecks or in one pass.
@@ -301,19 +305,19 @@ class CodeWriter:
         ``start`` is the depth of an existing hole.
         """
         word = f"F{format_short_number(feed, 6)}"
-        self.write("G95")
+        self.append_lines("G95")
         if peck:
             back = self.format_z(self.settings.near / 2.0, "R") if start else ""
-            self.write(f"G83{self.format_z(end)}{self.format_z(peck, 'K')}{word}{back}")
+            self.append_lines(f"G83{self.format_z(end)}{self.format_z(peck, 'K')}{word}{back}")
         else:
-            self.write(f"G81{self.format_z(end)}{word}")
+            self.append_lines(f"G81{self.format_z(end)}{word}")
         self.clear_modal_state()
 
     def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
         """Write the moves of a tap: feed in at the pitch, reverse the spindle, and feed out."""
         self.write_tool_start(tool, cycle.rpm, 0.0, cycle.start_z, cycle.spindle_code)
         self.write_cut(z=cycle.end_z, feed=cycle.pitch)
-        self.write("M03" if cycle.spindle_code == "M04" else "M04")
+        self.append_lines("M03" if cycle.spindle_code == "M04" else "M04")
         self.write_dwell(cycle.dwell_s)
         self.write_cut(z=cycle.start_z)
 
@@ -321,11 +325,11 @@ class CodeWriter:
 
     def write_surface_speed(self, surface: float, max_rpm: float) -> None:
         """Write the start of constant surface speed, limited to ``max_rpm``."""
-        self.write(f"G96S{format_short_number(surface, 0)}", f"G77S{format_short_number(max_rpm, 0)}")
+        self.append_lines(f"G96S{format_short_number(surface, 0)}", f"G77S{format_short_number(max_rpm, 0)}")
 
     def write_constant_rpm(self) -> None:
         """Write the return to constant rpm, before another tool is called."""
-        self.write("G97")
+        self.append_lines("G97")
 
 
 def _feed(value: float) -> str:
@@ -360,21 +364,21 @@ def add_leading_zero(word: str) -> str:
     return _NO_ZERO.sub("0.", word)
 
 
-def round_length(value: float, *, metric: bool, is_diameter: bool = False) -> float:
+def round_length(value: float, *, is_metric: bool, is_diameter: bool = False) -> float:
     """Return a length rounded to the resolution of the control.
 
     If ``is_diameter`` is True, the length is rounded to the resolution of a diameter.
     """
-    step = _STEPS[metric] * (2.0 if is_diameter else 1.0)
+    step = _STEPS[is_metric] * (2.0 if is_diameter else 1.0)
     return round(value / step) * step
 
 
-def round_depth_up(radius: float, *, metric: bool) -> float:
+def round_depth_up(radius: float, *, is_metric: bool) -> float:
     """Return a depth rounded up to the resolution of the control.
 
     In passes of equal chip area, a slightly smaller depth would require one more pass.
     """
-    step = _STEPS[metric]
+    step = _STEPS[is_metric]
     return math.ceil(radius / step - 1e-6) * step
 
 

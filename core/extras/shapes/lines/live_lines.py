@@ -81,17 +81,17 @@ class LiveToolWriter:
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
         """Write the approach, the stop and hold of the spindle, and the start of the live tool."""
         self._code.write_tool_start(tool, 0.0, x, z)
-        self._code.write("M05", f"M{self._setting.shop.live_tool_codes[0]:02d}", "M19")
+        self._code.append_lines("M05", f"M{self._setting.shop.live_tool_codes[0]:02d}", "M19")
 
     def _released(self) -> None:
         self._code.clear_modal_state()
         self._code.write_retract()
-        self._code.write(f"M{self._setting.shop.live_tool_codes[1]:02d}", "M05")
+        self._code.append_lines(f"M{self._setting.shop.live_tool_codes[1]:02d}", "M05")
 
     def _angle(self, word: str, degrees: float) -> None:
         if word == "CA" or degrees:
             wait = f"G04F{format_short_number(_wait(degrees, self._setting.shop.max_c_rpm), 1)}"
-            self._code.write(f"{word}{format_short_number(degrees, 3)}", wait)
+            self._code.append_lines(f"{word}{format_short_number(degrees, 3)}", wait)
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
         """Write drilled and indexed holes, as a loop if there are several holes."""
@@ -99,14 +99,14 @@ class LiveToolWriter:
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         self._angle("CA", holes.start_angle_deg)
         if holes.hole_count > 1:
-            code.write(f"LS{holes.hole_count}")
-        code.write(
+            code.append_lines(f"LS{holes.hole_count}")
+        code.append_lines(
             f"G94F{format_short_number(holes.feed_rate)}{code.format_x(holes.bottom_radius)}",
             f"G00{code.format_x(holes.clearance_radius)}",
         )
         if holes.hole_count > 1:
             self._angle("CI", holes.angle_step_deg)
-            code.write("LF")
+            code.append_lines("LF")
         self._released()
 
     def write_face_milling(self, tool: float, faces: FaceMilling) -> None:
@@ -115,15 +115,17 @@ class LiveToolWriter:
         entry, (first, *rest) = format_short_number(faces.entry_x, 4), faces.path
         begin = f"X{format_short_number(first[0], 4)}Y{format_short_number(first[1], 4)}"
         self._write_live_tool_start(tool, -faces.entry_x, self._setting.near)
-        code.write(f"G94{rate}", "(~PLXC)")  # an earlier shape may have left feed per revolution in force
+        code.append_lines(
+            f"G94{rate}", "(~PLXC)"
+        )  # an earlier shape may have left feed per revolution in force
         for k, z in enumerate(faces.depths_z):
             if k:
-                code.write(f"({begin if faces.is_closed else f'X{entry}Y0'}{self._quick})")
-            code.write(f"({code.format_z(z)}{rate})", f"({begin}{rate})")
+                code.append_lines(f"({begin if faces.is_closed else f'X{entry}Y0'}{self._quick})")
+            code.append_lines(f"({code.format_z(z)}{rate})", f"({begin}{rate})")
             code.lines += [f"(X{format_short_number(x, 4)}Y{format_short_number(y, 4)})" for x, y in rest]
             if not faces.is_closed:
-                code.write(f"(X{entry}Y0)")
-        code.write("(END)", f"G00{code.format_x(-faces.entry_x)}")
+                code.append_lines(f"(X{entry}Y0)")
+        code.append_lines("(END)", f"G00{code.format_x(-faces.entry_x)}")
         self._released()
 
     def write_slots(self, tool: float, slots: CylinderSlots) -> None:
@@ -134,7 +136,7 @@ class LiveToolWriter:
         for k, angle in enumerate(slots.start_angles_deg):
             if k or angle:
                 self._angle("CA", angle)
-            code.write(f"G94F{rate}", "(~PLZC)", f"(D{format_short_number(slots.diameter, 4)})")
+            code.append_lines(f"G94F{rate}", "(~PLZC)", f"(D{format_short_number(slots.diameter, 4)})")
             for level, radius in enumerate(slots.bottom_radii):
                 there, back = (
                     f"(X{format_short_number(slots.length_z, 4)}Y{format_short_number(around, 4)}F{rate})",
@@ -143,11 +145,11 @@ class LiveToolWriter:
                 down = (
                     f"(Z{format_short_number(2.0 * radius, 4)}F{format_short_number(slots.feed_rate / 2.0)})"
                 )
-                code.write(down, back if level % 2 else there)
-            code.write(f"(Z{format_short_number(2.0 * slots.clearance_radius, 4)}{self._quick})")
+                code.append_lines(down, back if level % 2 else there)
+            code.append_lines(f"(Z{format_short_number(2.0 * slots.clearance_radius, 4)}{self._quick})")
             if len(slots.bottom_radii) % 2:
-                code.write("(X0Y0)")
-            code.write("(END)")
+                code.append_lines("(X0Y0)")
+            code.append_lines("(END)")
         self._released()
 
 
@@ -164,12 +166,12 @@ class SinumerikLiveToolWriter(LiveToolWriter):
 
     def _write_live_tool_start(self, tool: float, x: float, z: float) -> None:
         self._code.write_tool_start(tool, 0.0, x, z)
-        self._code.write("M5", f"S2={format_sinumerik_number(self._rpm, 0)} M2=3", "G94")
+        self._code.append_lines("M5", f"S2={format_sinumerik_number(self._rpm, 0)} M2=3", "G94")
         self._code.clear_modal_state()
 
     def _released(self) -> None:
         self._code.write_retract()
-        self._code.write("M2=5")
+        self._code.append_lines("M2=5")
 
     def _c(self, degrees: float) -> str:
         name = self._setting.shop.third_axis
@@ -181,14 +183,14 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         TRANSMIT measures X and Y in the same unit.
         """
         if self._setting.diameter:
-            self._code.write("DIAMON" if degrees else "DIAMOF")
+            self._code.append_lines("DIAMON" if degrees else "DIAMOF")
 
     def write_holes(self, tool: float, holes: RadialHoles) -> None:
         """Write the moves of each hole, with its absolute angle of C."""
         code = self._code
         self._write_live_tool_start(tool, holes.clearance_radius, holes.hole_z)
         for k in range(holes.hole_count):
-            code.write(f"G0 {self._c(holes.start_angle_deg + k * holes.angle_step_deg)}")
+            code.append_lines(f"G0 {self._c(holes.start_angle_deg + k * holes.angle_step_deg)}")
             code.clear_modal_state()
             code.write_cut(x=holes.bottom_radius, feed=holes.feed_rate)
             code.write_rapid(holes.clearance_radius)
@@ -199,15 +201,15 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         code, rate = self._code, f"F{format_sinumerik_number(faces.feed_rate)}"
         self._write_live_tool_start(tool, faces.entry_x, self._setting.near)
         self._words(degrees=False)
-        code.write("G17", "TRANSMIT")
+        code.append_lines("G17", "TRANSMIT")
         for k, z in enumerate(faces.depths_z):
             if k and faces.is_closed:
-                code.write(f"G0 {self._xy(*faces.path[0])}")
-            code.write(f"G1 {code.format_z(z)} {rate}")
+                code.append_lines(f"G0 {self._xy(*faces.path[0])}")
+            code.append_lines(f"G1 {code.format_z(z)} {rate}")
             code.lines += [self._xy(x, y) for x, y in faces.path]
             if not faces.is_closed:
-                code.write(self._xy(faces.entry_x, 0.0))
-        code.write(f"G0 {code.format_z(self._setting.near)}", "TRAFOOF", "G18")
+                code.append_lines(self._xy(faces.entry_x, 0.0))
+        code.append_lines(f"G0 {code.format_z(self._setting.near)}", "TRAFOOF", "G18")
         self._words(degrees=True)
         code.clear_modal_state()
         code.write_rapid(x=faces.entry_x)
@@ -223,7 +225,7 @@ class SinumerikLiveToolWriter(LiveToolWriter):
         """
         code, degree = self._code, math.pi * slots.diameter / 360.0
         self._write_live_tool_start(tool, slots.clearance_radius, slots.start_z)
-        code.write("G19", f"TRACYL({format_sinumerik_number(slots.diameter)})")
+        code.append_lines("G19", f"TRACYL({format_sinumerik_number(slots.diameter)})")
         rate, slow = (
             f"F{format_sinumerik_number(each)}" for each in (slots.feed_rate, slots.feed_rate / 2.0)
         )
@@ -233,11 +235,13 @@ class SinumerikLiveToolWriter(LiveToolWriter):
                 f"{self._y((slots.angle_span_deg - angle) * degree)} "
                 f"{code.format_z(slots.start_z - slots.length_z)}"
             )
-            code.write(f"G0 {begin}")
+            code.append_lines(f"G0 {begin}")
             for level, radius in enumerate(slots.bottom_radii):
-                code.write(f"G1 {code.format_x(radius)} {slow}", f"{begin if level % 2 else end} {rate}")
-            code.write(f"G0 {code.format_x(slots.clearance_radius)}")
-        code.write("TRAFOOF", "G18")
+                code.append_lines(
+                    f"G1 {code.format_x(radius)} {slow}", f"{begin if level % 2 else end} {rate}"
+                )
+            code.append_lines(f"G0 {code.format_x(slots.clearance_radius)}")
+        code.append_lines("TRAFOOF", "G18")
         code.clear_modal_state()
         self._released()
 

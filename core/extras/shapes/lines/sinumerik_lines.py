@@ -54,7 +54,7 @@ class SinumerikCodeWriter(CodeWriter):
     def _move(self, motion: str, *words: str) -> None:
         begin = [] if self._motion == motion else [motion]
         self._motion = motion
-        self.write(" ".join([*begin, *(word for word in words if word)]))
+        self.append_lines(" ".join([*begin, *(word for word in words if word)]))
 
     # --- Moves
 
@@ -65,9 +65,9 @@ class SinumerikCodeWriter(CodeWriter):
 
         The approach is a rapid to ``x`` at the tool change Z, and then a rapid to ``z``.
         """
-        self.write(f"T{tool:.0f} D{self.cutting_edge:.0f}")
+        self.append_lines(f"T{tool:.0f} D{self.cutting_edge:.0f}")
         if rpm:
-            self.write(f"G95 S{format_sinumerik_number(rpm, 0)} {_TURNS[spindle_code]}")
+            self.append_lines(f"G95 S{format_sinumerik_number(rpm, 0)} {_TURNS[spindle_code]}")
         self.clear_modal_state()
         self.write_rapid(x, self.settings.clear)
         if z is not None:
@@ -94,7 +94,7 @@ class SinumerikCodeWriter(CodeWriter):
 
     def write_feed(self, feed: float) -> None:
         """Write a line that contains only a feed, for the following cycle."""
-        self.write(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
+        self.append_lines(self._fresh(feed) or f"F{format_sinumerik_number(feed, 6)}")
 
     def write_line(self, x: float | None, z: float | None, chamfer: float, radius: float) -> None:
         """Write a straight line of a contour, with the corner to the next element."""
@@ -115,7 +115,7 @@ class SinumerikCodeWriter(CodeWriter):
     def write_dwell(self, seconds: float) -> None:
         """Write a dwell, unless ``seconds`` is 0."""
         if seconds:
-            self.write(f"G4 F{format_sinumerik_number(seconds)}")
+            self.append_lines(f"G4 F{format_sinumerik_number(seconds)}")
 
     # --- Contours and holes
 
@@ -133,7 +133,7 @@ class SinumerikCodeWriter(CodeWriter):
                 f"{format_sinumerik_number(turning.roughing_depth)}, , , "
                 f"{format_sinumerik_number(turning.finish_allowance)}, {fast}, {fast}"
             )
-            self.write(
+            self.append_lines(
                 Message(
                     'CYCLE95("{name}:{name2}_END", {words}, , {value})',
                     name=name,
@@ -145,9 +145,9 @@ class SinumerikCodeWriter(CodeWriter):
             self.clear_modal_state()
             self.write_rapid(x, z + self.settings.near)
         if turning.compensation_offset:
-            self.write("G41" if turning.is_inside else "G42")
+            self.append_lines("G41" if turning.is_inside else "G42")
         if turning.roughing_depth:
-            self.write(f"{name}:")
+            self.append_lines(f"{name}:")
         self._motion = ""
         self._move("G1", self.format_point(x, z), feed or f"F{format_sinumerik_number(turning.feed, 6)}")
         self.write_contour(turning.points)
@@ -158,12 +158,14 @@ class SinumerikCodeWriter(CodeWriter):
         if turning.roughing_depth:
             if leaves:
                 self.write_cut(turning.clear_radius)
-            self.write(f"{name}_END:")
+            self.append_lines(f"{name}_END:")
         self._motion = ""
         if leaves and not turning.roughing_depth:
-            self.write(" ".join(word for word in (off, "G1", self.format_x(turning.clear_radius)) if word))
+            self.append_lines(
+                " ".join(word for word in (off, "G1", self.format_x(turning.clear_radius)) if word)
+            )
         elif off:
-            self.write(off)
+            self.append_lines(off)
 
     def cancel_compensation(self, offset: float) -> None:
         """Write nothing, because the move away from the contour has already canceled the compensation."""
@@ -175,9 +177,9 @@ class SinumerikCodeWriter(CodeWriter):
             f"{format_sinumerik_number(near)}, {format_sinumerik_number(-start)}, "
             f"{format_sinumerik_number(near / 2.0)}, {format_sinumerik_number(end)}"
         )
-        self.write(f"G17 {self._fresh(feed)}".rstrip())
+        self.append_lines(f"G17 {self._fresh(feed)}".rstrip())
         if peck:
-            self.write(
+            self.append_lines(
                 Message(
                     "CYCLE83({planes}, , , {peck}, 0, 0, 0, 1, 1)",
                     planes=planes,
@@ -185,8 +187,8 @@ class SinumerikCodeWriter(CodeWriter):
                 )
             )
         else:
-            self.write(f"CYCLE81({planes})")
-        self.write("G18")
+            self.append_lines(f"CYCLE81({planes})")
+        self.append_lines("G18")
         self.clear_modal_state()
 
     def write_tapping(self, tool: float, cycle: TappingCycle) -> None:
@@ -198,13 +200,13 @@ class SinumerikCodeWriter(CodeWriter):
             f"{format_sinumerik_number(cycle.start_z)}, 0, {format_sinumerik_number(cycle.start_z)}, "
             f"{format_sinumerik_number(cycle.end_z)}, , {format_sinumerik_number(cycle.dwell_s)}"
         )
-        self.write("G17")
+        self.append_lines("G17")
         if cycle.is_rigid:
             lead, speed = (
                 cycle.pitch * (-1.0 if cycle.spindle_code == "M04" else 1.0),
                 format_sinumerik_number(cycle.rpm, 0),
             )
-            self.write(
+            self.append_lines(
                 "M5",
                 Message(
                     "CYCLE84({hole}, 5, , {lead}, 0, {speed}, {speed2})",
@@ -215,21 +217,21 @@ class SinumerikCodeWriter(CodeWriter):
                 ),
             )
         else:
-            self.write(
+            self.append_lines(
                 Message(
                     "CYCLE840({hole}, 0, , 0, , {pitch})",
                     hole=hole,
                     pitch=format_sinumerik_number(cycle.pitch, 6),
                 )
             )
-        self.write("G18")
+        self.append_lines("G18")
         self.clear_modal_state()
 
     # --- Spindle
 
     def write_surface_speed(self, surface: float, max_rpm: float) -> None:
         """Write the start of constant surface speed, limited to ``max_rpm``."""
-        self.write(
+        self.append_lines(
             Message(
                 "G96 S{surface} LIMS={maximum}",
                 surface=format_sinumerik_number(surface, 0),
@@ -239,4 +241,4 @@ class SinumerikCodeWriter(CodeWriter):
 
     def write_constant_rpm(self) -> None:
         """Write the return to constant rpm, before another tool is called."""
-        self.write("G97")
+        self.append_lines("G97")

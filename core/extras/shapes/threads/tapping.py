@@ -26,14 +26,14 @@ from core.extras.shapes.threads.thread_series import (
     TAPERED_SERIES,
     ThreadSeries,
     convert_length,
-    find_size,
+    find_thread_size,
 )
 from core.extras.shapes.threads.thread_values import (
     INSIDE,
     LEFT,
     RIGHT,
     check_thread_name,
-    find_limits,
+    find_thread_limits,
     get_series,
     list_classes_for_side,
 )
@@ -63,15 +63,15 @@ def _metric() -> Iterator[float]:
     yield from (n / 4 for n in range(56, 201))
 
 
-def find_tap_drill(minimum: float, maximum: float, *, metric: bool) -> tuple[str, float] | None:
+def find_tap_drill(minimum: float, maximum: float, *, is_metric: bool) -> tuple[str, float] | None:
     """Return the name and size of the drill for a hole between two limits, or None.
 
     The limits and the size are in mm or inches. The drill is the largest one that is not above the middle
     of the limits, because drills cut oversize. If there is no such drill, the next larger drill is used.
     """
-    sold = {f"{size:g}": size for size in _metric()} if metric else _INCH
+    sold = {f"{size:g}": size for size in _metric()} if is_metric else _INCH
     fits = sorted((size, name) for name, size in sold.items() if minimum <= size <= maximum)
-    middle = (minimum + maximum) / 2.0 + (_OVER if metric else 0.0)
+    middle = (minimum + maximum) / 2.0 + (_OVER if is_metric else 0.0)
     below = [each for each in fits if each[0] <= middle]
     chosen = below[-1] if below else fits[0] if fits else None
     return None if chosen is None else (chosen[1], chosen[0])
@@ -95,17 +95,17 @@ def _named(values: FieldValues) -> bool:
 
 
 def _pitch(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    found = find_size(get_series(values), text(values, "SIZE"))
+    found = find_thread_size(get_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(convert_length(found.pitch, get_series(values), metric=setting.metric), 6)
+    return round(convert_length(found.pitch, get_series(values), is_metric=setting.metric), 6)
 
 
 def _across(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-    found = find_size(get_series(values), text(values, "SIZE"))
+    found = find_thread_size(get_series(values), text(values, "SIZE"))
     if found is None:
         return None
-    return round(convert_length(found.diameter, get_series(values), metric=setting.metric), 4)
+    return round(convert_length(found.diameter, get_series(values), is_metric=setting.metric), 4)
 
 
 def _turns(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
@@ -184,11 +184,11 @@ def _checks(filled: FilledShape, setting: ProgramSettings) -> Iterator[FieldErro
 
 
 def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
-    known = find_limits({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
+    known = find_thread_limits({**filled.values, "SIDE": INSIDE, "CLASS": _usual_class(filled)}, setting)
     if known is None:
         return ()
     series = get_series(filled.values)
-    places, unit = (2 if setting.metric else 4), convert_length(1.0, series, metric=setting.metric)
+    places, unit = (2 if setting.metric else 4), convert_length(1.0, series, is_metric=setting.metric)
     least, most = (format_short_number(value * unit, places) for value in known.minor_diameter)
     hole_size_text = Message(
         "hole diameter before tapping: {crest}; limits {minimum} to {maximum}",
@@ -196,7 +196,7 @@ def _says(filled: FilledShape, setting: ProgramSettings) -> tuple[str, ...]:
         minimum=least,
         maximum=most,
     )
-    drill = find_tap_drill(*known.minor_diameter, metric=series in METRIC_SERIES)
+    drill = find_tap_drill(*known.minor_diameter, is_metric=series in METRIC_SERIES)
     return (
         (hole_size_text,)
         if drill is None
@@ -209,7 +209,7 @@ def _called(name: str, size: float, series: ThreadSeries, settings: ProgramSetti
 
     The size in the program's unit follows the name if the name is in another unit.
     """
-    size = convert_length(size, series, metric=settings.metric)
+    size = convert_length(size, series, is_metric=settings.metric)
     shown = format_short_number(size, 3 if settings.metric else 4)
     named = Message("{unit} mm", unit=name) if series in METRIC_SERIES else name
     return (
@@ -267,8 +267,8 @@ TAPPING_SHAPE = Shape(
     _tap,
     _sketch,
     _checks,
-    first=check_thread_name,
-    says=_says,
+    find_blocking_errors=check_thread_name,
+    make_notes=_says,
 )
 
 
@@ -303,7 +303,7 @@ def _propose_tapping_rpm(values: FieldValues, settings: ProgramSettings) -> Fiel
 
 SINUMERIK_TAPPING_SHAPE = replace(
     TAPPING_SHAPE,
-    checks=_sinumerik_checks,
+    find_field_conflicts=_sinumerik_checks,
     fields=(
         TAPPING_SHAPE.fields[0],
         ShapeField("HOLDER", "HOLDER", FieldKind.CHOICE, FLOATING, (FLOATING, RIGID)),

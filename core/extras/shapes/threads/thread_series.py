@@ -135,7 +135,7 @@ THREAD_SIZES: dict[ThreadSeries, tuple[ThreadSize, ...]] = {
 """From small to large."""
 
 
-def find_size(series: ThreadSeries, name: str) -> ThreadSize | None:
+def find_thread_size(series: ThreadSeries, name: str) -> ThreadSize | None:
     """Return the size with this name, or None.
 
     Names are, for example, 1/2, 1/2-13, #10, M10X1.25, 10, 10-32 or 10X1.25. If a name is ambiguous, 1 is
@@ -195,7 +195,7 @@ class ThreadLimits:
         return abs(self.crest_diameter - self.root_diameter) / 2.0
 
 
-def list_classes(series: ThreadSeries, *, is_inside: bool) -> tuple[str, ...]:
+def list_tolerance_classes(series: ThreadSeries, *, is_inside: bool) -> tuple[str, ...]:
     """Return the tolerance classes of a series, the usual class first.
 
     The result is () if the standard has only one class.
@@ -220,7 +220,7 @@ def get_flank_angle(series: ThreadSeries) -> float | None:
     )
 
 
-def calculate_limits(
+def calculate_thread_limits(
     series: ThreadSeries, size: ThreadSize, tolerance_class: str, *, is_inside: bool, nose_radius: float = 0.0
 ) -> ThreadLimits:
     """Return the limits of a thread.
@@ -456,12 +456,12 @@ def _acme(size: ThreadSize, tolerance: str, *, is_inside: bool) -> ThreadLimits:
     return ThreadLimits(major, pitch, (-math.inf, deepest), _middle(major), deepest - 0.5 * wide, 29.0)
 
 
-def convert_length(value: float, series: ThreadSeries, *, metric: bool) -> float:
+def convert_length(value: float, series: ThreadSeries, *, is_metric: bool) -> float:
     """Convert a length from the unit of a series to the unit of a program."""
     return value * (
         1.0 / 25.4
-        if series in METRIC_SERIES and not metric
+        if series in METRIC_SERIES and not is_metric
         else 25.4
-        if metric and series not in METRIC_SERIES
+        if is_metric and series not in METRIC_SERIES
         else 1.0
     )

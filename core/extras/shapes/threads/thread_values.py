@@ -21,12 +21,12 @@ from core.extras.shapes.threads.thread_series import (
     TAPERED_SERIES,
     ThreadLimits,
     ThreadSeries,
-    calculate_limits,
+    calculate_thread_limits,
     convert_length,
-    find_size,
+    find_thread_size,
     get_flank_angle,
     get_pipe_thread_length,
-    list_classes,
+    list_tolerance_classes,
 )
 from core.language.source import Dialect
 from core.message import Message
@@ -45,31 +45,32 @@ def get_series(values: FieldValues) -> ThreadSeries:
     return ThreadSeries(text(values, "SERIES") or ThreadSeries.CUSTOM)
 
 
-def find_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
+def find_thread_limits(values: FieldValues, settings: ProgramSettings) -> ThreadLimits | None:
     """Return the limits for series, size and class in the unit of the series, or None if they are unknown."""
     series, inside = get_series(values), text(values, "SIDE") == INSIDE
-    found = find_size(series, text(values, "SIZE"))
+    found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
         return None
     shape = settings.tool(number(values, "T"))
-    nose = shape.nose_radius / convert_length(1.0, series, metric=True) if shape is not None else 0.0
-    allowed = list_classes(series, is_inside=inside)
+    nose = shape.nose_radius / convert_length(1.0, series, is_metric=True) if shape is not None else 0.0
+    allowed = list_tolerance_classes(series, is_inside=inside)
     chosen = text(values, "CLASS")
     if allowed and chosen not in allowed:
         return None
-    return calculate_limits(series, found, chosen, is_inside=inside, nose_radius=nose)
+    return calculate_thread_limits(series, found, chosen, is_inside=inside, nose_radius=nose)
 
 
-def propose_diameter(limit_name: str) -> ValueProposal:
+def make_diameter_proposal(limit_name: str) -> ValueProposal:
     """Return a function that proposes a diameter of the standard; ``limit_name`` is ``crest`` or ``root``."""
 
     def proposed(values: FieldValues, setting: ProgramSettings) -> FieldValue | None:
-        known = find_limits(values, setting)
+        known = find_thread_limits(values, setting)
         if known is None:
             return None
         value = known.crest_diameter if limit_name == "crest" else known.root_diameter
         return round(
-            convert_length(value, get_series(values), metric=setting.metric), 4 if not setting.metric else 3
+            convert_length(value, get_series(values), is_metric=setting.metric),
+            4 if not setting.metric else 3,
         )
 
     return proposed
@@ -78,21 +79,21 @@ def propose_diameter(limit_name: str) -> ValueProposal:
 def propose_pitch(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the pitch of the thread size."""
     series = get_series(values)
-    found = find_size(series, text(values, "SIZE"))
+    found = find_thread_size(series, text(values, "SIZE"))
     if found is None:
         return None
-    return round(convert_length(found.pitch, series, metric=settings.metric), 6)
+    return round(convert_length(found.pitch, series, is_metric=settings.metric), 6)
 
 
-def propose_class(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
+def propose_tolerance_class(values: FieldValues, _settings: ProgramSettings) -> FieldValue | None:
     """Propose the usual tolerance class of the series."""
-    allowed = list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
+    allowed = list_tolerance_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
     return allowed[0] if allowed else ""
 
 
 def list_classes_for_side(values: FieldValues) -> tuple[str, ...]:
     """Return the tolerance classes of the series for the chosen side, inside or outside."""
-    return list_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
+    return list_tolerance_classes(get_series(values), is_inside=text(values, "SIDE") == INSIDE)
 
 
 def has_standard_series(values: FieldValues) -> bool:
@@ -108,12 +109,12 @@ def propose_taper(values: FieldValues, _settings: ProgramSettings) -> FieldValue
 def propose_length(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the thread length of a pipe thread."""
     series = get_series(values)
-    found = find_size(series, text(values, "SIZE"))
+    found = find_thread_size(series, text(values, "SIZE"))
     long = get_pipe_thread_length(series, found) if found is not None else 0.0
-    return round(convert_length(long, series, metric=settings.metric), 3) if long else None
+    return round(convert_length(long, series, is_metric=settings.metric), 3) if long else None
 
 
-def propose_passes(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
+def propose_pass_count(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose the number of passes for the pitch, from 4 for the finest pitch to 16 for the coarsest.
 
     Insert makers recommend these numbers.
@@ -132,7 +133,7 @@ def find_flank_angle(values: FieldValues, settings: ProgramSettings) -> float:
     return get_flank_angle(get_series(values)) or point or 60.0
 
 
-def propose_infeed(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
+def propose_infeed_angle(values: FieldValues, settings: ProgramSettings) -> FieldValue | None:
     """Propose an infeed angle that is at least half a degree smaller than the flank angle.
 
     For a thread of 60°, the result is 29°, as in the control.
@@ -156,7 +157,7 @@ def propose_run_up(values: FieldValues, settings: ProgramSettings) -> FieldValue
     lead, turns = number(values, "PITCH") * number(values, "STARTS"), number(values, "RPM")
     if not lead or not turns:
         return None
-    accel = settings.shop.max_acceleration / settings.mm
+    accel = settings.shop.max_acceleration_mm_s2 / settings.mm
     needed = (lead * turns / 60.0) ** 2 / accel if accel else _TURNS_BEFORE * lead
     return round(max(needed, 2.0 * number(values, "PITCH"), settings.near), 2 if not settings.metric else 1)
 
@@ -332,7 +333,7 @@ def check_thread_name(filled_shape: FilledShape, _settings: ProgramSettings) -> 
     """Yield an error if the series does not have this size or class, in which case no values are proposed."""
     series, allowed = get_series(filled_shape.values), list_classes_for_side(filled_shape.values)
     size, tolerance = filled_shape.get_text("SIZE"), filled_shape.get_text("CLASS")
-    if series is not ThreadSeries.CUSTOM and size and find_size(series, size) is None:
+    if series is not ThreadSeries.CUSTOM and size and find_thread_size(series, size) is None:
         yield FieldError(
             "SIZE",
             Message(

@@ -22,7 +22,7 @@ from core.extras.shapes.threads.thread_series import (
     TAPERED_SERIES,
     ThreadSeries,
     convert_length,
-    list_classes,
+    list_tolerance_classes,
 )
 from core.extras.shapes.threads.thread_values import (
     G35_LEAD_LIMITS_IN,
@@ -36,19 +36,19 @@ from core.extras.shapes.threads.thread_values import (
     check_thread,
     check_thread_name,
     find_coarse_step,
-    find_limits,
+    find_thread_limits,
     get_series,
     has_standard_series,
     list_classes_for_side,
-    propose_class,
-    propose_diameter,
-    propose_infeed,
+    make_diameter_proposal,
+    propose_infeed_angle,
     propose_length,
-    propose_passes,
+    propose_pass_count,
     propose_pitch,
     propose_run_up,
     propose_taper,
     propose_threading_rpm,
+    propose_tolerance_class,
 )
 from core.message import Message
 from core.part.tool_shape import ToolKind
@@ -67,7 +67,9 @@ def round_first_depth(filled_shape: FilledShape, settings: ProgramSettings) -> f
     """Return the depth of the first pass, rounded up to the resolution of its word."""
     deep, coarse = calculate_first_depth(filled_shape), find_coarse_step(filled_shape, settings)
     return (
-        math.ceil(deep / coarse - 1e-6) * coarse if coarse else round_depth_up(deep, metric=settings.metric)
+        math.ceil(deep / coarse - 1e-6) * coarse
+        if coarse
+        else round_depth_up(deep, is_metric=settings.metric)
     )
 
 
@@ -129,7 +131,7 @@ def write_cycle97(filled_shape: FilledShape, code: CodeWriter) -> None:
         "",
         *map(format_sinumerik_number, parameters),
     )
-    code.write(f"CYCLE97({', '.join(words)})")
+    code.append_lines(f"CYCLE97({', '.join(words)})")
     code.clear_modal_state()
 
 
@@ -157,7 +159,7 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
         code.write_rapid(near(at + on_cone), start_z if k else None)
         if coarse and k == 0:
             f2 = "F2" if lead * setting.mm / 25.4 > G35_LEAD_LIMITS_IN[1] else ""
-            code.write(f"G35{f2}", f"G92{code.format_point(at, start_z)}")
+            code.append_lines(f"G35{f2}", f"G92{code.format_point(at, start_z)}")
         words = (
             f"G33{code.format_x(near(root + on_cone))}{code.format_z(end)}"
             f"{code.format_x(first, 'I')}K{format_short_number(lead, 6)}"
@@ -173,11 +175,11 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
             if filled.get_number("INFEED") == 29.0
             else f"C{format_short_number(filled.get_number('INFEED'))}"
         )
-        code.write(words)
+        code.append_lines(words)
     if coarse:
         if starts > 1:
             code.write_rapid(z=begin)
-        code.write("G36", f"G92{code.format_point(at, begin)}")
+        code.append_lines("G36", f"G92{code.format_point(at, begin)}")
     code.clear_modal_state()
     code.write_rapid(clear)
     code.write_retract()
@@ -185,11 +187,11 @@ def _thread(filled: FilledShape, setting: ProgramSettings, code: CodeWriter) -> 
 
 def _make_remarks(filled_shape: FilledShape, settings: ProgramSettings) -> tuple[str, ...]:
     """Return notes about the measured diameters, and about the cone to be cut before a tapered thread."""
-    known = find_limits(filled_shape.values, settings)
+    known = find_thread_limits(filled_shape.values, settings)
     if known is None:
         return ()
     places = 3 if settings.metric else 4
-    unit = convert_length(1.0, get_series(filled_shape.values), metric=settings.metric)
+    unit = convert_length(1.0, get_series(filled_shape.values), is_metric=settings.metric)
     inside = filled_shape.get_text("SIDE") == INSIDE
     pairs = (known.minor_diameter if inside else known.major_diameter, known.pitch_diameter)
     least, most, low, high = (format_short_number(value * unit, places) for pair in pairs for value in pair)
@@ -265,7 +267,10 @@ def _sketch(filled: FilledShape) -> Sketch:
 
 _ALL_CLASSES = tuple(
     dict.fromkeys(
-        c for s in ThreadSeries for inside in (False, True) for c in list_classes(s, is_inside=inside)
+        c
+        for s in ThreadSeries
+        for inside in (False, True)
+        for c in list_tolerance_classes(s, is_inside=inside)
     )
 )
 
@@ -287,7 +292,7 @@ THREAD_SHAPE = Shape(
             "CLASS",
             "CLASS",
             FieldKind.CHOICE,
-            propose_class,
+            propose_tolerance_class,
             _ALL_CLASSES,
             applies_to=lambda v: bool(list_classes_for_side(v)),
         ),
@@ -305,21 +310,23 @@ THREAD_SHAPE = Shape(
         ShapeField("PITCH", "PITCH", FieldKind.LENGTH, propose_pitch),
         ShapeField("STARTS", "STARTS", FieldKind.COUNT, 1.0, maximum=24),
         ShapeField("HAND", "HAND", FieldKind.CHOICE, RIGHT, (RIGHT, LEFT)),
-        ShapeField("CREST", "DIAMETER BEFORE THREADING", FieldKind.DIAMETER, propose_diameter("crest")),
-        ShapeField("ROOT", "DIAMETER AT LAST PASS", FieldKind.DIAMETER, propose_diameter("root")),
+        ShapeField("CREST", "DIAMETER BEFORE THREADING", FieldKind.DIAMETER, make_diameter_proposal("crest")),
+        ShapeField("ROOT", "DIAMETER AT LAST PASS", FieldKind.DIAMETER, make_diameter_proposal("root")),
         ShapeField(
             "TAPER", "TAPER ON THE DIAMETER", FieldKind.RATIO, propose_taper, allows_zero=True, maximum=1.0
         ),
-        ShapeField("PASSES", "PASSES", FieldKind.COUNT, propose_passes, maximum=60),
-        ShapeField("INFEED", "INFEED ANGLE", FieldKind.ANGLE, propose_infeed, maximum=30.0, allows_zero=True),
+        ShapeField("PASSES", "PASSES", FieldKind.COUNT, propose_pass_count, maximum=60),
+        ShapeField(
+            "INFEED", "INFEED ANGLE", FieldKind.ANGLE, propose_infeed_angle, maximum=30.0, allows_zero=True
+        ),
         ShapeField("RPM", "SPINDLE SPEED, RPM", FieldKind.RPM, propose_threading_rpm, maximum=MAX_RPM),
         ShapeField("RUNUP", "RUN-UP", FieldKind.LENGTH, propose_run_up),
     ),
     _thread,
     _sketch,
     check_thread,
-    first=check_thread_name,
-    says=_make_remarks,
+    find_blocking_errors=check_thread_name,
+    make_notes=_make_remarks,
 )
 
 
@@ -329,7 +336,7 @@ def _of_cycle97(each: ShapeField) -> ShapeField:
 
 SINUMERIK_THREAD_SHAPE = replace(
     THREAD_SHAPE,
-    cut=_cycle97,
+    write_lines=_cycle97,
     fields=tuple(_of_cycle97(each) for each in THREAD_SHAPE.fields if each.word != "PULL"),
 )
 """The same by CYCLE97, which does not pull out while it goes on."""

@@ -12,13 +12,13 @@ from collections.abc import Callable, Iterator, Sequence
 
 from core.geometry.clearing_rings import ClearingRing, make_clearing_rings
 from core.geometry.contour_offset import GougeError, offset_known_contour
-from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Arc, Element, Point, left_normal
+from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Arc, Element, Point, get_left_normal
 from core.geometry.pocket_area import (
-    AreaCheck,
+    AreaChecker,
     AreaError,
     ElementLoop,
     close_loop,
-    inset_loops,
+    make_inset_loops,
     split_loop,
     start_loop_at,
 )
@@ -48,7 +48,7 @@ class ClearingData:
         self.tool, self.area = tool, area
         depth = tool.read_length_mm(1)
         text = "Depth Q1={depth} mm is positive (upward)."
-        tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
+        tool.check_condition(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
         self.surface_z_mm = tool.read_length_mm(5, 0.0)
         self.bottom_z_mm = self.surface_z_mm + depth
         self.clearance_z_mm = self.surface_z_mm + (
@@ -79,7 +79,7 @@ class ClearingData:
         overlap = self.tool.read_value(2, 1.0)
         text = "With path overlap {named}={overlap}, the cycle cannot clear the area."
         hint = "Enter a value between 0.0001 and 1.9999."
-        self.tool.check(
+        self.tool.check_condition(
             0.0 < overlap < _MAX_OVERLAP, text, hint, named=self.tool.format_name(2), overlap=overlap
         )
         return min(overlap, 1.0) * self.tool.radius_mm
@@ -100,7 +100,7 @@ class ClearingData:
                 tool_radius_mm + self.side_allowance_mm,
                 share,
                 tool_radius_mm,
-                conventional=self.is_up_cut,
+                is_conventional=self.is_up_cut,
                 position=here,
             )
         except AreaError as problem:
@@ -133,11 +133,11 @@ def check_contour_data(tool: CycleTool) -> None:
 
     Raises ProgramError if the data are invalid.
     """
-    tool.check(
+    tool.check_condition(
         tool.read_length_mm(1) <= 0.0, "Depth Q1 is positive (upward).", "Enter the depth with a minus sign."
     )
     text = "With the programmed path overlap Q2, the cycle cannot clear the area."
-    tool.check(
+    tool.check_condition(
         0.0 < tool.read_value(2, 1.0) < _MAX_OVERLAP, text, "Set Q2 to a value between 0.0001 and 1.9999."
     )
 
@@ -222,7 +222,7 @@ def _ramp(
             sum(element.length for element in cut.ramp_loop),
         )
         text = "There is not enough room to plunge along a ramp."
-        tool.check(
+        tool.check_condition(
             length <= _MAX_RAMP_ROUNDS * ring, text, "Use a center-cutting tool and plunge vertically."
         )
         ramp_elements, rest = split_loop(cut.ramp_loop, length)
@@ -277,15 +277,15 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     apart = tool.radius_mm + tool.read_length_mm(14, 0.0)
     try:
-        loops = inset_loops(area, apart)
+        loops = make_inset_loops(area, apart)
     except AreaError as problem:
         raise clearing.make_fit_error(problem) from None
     if not loops:
         raise clearing.make_fit_error(AreaError("the tool does not fit anywhere inside the contour"))
-    room = AreaCheck(area)
+    room = AreaChecker(area)
     yield from clearing.move_to_safe_z()
     for loop in loops:
-        ring = [element.reversed() for element in reversed(loop)] if clearing.is_up_cut else loop
+        ring = [element.make_reversed() for element in reversed(loop)] if clearing.is_up_cut else loop
         ring, to_it, off_it = _add_approach_arcs(
             ring, room, apart, tool.radius_mm, is_up_cut=clearing.is_up_cut
         )
@@ -298,7 +298,7 @@ def run_side_finishing(tool: CycleTool, area: Sequence[ElementLoop]) -> Iterator
 
 
 def _add_approach_arcs(
-    ring: ElementLoop, room: AreaCheck, offset_mm: float, radius: float, *, is_up_cut: bool
+    ring: ElementLoop, room: AreaChecker, offset_mm: float, radius: float, *, is_up_cut: bool
 ) -> tuple[ElementLoop, Arc | None, Arc | None]:
     """Return the ring with a new start point, and its approach and departure arcs.
 
@@ -320,7 +320,7 @@ def _make_quarter_arcs(
     wall_point: Point, direction: Point, radius_mm: float, *, is_left: bool
 ) -> tuple[Arc, Arc]:
     """Return quarter circles on the pocket side that lead to a point of the wall and away from the wall."""
-    x, y = left_normal(direction)
+    x, y = get_left_normal(direction)
     side = (x, y) if is_left else (-x, -y)
     centre = wall_point[0] + side[0] * radius_mm, wall_point[1] + side[1] * radius_mm
     before = centre[0] - direction[0] * radius_mm, centre[1] - direction[1] * radius_mm
@@ -342,9 +342,9 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
     figure = contours[0]
     tool_path = _offset_path(clearing, figure)
     kind = tool.read_value(15, 1.0)
-    climbs = (figure.side == "L") == (tool.running_rpm > 0.0)  # in the programmed direction
-    if kind and figure.side and climbs != (kind > 0.0):
-        tool_path = [element.reversed() for element in reversed(tool_path)]
+    climbs = (figure.compensation_side == "L") == (tool.running_rpm > 0.0)  # in the programmed direction
+    if kind and figure.compensation_side and climbs != (kind > 0.0):
+        tool_path = [element.make_reversed() for element in reversed(tool_path)]
     feed, plunge = clearing.tool.read_cutting_feed(12), clearing.tool.read_cutting_feed(11)
     yield from clearing.move_to_safe_z()
     for index, z in enumerate(clearing.compute_levels(clearing.bottom_z_mm)):
@@ -355,7 +355,7 @@ def run_contour_train(tool: CycleTool, contours: ContourSequence) -> Iterator[Bl
         yield tool.move_to_z(z, plunge)
         yield from _along(tool, tool_path, feed)
         if not kind:
-            tool_path = [element.reversed() for element in reversed(tool_path)]
+            tool_path = [element.make_reversed() for element in reversed(tool_path)]
     yield tool.move_to_z(clearing.safe_z_mm)
 
 
@@ -366,15 +366,15 @@ def _offset_path(clearing: ClearingData, contour: SlContour) -> list[Element]:
     """
     elements = list(contour.elements)
     text = "Contour {figure} does not contain any elements."
-    clearing.tool.check(elements, text, "Add path functions to the contour.", figure=contour.label)
-    if not contour.side:
+    clearing.tool.check_condition(elements, text, "Add path functions to the contour.", figure=contour.label)
+    if not contour.compensation_side:
         return elements
     apart = clearing.tool.radius_mm + clearing.side_allowance_mm
     closed = math.dist(elements[-1].end, elements[0].start) <= MAX_CLOSING_GAP_MM
     if closed:
         elements = close_loop(elements)
     try:
-        offset_pieces = offset_known_contour(elements, apart if contour.side == "L" else -apart)
+        offset_pieces = offset_known_contour(elements, apart if contour.compensation_side == "L" else -apart)
     except GougeError as problem:
         raise clearing.make_fit_error(problem) from None
     return [piece.element for piece in offset_pieces]

@@ -116,7 +116,7 @@ class ActiveCycle:
             "cycles."
         )
         hint = "Remove this text from the program."
-        state.check(
+        state.check_condition(
             not 300 <= node.cycle_number <= 399,
             node.column,
             CYCLE_UNKNOWN,
@@ -165,7 +165,7 @@ class ActiveCycle:
         if (
             found is not None
             and state.active_plane is not None
-            and state.kinematics.with_preset(found).workpiece_rotation != state.kinematics.workpiece_rotation
+            and state.kinematics.apply_preset(found).workpiece_rotation != state.kinematics.workpiece_rotation
         ):
             text = (
                 "Preset {number} rotates the workpiece and cannot be activated while a tilted plane is "
@@ -174,7 +174,7 @@ class ActiveCycle:
             hint = "Write PLANE RESET STAY before this block."
             raise state.make_error(column, CONTRADICTION, text, hint, number=number)
         if found is not None:
-            state.kinematics = state.kinematics.with_preset(found)
+            state.kinematics = state.kinematics.apply_preset(found)
         elif number:
             text = "This machine has no preset table, so preset {number} uses the zero from the machine file."
             hint = "Set the preset on the PRESETS page."
@@ -213,7 +213,9 @@ class ActiveCycle:
         read. Raises ProgramError if no cycle is defined.
         """
         text = "No machining cycle is defined."
-        self._state.check(self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block.")
+        self._state.check_condition(
+            self._number, column, CYCLE_MISSING, text, "Write CYCL DEF before this block."
+        )
         self._check_feed_modes(column)
         if self._number in OLDER_CYCLES:
             self._check_lines(column)
@@ -231,7 +233,7 @@ class ActiveCycle:
         """Raise ProgramError if no contour is defined."""
         text = "No contour is defined for cycle {number}."
         hint = "List the contour labels in cycle 14 before this block."
-        self._state.check(contours, column, CYCLE_MISSING, text, hint, number=self._number)
+        self._state.check_condition(contours, column, CYCLE_MISSING, text, hint, number=self._number)
 
     def _check_lines(self, column: int) -> None:
         """Raise ProgramError if the definition of a cycle numbered below 200 lacks a line."""
@@ -274,7 +276,9 @@ class ActiveCycle:
         Raises ProgramError if the angle is missing.
         """
         hint = "Write ANGLE with a value in degrees."
-        self._state.check(node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint)
+        self._state.check_condition(
+            node.words, node.column, CYCLE_MISSING, "No angle is programmed in cycle 13.", hint
+        )
         angle = value(self._state, node.words[-1].value.formula)
         if not -360.0 <= angle <= 360.0:
             text = "{parameter} is not a valid spindle angle."
@@ -294,7 +298,9 @@ class ActiveCycle:
             return
         labels = parse_contour_labels(node.text)
         hint = "Write the labels, for example CONTOUR LABEL1 /2."
-        self._state.check(labels, node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint)
+        self._state.check_condition(
+            labels, node.column, CYCLE_MISSING, "Cycle 14 does not list any label.", hint
+        )
         self._contours += tuple(ContourPart(label, None) for label in labels)
         if len(self._contours) > _MAX_CONTOURS:
             raise self._state.make_error(
@@ -361,10 +367,12 @@ class ActiveCycle:
         """
         state = self._state
         text = "Neither PATTERN DEF nor SEL PATTERN has defined any points."
-        state.check(self._points, node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block.")
+        state.check_condition(
+            self._points, node.column, CYCLE_MISSING, text, "Write PATTERN DEF before this block."
+        )
         text = "CYCL CALL PAT needs a preceding cycle with a number of 200 or higher."
         hint = "Write the CYCL DEF of a machining cycle before this block."
-        state.check(self._number in _MACHINING, node.column, CYCLE_MISSING, text, hint)
+        state.check_condition(self._number in _MACHINING, node.column, CYCLE_MISSING, text, hint)
         speed = None if node.feed is None else word_values.evaluate_feed(state, node.feed, node.column)
         surface = state.q_values.get(_SURFACE, 0.0)
         try:
@@ -382,7 +390,7 @@ class ActiveCycle:
             # The proof continues after an error of the cycle and needs the programmed surface.
             state.q_values[_SURFACE] = surface
 
-    def call_at(self, node: CycleCall) -> Iterator[Block]:
+    def call_at_position(self, node: CycleCall) -> Iterator[Block]:
         """Yield the blocks of CYCL CALL POS.
 
         The blocks are a move to the position above the workpiece, and then the cycle.

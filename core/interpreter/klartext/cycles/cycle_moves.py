@@ -57,7 +57,7 @@ class CycleTool:
         self._column = column
         self._told_as: CycleParameters = {}
 
-    def with_parameters(self, parameters: CycleParameters) -> CycleTool:
+    def copy_with_parameters(self, parameters: CycleParameters) -> CycleTool:
         """Return a copy of the tool for another cycle with other parameters.
 
         Each parameter is either the number of a parameter of this cycle or a fixed value. Fixed lengths are
@@ -114,7 +114,7 @@ class CycleTool:
                 self._state, self._state.tool_feed, self._state.tool_feed_base, self._column
             )
         text = "{parameter} of cycle {number} is not a valid feed rate."
-        self.check(found > 0.0, text, "Enter a feed rate above 0.", parameter=self.format_name(q))
+        self.check_condition(found > 0.0, text, "Enter a feed rate above 0.", parameter=self.format_name(q))
         return None if found >= MAX_FEED_VALUE else found
 
     def read_cutting_feed(self, q: int) -> float:
@@ -134,7 +134,7 @@ class CycleTool:
         """
         return self._state.make_error(self._column, code, text, hint, **{"number": self._number, **values})
 
-    def check(
+    def check_condition(
         self, condition: object, text: str, hint: str, code: str = INPUT_VALUE_INCORRECT, /, **values: object
     ) -> None:
         """Raise the error of ``make_error`` unless ``condition`` is true."""
@@ -196,7 +196,7 @@ class CycleTool:
         """Return the signed spindle speed in rpm. Raises ProgramError if the spindle is stopped."""
         found = self.signed_rpm
         text = "Cycle {number} needs a running spindle."
-        self.check(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
+        self.check_condition(found, text, "Start the spindle with M3 before the cycle.", WRONG_RPM)
         return found
 
     @property
@@ -209,12 +209,12 @@ class CycleTool:
 
         Raises ProgramError if S is not programmed.
         """
-        self.check(
+        self.check_condition(
             self.programmed_rpm, "Cycle {number} needs a spindle speed.", "Program S in TOOL CALL.", WRONG_RPM
         )
         return math.copysign(self.programmed_rpm, pitch)
 
-    def warn_uncoupled(self) -> None:
+    def warn_about_unsynchronized_z(self) -> None:
         """Log a warning that Z is not synchronized with the spindle angle.
 
         Z therefore stops while the spindle reverses.
@@ -225,7 +225,7 @@ class CycleTool:
         )
         self._tell(Severity.WARNING, "tapping-uncoupled", text, "Use a floating tap holder.")
 
-    def warn_unoriented(self) -> None:
+    def warn_about_unknown_orientation(self) -> None:
         """Log a warning that the direction of the cutting edge is unknown.
 
         The direction is unknown because the spindle cannot be oriented.
@@ -246,22 +246,24 @@ class CycleTool:
         yield self.move_straight(position)
         yield self.move_to_z(clearance_z_mm)
 
-    def make_tap_block(self, z: float, lead: float, *, in_hole: bool = False) -> Block:
-        """Return a move into or out of a thread at ``lead`` mm/rev, without feed override.
+    def make_tap_block(self, z: float, lead_mm: float, *, is_in_hole: bool = False) -> Block:
+        """Return a move into or out of a thread at ``lead_mm`` mm/rev, without feed override.
 
         Raises ProgramError if Z cannot move fast enough.
         """
         state, rpm = self._state, self._state.modal.rpm
         fastest = state.kinematics.linear_axes[2].vmax
-        if (rate := lead * rpm / 60.0) > fastest:
+        if (rate := lead_mm * rpm / 60.0) > fastest:
             text = (
                 "A lead of {lead} mm at S{rpm} requires a Z feed rate above the maximum of {fastest} mm/min."
             )
             hint = "Lower S."
-            raise self.make_error(text, hint, lead=f"{lead:.10g}", rpm=rpm, fastest=f"{fastest * 60.0:.10g}")
-        goal = state.to_machine_position((*self.xy_position, z))
+            raise self.make_error(
+                text, hint, lead=f"{lead_mm:.10g}", rpm=rpm, fastest=f"{fastest * 60.0:.10g}"
+            )
+        goal = state.convert_to_machine_position((*self.xy_position, z))
         made = state.make_move_block(BlockKind.FEED, dict(zip(LINEAR_AXES, goal, strict=True)), rate)
-        return replace(made, feed=lead, per_rev=True, follows_spindle=True, in_hole=in_hole)
+        return replace(made, feed=lead_mm, per_rev=True, follows_spindle=True, in_hole=is_in_hole)
 
     def convert_feed_to_lead(self, feed: float) -> float:
         """Convert a programmed feed to mm/rev. Raises ProgramError if the spindle is stopped."""
@@ -270,7 +272,7 @@ class CycleTool:
     def move_straight(self, position: Point, z: float | None = None, feed: float | None = None) -> Block:
         """Return a straight move to a point, which is a rapid if ``feed`` is None."""
         state = self._state
-        goal = state.to_machine_position((*position, self.z_position if z is None else z))
+        goal = state.convert_to_machine_position((*position, self.z_position if z is None else z))
         rate = None if feed is None else state.convert_feed_to_mm_s(feed)
         return state.make_move_block(
             BlockKind.RAPID if rate is None else BlockKind.FEED,
@@ -281,7 +283,7 @@ class CycleTool:
     def move_on_arc(self, arc: Arc, z: float, feed: float) -> Block:
         """Return a move along an arc that ends at the height ``z``."""
         state = self._state
-        levels = [state.transformation.to_plane((0.0, 0.0, at))[2] for at in (self.z_position, z)]
+        levels = [state.transformation.convert_to_plane((0.0, 0.0, at))[2] for at in (self.z_position, z)]
         names = state.axis_names
         columns = names.index("X"), names.index("Y"), names.index("Z")
         helix = HelixMove(
@@ -292,20 +294,22 @@ class CycleTool:
             state.axis_positions,
             columns,
         )
-        goal = dict(zip(LINEAR_AXES, state.to_machine_position((*arc.end, z)), strict=True))
+        goal = dict(zip(LINEAR_AXES, state.convert_to_machine_position((*arc.end, z)), strict=True))
         return state.make_move_block(BlockKind.PLANE_ARC, goal, state.convert_feed_to_mm_s(feed), helix)
 
-    def make_dwell_blocks(self, seconds: float, *, in_hole: bool = False) -> list[Block]:
+    def make_dwell_blocks(self, seconds: float, *, is_in_hole: bool = False) -> list[Block]:
         """Return a list with one dwell block, or an empty list for 0 s."""
         return (
-            [replace(self._state.make_action_block(Dwell(seconds)), in_hole=in_hole)] if seconds > 0.0 else []
+            [replace(self._state.make_action_block(Dwell(seconds)), in_hole=is_in_hole)]
+            if seconds > 0.0
+            else []
         )
 
-    def run_spindle(self, rpm: float, *, in_hole: bool = False) -> Block:
+    def run_spindle(self, rpm: float, *, is_in_hole: bool = False) -> Block:
         """Return the block that runs the spindle at the signed speed ``rpm``."""
         state = self._state
         state.modal = state.modal._replace(spindle=1 if rpm > 0.0 else -1, oriented=None)
-        return replace(state.make_action_block(SpindleRun(rpm)), in_hole=in_hole)
+        return replace(state.make_action_block(SpindleRun(rpm)), in_hole=is_in_hole)
 
     def set_spindle_speed(self, rpm: float) -> list[Block]:
         """Return the block that sets the signed spindle speed ``rpm``; a speed of 0 stops the spindle.
@@ -327,7 +331,7 @@ class CycleTool:
             return []
         text = "Q{parameter} selects M{number}, which is not a coolant function of this machine."
         hint = "Enter 8 for coolant on or 9 for coolant off."
-        self.check(number in {8, 9}, text, hint, parameter=q, number=number)
+        self.check_condition(number in {8, 9}, text, hint, parameter=q, number=number)
         state.modal = state.modal._replace(coolant=number == 8)
         return [state.make_action_block(CoolantSwitch(number == 8))]
 
@@ -379,14 +383,14 @@ class Placement:
     center: Point
     angle_deg: float = 0.0
 
-    def to_program_point(self, u: float, v: float) -> Point:
+    def convert_to_program_point(self, u: float, v: float) -> Point:
         """Return the program point for distances along the first and second side from the center, in mm."""
         c, s = math.cos(math.radians(self.angle_deg)), math.sin(math.radians(self.angle_deg))
         return self.center[0] + c * u - s * v, self.center[1] + s * u + c * v
 
     def translate(self, u: float, v: float) -> Placement:
         """Return a placement with its center moved by ``u`` and ``v`` along the sides."""
-        return Placement(self.to_program_point(u, v), self.angle_deg)
+        return Placement(self.convert_to_program_point(u, v), self.angle_deg)
 
 
 @dataclass(frozen=True, slots=True)
@@ -405,7 +409,7 @@ class RoundedRectangle:
             max(self.corner_radius_mm + margin_mm, 0.0),
         )
 
-    def mill(
+    def generate_outline_moves(
         self, tool: CycleTool, placement: Placement, feed: float, *, is_clockwise: bool
     ) -> Iterator[Block]:
         """Yield the moves once around the rectangle at the present height.
@@ -423,11 +427,13 @@ class RoundedRectangle:
         )
         z = tool.z_position
         for start, end, centre in corners:
-            first, last, about = (placement.to_program_point(x, side * y) for x, y in (start, end, centre))
+            first, last, about = (
+                placement.convert_to_program_point(x, side * y) for x, y in (start, end, centre)
+            )
             yield from _straight(tool, first, feed)
             if r > _MIN_LENGTH_MM:
                 yield tool.move_on_arc(Arc(first, last, about, is_clockwise), z, feed)
-        yield from _straight(tool, placement.to_program_point(self.half_side_u_mm, 0.0), feed)
+        yield from _straight(tool, placement.convert_to_program_point(self.half_side_u_mm, 0.0), feed)
 
 
 def _straight(tool: CycleTool, at: Point, feed: float) -> Iterator[Block]:

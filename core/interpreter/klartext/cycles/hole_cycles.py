@@ -40,7 +40,7 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     move off the wall, the program then stops so that the operator can turn the edge away from the wall.
     """
     surface, clear, bottom = read_heights(tool)
-    rpm, off_wall_direction = tool.running_rpm, lateral_direction(tool, (0, 1, 2, 3, 4))
+    rpm, off_wall_direction = tool.running_rpm, read_lateral_direction(tool, (0, 1, 2, 3, 4))
     x, y = tool.xy_position
     yield tool.move_to_z(clear)
     if abs(bottom - surface) < MIN_LENGTH_MM:
@@ -52,7 +52,7 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     )
     if off_wall_direction != (0.0, 0.0):
         if not tool.can_orient_spindle:
-            tool.warn_unoriented()
+            tool.warn_about_unknown_orientation()
             yield tool.stop_program(_EDGE[off_wall_direction])
         yield tool.move_straight(
             (x + off_wall_direction[0] * _LATERAL_MOVE_MM, y + off_wall_direction[1] * _LATERAL_MOVE_MM),
@@ -65,7 +65,7 @@ def run_boring(tool: CycleTool) -> Iterator[Block]:
     yield tool.run_spindle(rpm)
 
 
-def lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
+def read_lateral_direction(tool: CycleTool, directions: tuple[int, ...]) -> tuple[float, float]:
     """Return the direction (x, y) in which the tool moves off the wall, as specified by Q214.
 
     Raises ProgramError for an invalid Q214.
@@ -85,13 +85,13 @@ def run_back_boring(tool: CycleTool) -> Iterator[Block]:
     """
     text = "Cycle 204 moves through the hole with the spindle oriented, but {unoriented}."
     hint = "Bore from the other side of the part, or {how_oriented}."
-    tool.check(
+    tool.check_condition(
         tool.can_orient_spindle, text, hint, unoriented=CANNOT_ORIENT_TEXT, how_oriented=CANNOT_ORIENT_HINT
     )
-    rpm, (along_x, along_y) = tool.running_rpm, lateral_direction(tool, (1, 2, 3, 4))
+    rpm, (along_x, along_y) = tool.running_rpm, read_lateral_direction(tool, (1, 2, 3, 4))
     surface, depth = tool.read_length_mm(203, 0.0), tool.read_length_mm(249)
     text = "Q249 = {depth} mm is negative, so the tool would move away from the part."
-    tool.check(depth >= 0.0, text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
+    tool.check_condition(depth >= 0.0, text, "Enter the depth without a minus sign.", depth=f"{depth:+.10g}")
     clear, through, slow = (
         surface + tool.read_length_mm(200),
         tool.read_length_mm(250) + tool.read_length_mm(252),
@@ -124,7 +124,7 @@ def drilling(tool: CycleTool) -> Iterator[Block]:
     The cycle is like cycle 203, but with equal infeeds and a full retract after each infeed.
     """
     return run_universal_drilling(
-        tool.with_parameters({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)})
+        tool.copy_with_parameters({q: q for q in (200, 201, 202, 203, 204, 206, 210, 211)})
     )
 
 
@@ -216,11 +216,11 @@ def run_chip_breaking_tapping(tool: CycleTool) -> Iterator[Block]:
     for depth in compute_infeeds(tool, surface - bottom, step or surface - bottom):
         last = depth >= surface - bottom - MIN_LENGTH_MM
         stays = not last and bool(back)
-        yield tool.make_tap_block(surface - depth, lead, in_hole=True)
-        yield tool.run_spindle(-rpm, in_hole=True)
-        yield tool.make_tap_block(surface - depth + back if stays else clear, lead, in_hole=stays)
+        yield tool.make_tap_block(surface - depth, lead, is_in_hole=True)
+        yield tool.run_spindle(-rpm, is_in_hole=True)
+        yield tool.make_tap_block(surface - depth + back if stays else clear, lead, is_in_hole=stays)
         if not last:
-            yield tool.run_spindle(rpm, in_hole=stays)
+            yield tool.run_spindle(rpm, is_in_hole=stays)
     yield from tool.set_spindle_speed(before)
     yield from out(tool, surface, clear, None)
 
@@ -230,9 +230,9 @@ def _thread(tool: CycleTool) -> tuple[float, float]:
 
     Raises ProgramError if the pitch is missing.
     """
-    tool.warn_uncoupled()
+    tool.warn_about_unsynchronized_z()
     pitch = tool.read_length_mm(239)
-    tool.check(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
+    tool.check_condition(pitch != 0.0, "Pitch Q239 must not be 0.", "Enter the thread pitch.")
     return abs(pitch), tool.compute_thread_rpm(pitch)
 
 
@@ -244,9 +244,9 @@ def _tapped(
     if abs(bottom - surface) < MIN_LENGTH_MM:
         return
     yield from tool.set_spindle_speed(rpm)
-    yield tool.make_tap_block(bottom, lead, in_hole=True)
-    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0), in_hole=True)
-    yield tool.run_spindle(-rpm, in_hole=True)
+    yield tool.make_tap_block(bottom, lead, is_in_hole=True)
+    yield from tool.make_dwell_blocks(tool.read_value(211, 0.0), is_in_hole=True)
+    yield tool.run_spindle(-rpm, is_in_hole=True)
     yield tool.make_tap_block(clear, lead)
     yield from tool.set_spindle_speed(before)
     yield from out(tool, surface, clear, None)
@@ -263,7 +263,7 @@ def run_bore_milling(tool: CycleTool) -> Iterator[Block]:
     x, y = tool.xy_position
     pitch = tool.read_length_mm(334)
     text = "The tool, infeed or feed rate of cycle 208 is not valid for the hole."
-    tool.check(
+    tool.check_condition(
         helix_radius_mm >= 0.0 and pitch > 0.0 and feed > 0.0,
         text,
         "Correct the entries named in the message.",
@@ -340,35 +340,48 @@ def read_heights(tool: CycleTool) -> tuple[float, float, float]:
     """
     surface, depth = tool.read_length_mm(203, 0.0), tool.read_length_mm(201)
     text = "Depth Q201={depth} mm is positive (upward)."
-    tool.check(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
+    tool.check_condition(depth <= 0.0, text, "Enter the depth with a minus sign.", depth=f"{depth:+.10g}")
     return surface, surface + tool.read_length_mm(200), surface + depth
 
 
 def compute_infeeds(
-    tool: CycleTool, total_depth: float, step: float, decrement: float = 0.0, min_infeed: float = 0.0
+    tool: CycleTool,
+    total_depth_mm: float,
+    infeed_mm: float,
+    decrement_mm: float = 0.0,
+    min_infeed_mm: float = 0.0,
 ) -> Iterator[float]:
     """Yield the depth after each infeed, ending with the total depth."""
-    if step <= 0.0 or step >= total_depth:
-        yield total_depth
+    if infeed_mm <= 0.0 or infeed_mm >= total_depth_mm:
+        yield total_depth_mm
         return
-    if total_depth / max(step if not decrement else min_infeed or step, MIN_LENGTH_MM) > _MAX_PECKS:
+    if (
+        total_depth_mm / max(infeed_mm if not decrement_mm else min_infeed_mm or infeed_mm, MIN_LENGTH_MM)
+        > _MAX_PECKS
+    ):
         raise tool.make_error(
-            "An infeed of {step} mm would need too many pecks.", "Increase Q202.", step=step
+            "An infeed of {step} mm would need too many pecks.", "Increase Q202.", step=infeed_mm
         )
     done = 0.0
-    while total_depth - done > MIN_LENGTH_MM:
-        done = min(done + step, total_depth)
-        yield done if total_depth - done > MIN_LENGTH_MM else total_depth
-        step = max(step - decrement, min_infeed, MIN_LENGTH_MM) if decrement else step
+    while total_depth_mm - done > MIN_LENGTH_MM:
+        done = min(done + infeed_mm, total_depth_mm)
+        yield done if total_depth_mm - done > MIN_LENGTH_MM else total_depth_mm
+        infeed_mm = max(infeed_mm - decrement_mm, min_infeed_mm, MIN_LENGTH_MM) if decrement_mm else infeed_mm
 
 
-def compute_levels(tool: CycleTool, surface: float, bottom: float, step: Callable[[], float]) -> list[float]:
+def compute_levels(
+    tool: CycleTool, surface_z_mm: float, bottom_z_mm: float, read_infeed_mm: Callable[[], float]
+) -> list[float]:
     """Return the Z height after each infeed, from the surface to the bottom.
 
     The list is empty if the depth is 0.
     """
-    whole = surface - bottom
-    return [] if whole < MIN_LENGTH_MM else [surface - done for done in compute_infeeds(tool, whole, step())]
+    whole = surface_z_mm - bottom_z_mm
+    return (
+        []
+        if whole < MIN_LENGTH_MM
+        else [surface_z_mm - done for done in compute_infeeds(tool, whole, read_infeed_mm())]
+    )
 
 
 def out(tool: CycleTool, surface: float, clearance_z_mm: float, feed: float | None) -> Iterator[Block]:

@@ -29,7 +29,7 @@ def _make_centered_cycle(milling: MillingCycle, parameters: CycleParameters) -> 
         surface, clear, _ = read_heights(tool)
         yield tool.move_to_z(max(clear, surface + tool.read_length_mm(204, 0.0), tool.z_position))
         yield tool.move_straight((tool.read_length_mm(216), tool.read_length_mm(217)))
-        yield from milling(tool.with_parameters(parameters))
+        yield from milling(tool.copy_with_parameters(parameters))
 
     return run
 

@@ -114,16 +114,16 @@ def _tapping(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     rigid = data.cycle_number == _RIGID
     clear, before = tool.z_position, tool.signed_rpm
     if rigid:
-        tool.warn_uncoupled()
+        tool.warn_about_unsynchronized_z()
     lead = data.read_length_mm(3) if rigid else tool.convert_feed_to_lead(data.read_cutting_feed(4))
     rpm, lead = tool.compute_thread_rpm(lead) if rigid else tool.running_rpm, abs(lead)
     yield from tool.set_spindle_speed(rpm)
     yield tool.make_tap_block(
-        clear - data.read_length_mm(1) - abs(data.read_length_mm(2)), lead, in_hole=True
+        clear - data.read_length_mm(1) - abs(data.read_length_mm(2)), lead, is_in_hole=True
     )
     if not rigid:
-        yield from tool.make_dwell_blocks(data.read_number(3), in_hole=True)
-    yield tool.run_spindle(-rpm, in_hole=True)
+        yield from tool.make_dwell_blocks(data.read_number(3), is_in_hole=True)
+    yield tool.run_spindle(-rpm, is_in_hole=True)
     yield tool.make_tap_block(clear, lead)
     yield from tool.set_spindle_speed(before)
 
@@ -134,9 +134,11 @@ def _slot(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     (x, y), clear = tool.xy_position, tool.z_position
     end = x + first[0], y + first[1]
     text = "The slot of cycle 3 has no length."
-    tool.check(math.hypot(*first) > _MIN_LENGTH_MM, text, "Write the length of the slot in line 3.4.")
+    tool.check_condition(
+        math.hypot(*first) > _MIN_LENGTH_MM, text, "Write the length of the slot in line 3.4."
+    )
     width = (abs(second[0]) + abs(second[1])) / 2.0 - tool.radius_mm
-    tool.check(width >= -_MIN_LENGTH_MM, "The tool is wider than the slot.", "Use a smaller tool.")
+    tool.check_condition(width >= -_MIN_LENGTH_MM, "The tool is wider than the slot.", "Use a smaller tool.")
     surface, feed = clear - data.read_length_mm(1), data.read_cutting_feed(6)
     ends = [(x, y), end]
     for at, done in enumerate(_levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3)))):
@@ -169,7 +171,9 @@ def _pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
         abs(data.read_length_mm(4, "X")) / 2.0 - tool.radius_mm,
         abs(data.read_length_mm(5, "Y")) / 2.0 - tool.radius_mm,
     )
-    tool.check(min(half) >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check_condition(
+        min(half) >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool."
+    )
     surface, feed, turn = clear - data.read_length_mm(1), data.read_cutting_feed(6), data.read_direction(6)
     count = _ring_count(tool, min(half))
     for done in _levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3))):
@@ -194,7 +198,9 @@ def _circular_pocket(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
     """Yield the blocks of cycle 5, which mills circles from the center outward on each level."""
     (x, y), clear = tool.xy_position, tool.z_position
     radius = abs(data.read_length_mm(4, "R" if data.has_axis_word(4, "R") else "")) - tool.radius_mm
-    tool.check(radius >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool.")
+    tool.check_condition(
+        radius >= -_MIN_LENGTH_MM, "The tool is wider than the pocket.", "Use a smaller tool."
+    )
     surface, feed, turn = clear - data.read_length_mm(1), data.read_cutting_feed(5), data.read_direction(5)
     count = _ring_count(tool, radius)
     for done in _levels(tool, abs(data.read_length_mm(2)), abs(data.read_length_mm(3))):
@@ -213,12 +219,12 @@ def _thread_cutting(data: OlderCycleData, tool: CycleTool) -> Iterator[Block]:
 
     The feed is pitch times spindle speed. The spindle stops at the depth.
     """
-    tool.warn_uncoupled()
+    tool.warn_about_unsynchronized_z()
     rpm, pitch, depth = tool.programmed_rpm, data.read_length_mm(2), data.read_length_mm(1)
     text = "Cycle 18 needs a spindle speed and a pitch."
-    tool.check(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
+    tool.check_condition(rpm and pitch, text, "Program S in TOOL CALL and PITCH in cycle 18.")
     yield tool.run_spindle(rpm if pitch > 0.0 else -rpm)
-    yield tool.make_tap_block(tool.z_position + depth, abs(pitch), in_hole=True)
+    yield tool.make_tap_block(tool.z_position + depth, abs(pitch), is_in_hole=True)
     yield tool.stop_spindle()
 
 
@@ -242,7 +248,7 @@ def _levels(tool: CycleTool, depth: float, step: float) -> Iterator[float]:
         return
     count = math.ceil(depth / step - 1e-9)
     text = "An infeed of {step} mm would need {count} passes, which is too many."
-    tool.check(count <= _MAX_LEVELS, text, "Increase the infeed.", step=step, count=count)
+    tool.check_condition(count <= _MAX_LEVELS, text, "Increase the infeed.", step=step, count=count)
     yield from (min(step * at, depth) for at in range(1, count + 1))
 
 

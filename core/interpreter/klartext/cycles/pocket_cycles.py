@@ -119,7 +119,9 @@ def mill_slot(tool: CycleTool) -> Iterator[Block]:
     The length is Q218, the width is Q219, the rotation is Q374, and the position is Q367.
     """
     a, b = tool.read_length_mm(218) / 2.0, tool.read_length_mm(219) / 2.0
-    tool.check(a >= b - MIN_LENGTH_MM, "The slot is wider than it is long.", "Correct Q218 and Q219.")
+    tool.check_condition(
+        a >= b - MIN_LENGTH_MM, "The slot is wider than it is long.", "Correct Q218 and Q219."
+    )
     ends = {0: (0.0, 0.0), 1: (a, 0.0), 2: (a - b, 0.0), 3: (b - a, 0.0), 4: (-a, 0.0)}
     seat = Placement(tool.xy_position, tool.read_value(374, 0.0)).translate(*_placed(tool, ends))
     yield from _pocket(tool, seat, RoundedRectangle(a, b, b))
@@ -171,7 +173,7 @@ def _plunge(
     The tool plunges straight down, on a helix or in a zigzag.
     """
     tool, half = milling.tool, ring.half_side_u_mm - ring.half_side_v_mm
-    start, end = placement.to_program_point(-half, 0.0), placement.to_program_point(half, 0.0)
+    start, end = placement.convert_to_program_point(-half, 0.0), placement.convert_to_program_point(half, 0.0)
     yield tool.move_to_z(min(milling.clearance_z_mm, above + tool.read_length_mm(200)))
     yield tool.move_straight(start)
     if not int(tool.read_value(366, 1.0)):
@@ -194,8 +196,8 @@ def _helix(
 ) -> Iterator[Block]:
     tool = milling.tool
     text = "There is not enough room to plunge along a ramp."
-    tool.check(radius >= MIN_LENGTH_MM * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
-    begin = seat.to_program_point(radius, 0.0)
+    tool.check_condition(radius >= MIN_LENGTH_MM * 1000.0, text, "Set Q366=+0 for a center-cutting tool.")
+    begin = seat.convert_to_program_point(radius, 0.0)
     yield tool.move_straight(begin)
     yield tool.move_to_z(above, milling.plunge_feed)
     turns = math.ceil((above - z) / (2.0 * math.pi * radius * _RAMP) - MIN_LENGTH_MM)
@@ -213,7 +215,7 @@ def _clear_level(
     tool = milling.tool
     if ring.half_side_u_mm - ring.half_side_v_mm > MIN_LENGTH_MM:
         yield tool.move_straight(
-            placement.to_program_point(ring.half_side_u_mm - ring.half_side_v_mm, 0.0), None, feed
+            placement.convert_to_program_point(ring.half_side_u_mm - ring.half_side_v_mm, 0.0), None, feed
         )
     count = (
         math.ceil(ring.half_side_v_mm / milling.stepover_mm - MIN_LENGTH_MM)
@@ -222,8 +224,8 @@ def _clear_level(
     )
     for at in range(1, count + 1):
         each = ring.enlarge(-ring.half_side_v_mm * (1.0 - at / count))
-        yield tool.move_straight(placement.to_program_point(each.half_side_u_mm, 0.0), None, feed)
-        yield from each.mill(tool, placement, feed, is_clockwise=milling.is_up_cut)
+        yield tool.move_straight(placement.convert_to_program_point(each.half_side_u_mm, 0.0), None, feed)
+        yield from each.generate_outline_moves(tool, placement, feed, is_clockwise=milling.is_up_cut)
 
 
 def _finish_walls(
@@ -234,7 +236,7 @@ def _finish_walls(
     The approach to each wall and the departure from it are quarter circles.
     """
     tool, feed = milling.tool, milling.finishing_feed
-    half = placement.to_program_point(ring.half_side_v_mm - ring.half_side_u_mm, 0.0)
+    half = placement.convert_to_program_point(ring.half_side_v_mm - ring.half_side_u_mm, 0.0)
     if milling.floor_allowance_mm > MIN_LENGTH_MM:
         yield tool.move_to_z(milling.clearance_z_mm)
         yield tool.move_straight(half)
@@ -245,7 +247,9 @@ def _finish_walls(
     quarter, side = min(tool.radius_mm / 2.0, ring.half_side_v_mm), -1.0 if milling.is_up_cut else 1.0
     for z in milling.compute_wall_levels():
         yield tool.move_to_z(min(milling.clearance_z_mm, tool.z_position + tool.read_length_mm(200)))
-        yield tool.move_straight(placement.to_program_point(ring.half_side_u_mm - quarter, -side * quarter))
+        yield tool.move_straight(
+            placement.convert_to_program_point(ring.half_side_u_mm - quarter, -side * quarter)
+        )
         yield tool.move_to_z(z, milling.plunge_feed)
         yield from _mill_ring(milling, placement, ring, quarter, feed)
 
@@ -262,15 +266,15 @@ def _mill_ring(
     if quarter < 0.0:
         clockwise = not clockwise
     side = -1.0 if clockwise else 1.0
-    on, size = placement.to_program_point(ring.half_side_u_mm, 0.0), abs(quarter)
-    about = placement.to_program_point(ring.half_side_u_mm - quarter, 0.0)
+    on, size = placement.convert_to_program_point(ring.half_side_u_mm, 0.0), abs(quarter)
+    about = placement.convert_to_program_point(ring.half_side_u_mm - quarter, 0.0)
     turns = clockwise if quarter > 0.0 else not clockwise
     if size > MIN_LENGTH_MM:
-        begin = placement.to_program_point(ring.half_side_u_mm - quarter, -side * size)
+        begin = placement.convert_to_program_point(ring.half_side_u_mm - quarter, -side * size)
         yield tool.move_on_arc(Arc(begin, on, about, turns), tool.z_position, feed)
-    yield from ring.mill(tool, placement, feed, is_clockwise=clockwise)
+    yield from ring.generate_outline_moves(tool, placement, feed, is_clockwise=clockwise)
     if size > MIN_LENGTH_MM:
-        end = placement.to_program_point(ring.half_side_u_mm - quarter, side * size)
+        end = placement.convert_to_program_point(ring.half_side_u_mm - quarter, side * size)
         yield tool.move_on_arc(Arc(on, end, about, turns), tool.z_position, feed)
 
 
@@ -310,7 +314,7 @@ def _stud(
     ``oversize_mm`` is the oversize of the blank in mm.
     """
     milling = _MillingParameters(tool)
-    tool.check(
+    tool.check_condition(
         oversize_mm >= MIN_LENGTH_MM,
         "The blank is not larger than the stud.",
         "Correct the blank dimensions.",
@@ -342,7 +346,7 @@ def _approach_level(
     tool = milling.tool
     if not down:
         return
-    yield from tool.move_above(placement.to_program_point(outside, 0.0), milling.clearance_z_mm)
+    yield from tool.move_above(placement.convert_to_program_point(outside, 0.0), milling.clearance_z_mm)
     yield tool.move_to_z(z, milling.plunge_feed)
 
 
@@ -352,7 +356,9 @@ def _around(
     tool = milling.tool
     side = 1.0 if milling.is_up_cut else -1.0  # the direction is opposite to that of a pocket
     yield tool.move_straight(
-        seat.to_program_point(ring.half_side_u_mm + tool.radius_mm, -side * tool.radius_mm), None, feed
+        seat.convert_to_program_point(ring.half_side_u_mm + tool.radius_mm, -side * tool.radius_mm),
+        None,
+        feed,
     )
     yield from _mill_ring(milling, seat, ring, -tool.radius_mm, feed)
 
@@ -371,18 +377,20 @@ def mill_circular_slot(tool: CycleTool) -> Iterator[Block]:
     centre, begin, sweep = _slot_place(tool)
     count, step = int(tool.read_value(377, 1.0)), tool.read_value(378, 0.0)
     text = "Q377={count} is not a valid number of slots."
-    tool.check(1 <= count <= _MAX_SLOTS, text, "Enter a valid number.", count=count)
+    tool.check_condition(1 <= count <= _MAX_SLOTS, text, "Enter a valid number.", count=count)
     scope = int(tool.read_value(215, 0.0))
     side, floor = tool.read_length_mm(368, 0.0), tool.read_length_mm(369, 0.0)
     for at in range(count):
         area = [make_slot_outline(tool, centre, begin + at * step, sweep)]
-        asked = tool.with_parameters(
+        asked = tool.copy_with_parameters(
             {**_CONTOUR_PARAMETERS, 7: safe, 19: 206 if tool.read_value(366, 1.0) else 0.0}
         )
         if scope != _FINISH:
             yield from run_roughing(asked, area)
         if scope == _FINISH or (scope == _BOTH and max(side, floor) > MIN_LENGTH_MM):
-            last = tool.with_parameters({**_CONTOUR_PARAMETERS, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)})
+            last = tool.copy_with_parameters(
+                {**_CONTOUR_PARAMETERS, 3: 0.0, 4: 0.0, 7: safe, **_finishing(tool)}
+            )
             if floor > MIN_LENGTH_MM:
                 yield from run_floor_finishing(last, area)
             yield from run_side_finishing(last, area)
@@ -424,7 +432,7 @@ def _slot_place(tool: CycleTool) -> tuple[Point, float, float]:
     place = int(tool.read_value(367, 0.0))
     share = {_LEFT_END: 0.0, _MIDDLE: 0.5, _RIGHT_END: 1.0}.get(place)
     if share is None:
-        tool.check(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
+        tool.check_condition(place == _CENTRE, "Q367 must be 0, 1, 2 or 3.", "Correct Q367.")
         return (tool.read_length_mm(216), tool.read_length_mm(217)), begin, sweep
     turned = math.radians(begin)  # Q376 is the angle of the tool position
     x, y = tool.xy_position

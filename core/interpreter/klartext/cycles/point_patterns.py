@@ -13,7 +13,7 @@ from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import INPUT_VALUE_INCORRECT
 from core.language.klartext.klartext_nodes import PatternDefinition, PatternPart
 
-MAX_POINTS = 10_000
+MAX_POINT_COUNT = 10_000
 _LENGTHS = frozenset({"X", "Y", "Z", "D", "DX", "DY"})
 
 
@@ -26,11 +26,16 @@ def compute_points(state: State, node: PatternDefinition) -> list[Vector]:
     for part in node.parts:
         values = _numbers(state, part)
         found += [(*at, values.get("Z", 0.0)) for at in _of_a_part(state, part, values)]
-    if len(found) > MAX_POINTS:
+    if len(found) > MAX_POINT_COUNT:
         text = "The pattern has too many points: {found_count}."
         hint = "The maximum is {most_points} points."
         raise state.make_error(
-            node.column, INPUT_VALUE_INCORRECT, text, hint, found_count=len(found), most_points=MAX_POINTS
+            node.column,
+            INPUT_VALUE_INCORRECT,
+            text,
+            hint,
+            found_count=len(found),
+            most_points=MAX_POINT_COUNT,
         )
     return found
 
@@ -45,17 +50,17 @@ def _numbers(state: State, part: PatternPart) -> dict[str, float]:
 
 def _of_a_part(state: State, part: PatternPart, values: dict[str, float]) -> Iterator[tuple[float, float]]:
     x, y = values["X"], values["Y"]
-    if part.kind == "POS":
+    if part.pattern_kind == "POS":
         yield x, y
-    elif part.kind == "ROW":
+    elif part.pattern_kind == "ROW":
         angle = math.radians(values.get("ROT", 0.0))
         for at in range(_count(state, part, values["NUM"])):
             yield x + at * values["D"] * math.cos(angle), y + at * values["D"] * math.sin(angle)
-    elif part.kind in {"PAT", "FRAME"}:
+    elif part.pattern_kind in {"PAT", "FRAME"}:
         yield from _grid(state, part, values)
     else:
         count = _count(state, part, values["NUM"])
-        step = values["STEP"] if part.kind == "PITCHCIRC" else 360.0 / count
+        step = values["STEP"] if part.pattern_kind == "PITCHCIRC" else 360.0 / count
         yield from _circle((x, y), values["D"] / 2.0, count, values.get("START", 0.0), step)
 
 
@@ -66,7 +71,7 @@ def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator
     u = math.radians(turn + values.get("ROTX", 0.0))
     v = math.radians(turn + 90.0 + values.get("ROTY", 0.0))
     for column, row in _alternating_cells(columns, rows):
-        if part.kind == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
+        if part.pattern_kind == "FRAME" and 0 < row < rows - 1 and 0 < column < columns - 1:
             continue
         along, across = column * values["DX"], row * values["DY"]
         yield (
@@ -76,10 +81,12 @@ def _grid(state: State, part: PatternPart, values: dict[str, float]) -> Iterator
 
 
 def _count(state: State, part: PatternPart, number: float) -> int:
-    if number != int(number) or not 1 <= number <= MAX_POINTS:
+    if number != int(number) or not 1 <= number <= MAX_POINT_COUNT:
         text = "{form}: {number} is not a valid number of points."
         hint = "Enter a whole number of 1 or more."
-        raise state.make_error(part.column, INPUT_VALUE_INCORRECT, text, hint, form=part.kind, number=number)
+        raise state.make_error(
+            part.column, INPUT_VALUE_INCORRECT, text, hint, form=part.pattern_kind, number=number
+        )
     return int(number)
 
 
@@ -111,7 +118,9 @@ def compute_row_points(tool: CycleTool) -> list[Point]:
 
 def _told_count(tool: CycleTool, q: int) -> int:
     count, text = int(tool.read_value(q)), "Q{parameter}={count} is not a valid number of positions."
-    tool.check(1 <= count <= MAX_POINTS, text, "Enter a valid number.", parameter=q, count=count)
+    tool.check_condition(
+        1 <= count <= MAX_POINT_COUNT, text, "Enter a valid number.", parameter=q, count=count
+    )
     return count
 
 

@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 from copy import deepcopy
 from dataclasses import dataclass
 
-from core.geometry.lines_and_arcs import Element, Point, intersections
+from core.geometry.lines_and_arcs import Element, Point, find_intersections
 from core.geometry.pocket_area import (
     AreaError,
     ElementLoop,
-    Winding,
+    WindingCalculator,
     close_loop,
     find_boundary,
     is_counterclockwise,
@@ -49,7 +49,7 @@ class SlContour:
 
     label: str
     elements: tuple[Element, ...]
-    side: str = ""
+    compensation_side: str = ""
     is_pocket: bool | None = None
 
 
@@ -102,7 +102,7 @@ class ContourCollector(PathRunner):
         del node  # The feeds of a contour have no effect.
         return None
 
-    def finish(self) -> None:
+    def finish_contour(self) -> None:
         """Complete the contour at the end of the subprogram.
 
         Raises ProgramError if a corner is incomplete.
@@ -132,7 +132,9 @@ def find_area_boundary(state: State, contours: Sequence[SlContour], column: int)
         loop = _make_loop(state, figure, column)
         (pockets if _is_pocket(state, figure, loop, column) else islands).append(loop)
     text = "Cycle 14 lists only islands and no pocket, so there is nothing to clear."
-    state.check(pockets, column, INPUT_VALUE_INCORRECT, text, "Program the outer contour clockwise with RR.")
+    state.check_condition(
+        pockets, column, INPUT_VALUE_INCORRECT, text, "Program the outer contour clockwise with RR."
+    )
     return _compute_boundary(state, [*pockets, *islands], _inside(pockets, islands), column)
 
 
@@ -150,7 +152,7 @@ def _compute_boundary(
         hint = "Correct the entries named in the message."
         raise state.make_error(column, INPUT_VALUE_INCORRECT, text, hint, problem=problem) from None
     text = "The contours do not enclose an area because the islands cover the pockets."
-    state.check(found, column, INPUT_VALUE_INCORRECT, text, "Correct the contours.")
+    state.check_condition(found, column, INPUT_VALUE_INCORRECT, text, "Correct the contours.")
     return found
 
 
@@ -158,11 +160,11 @@ def _make_loop(state: State, contour: SlContour, column: int) -> ElementLoop:
     """Return the contour as a closed loop. Raises ProgramError if the contour is open."""
     text = "Contour {figure} does not contain any elements."
     hint = "Add path functions to the contour."
-    state.check(contour.elements, column, CYCLE_MISSING, text, hint, figure=contour.label)
+    state.check_condition(contour.elements, column, CYCLE_MISSING, text, hint, figure=contour.label)
     gap = math.dist(contour.elements[-1].end, contour.elements[0].start)
     text = "Contour {figure} ends {gap} mm from its start."
     hint = "End the contour at its start point."
-    state.check(
+    state.check_condition(
         gap <= MAX_CLOSING_GAP_MM,
         column,
         INPUT_VALUE_INCORRECT,
@@ -179,29 +181,29 @@ def _is_pocket(state: State, figure: SlContour, loop: ElementLoop, column: int) 
         return figure.is_pocket
     text = "No machining side is programmed for contour {figure}."
     hint = "Write RL or RR in the first block of the contour."
-    state.check(figure.side, column, CYCLE_MISSING, text, hint, figure=figure.label)
-    return is_counterclockwise(loop) == (figure.side == "L")
+    state.check_condition(figure.compensation_side, column, CYCLE_MISSING, text, hint, figure=figure.label)
+    return is_counterclockwise(loop) == (figure.compensation_side == "L")
 
 
 def _inside(pockets: Sequence[ElementLoop], islands: Sequence[ElementLoop]) -> Callable[[Point], bool]:
     """Return a function that determines whether a point must be cleared."""
-    first, *others = [Winding(loop) for loop in pockets]
-    stay = [Winding(loop) for loop in islands]
+    first, *others = [WindingCalculator(loop) for loop in pockets]
+    stay = [WindingCalculator(loop) for loop in islands]
     start = pockets[0][0].start
     both = [
-        within.winding_number(start) != 0 and _meet(pockets[0], loop)
+        within.compute_winding_number(start) != 0 and _meet(pockets[0], loop)
         for within, loop in zip(others, pockets[1:], strict=True)
     ]
 
     def inside(point: Point) -> bool:
-        found = first.winding_number(point) != 0
+        found = first.compute_winding_number(point) != 0
         for within, only_both in zip(others, both, strict=True):
-            other = within.winding_number(point) != 0
+            other = within.compute_winding_number(point) != 0
             found = found and other if only_both else found or other
-        return found and not any(within.winding_number(point) for within in stay)
+        return found and not any(within.compute_winding_number(point) for within in stay)
 
     return inside
 
 
 def _meet(one: ElementLoop, other: ElementLoop) -> bool:
-    return any(intersections(a, b) for a in one for b in other)
+    return any(find_intersections(a, b) for a in one for b in other)

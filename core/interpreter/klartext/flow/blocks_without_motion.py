@@ -22,7 +22,7 @@ from core.language.klartext import klartext_nodes as nodes
 from core.language.klartext import klartext_words
 from core.language.klartext.klartext_faults import PROGRAM_RAISED_ERROR, TOOL_UNKNOWN, make_unsupported_error
 from core.language.klartext.klartext_nodes import SystemRead, SystemWrite
-from core.language.klartext.structure_blocks import MAX_REPEATS
+from core.language.klartext.structure_blocks import MAX_REPEAT_COUNT
 from core.message import Message
 
 
@@ -37,7 +37,7 @@ def execute_flow_block(
         flow.execute_label(node)
     elif isinstance(node, nodes.LabelCall):
         repeat = node.repeat_count or klartext_words.Value(0.0)
-        times = word_values.number(state, repeat, "REP", MAX_REPEATS, 0.0)
+        times = word_values.number(state, repeat, "REP", MAX_REPEAT_COUNT, 0.0)
         flow.call_label(line, node, math.floor(times))
     elif word_values.value(state, node.condition):
         flow.jump_to_label(node)

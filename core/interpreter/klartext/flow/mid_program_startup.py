@@ -32,7 +32,7 @@ class InterpreterParts(NamedTuple):
 
     state: State
     path_runner: PathRunner
-    cycles: ActiveCycle
+    active_cycle: ActiveCycle
     flow: Flow
     pending_line: KlartextLine | None = None
 
@@ -53,12 +53,12 @@ def make_checkpoint(parts: InterpreterParts, shared: tuple[object, ...]) -> Chec
     )
 
 
-def restore_state(state: State, start: PassStart, *, inch: bool) -> None:
+def restore_state(state: State, start: PassStart, *, is_inch: bool) -> None:
     """Update the state with the present axis positions, tool, preset and machine functions."""
     setup, point = state.setup, start.checkpoint
     assert setup.kinematics is not None  # otherwise, the pass was rejected
     state.kinematics = setup.kinematics
-    state.modal = point.modal._replace(absolute=True, metric=not inch)
+    state.modal = point.modal._replace(absolute=True, metric=not is_inch)
     if state.modal.tool and not state.tool_axis:
         state.tool_axis = "Z"
     state.block_count = 0 if start.is_mdi_line else point.blocks - len(start.approach)
@@ -122,7 +122,7 @@ def _plane(state: State) -> str:
         return ""
     axes = sorted(state.kinematics.rotary_axes, key=lambda axis: axis.name)
     angles = (
-        (axis.name, state.kinematics.displayed_angle(axis, state.active_plane.target_angles[axis.name]))
+        (axis.name, state.kinematics.get_displayed_angle(axis, state.active_plane.target_angles[axis.name]))
         for axis in axes
     )
     return "  ".join(f"{name}{angle:+.3f}" for name, angle in angles)

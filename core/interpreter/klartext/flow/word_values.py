@@ -175,9 +175,9 @@ def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tu
         if state.feed is None:
             raise _missing(state, column, "No feed rate is active.", "Write F or FMAX.")
         return state.feed, state.feed_base
-    if feed.kind == "max":
+    if feed.feed_kind == "max":
         return None
-    if feed.kind == "auto":
+    if feed.feed_kind == "auto":
         if state.tool_feed is None:
             raise _missing(state, feed.column, "The last TOOL CALL has no F.", "Program F in TOOL CALL.")
         return state.tool_feed, state.tool_feed_base
@@ -187,7 +187,7 @@ def read_programmed_feed(state: State, feed: FeedWord | None, column: int) -> tu
         raise state.make_error(
             feed.column, INPUT_VALUE_INCORRECT, "F must be above zero.", "Enter a feed rate."
         )
-    return found, feed.base or (REVOLUTION if state.is_feed_per_revolution else "")
+    return found, feed.feed_base or (REVOLUTION if state.is_feed_per_revolution else "")
 
 
 def _missing(state: State, column: int, text: str, hint: str) -> ProgramError:

@@ -116,7 +116,7 @@ def compute_rotary_feed(state: State, feed: float, targets: Mapping[str, float])
         for name in state.rotary_angles
     }
     there, here = (
-        state.kinematics.make_transform(angles, tool_length=state.tool_length_mm).to_frame_point(
+        state.kinematics.make_transform(angles, tool_length=state.tool_length_mm).convert_to_frame_point(
             state.linear_position
         )
         for angles in (begin, state.rotary_angles)

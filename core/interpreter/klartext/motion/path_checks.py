@@ -41,9 +41,9 @@ def warn_before_cut(state: State, node: PathFunction) -> None:
     if not state.modal.spindle and "spindle" not in state.reported_findings:
         state.reported_findings.add("spindle")
         text, hint = "The spindle is stopped during this feed move.", ("Start the spindle with M3 or M4.")
-        state.log.warn(state.line_number, 0, "spindle-stopped", text, hint)
+        state.log.add_warning(state.line_number, 0, "spindle-stopped", text, hint)
     plane = state.active_plane
-    if plane is None or ("table", plane.line) in state.reported_findings:
+    if plane is None or ("table", plane.line_number) in state.reported_findings:
         return
     off = [
         axis.name
@@ -52,12 +52,12 @@ def warn_before_cut(state: State, node: PathFunction) -> None:
         > TABLE_TOLERANCE_DEG
     ]
     if off:
-        state.reported_findings.add(("table", plane.line))
+        state.reported_findings.add(("table", plane.line_number))
         text = "The position of {off} does not match the plane programmed on line {line}."
         hint = (
             "Position the rotary axes before the cut with L A+Q120 C+Q122 R0 FMAX, or write TURN in the "
             "PLANE block."
         )
-        state.log.warn(
-            state.line_number, 0, "table-elsewhere", text, hint, off=" and ".join(off), line=plane.line
+        state.log.add_warning(
+            state.line_number, 0, "table-elsewhere", text, hint, off=" and ".join(off), line=plane.line_number
         )

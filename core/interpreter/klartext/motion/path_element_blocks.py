@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from core.geometry.lines_and_arcs import Arc
-from core.geometry.working_plane import HelixMove, to_plane_order
+from core.geometry.working_plane import HelixMove, convert_to_plane_order
 from core.interpreter.klartext.klartext_state import LINEAR_AXES, POINT_TOLERANCE, State
 from core.interpreter.klartext.motion.feed_rates import compute_rotary_feed
 from core.interpreter.klartext.motion.path_elements import PathElement
@@ -17,16 +17,18 @@ def make_element_block(state: State, each: PathElement) -> Block:
     """Return the block of one element, converted to plane and machine coordinates."""
     if each.arc is not None:
         return _make_arc_block(state, each, each.arc)
-    if state.is_tcpm_active and each.rotary:
+    if state.is_tcpm_active and each.rotary_targets_deg:
         return move_with_rotary_axes(state, each)
-    goals: Mapping[str, float] = dict(zip(LINEAR_AXES, state.to_machine_position(each.end), strict=True))
+    goals: Mapping[str, float] = dict(
+        zip(LINEAR_AXES, state.convert_to_machine_position(each.end), strict=True)
+    )
     if not any(abs(goals[name] - state.position_by_axis[name]) > POINT_TOLERANCE for name in LINEAR_AXES):
         goals = {}
     rate = None if each.feed is None else state.convert_feed_to_mm_s(each.feed)
     if rate is not None and each.feed is not None and not goals:
-        rate = compute_rotary_feed(state, each.feed, each.rotary)
+        rate = compute_rotary_feed(state, each.feed, each.rotary_targets_deg)
     return state.make_move_block(
-        BlockKind.RAPID if rate is None else BlockKind.FEED, {**goals, **each.rotary}, rate
+        BlockKind.RAPID if rate is None else BlockKind.FEED, {**goals, **each.rotary_targets_deg}, rate
     )
 
 
@@ -36,12 +38,14 @@ def _make_arc_block(state: State, each: PathElement, arc: Arc) -> Block:
     if each.is_vertical_arc:
         arc, frame = state.transformation.transform_upright_arc(arc, each.axis_order)
         w0, w1 = (
-            to_plane_order(each.axis_order, at)[2] * state.transformation.scale_factor
+            convert_to_plane_order(each.axis_order, at)[2] * state.transformation.scale_factor
             for at in (each.start, each.end)
         )
         way = HelixMove(state.plane_transform, arc, w0, w1, state.axis_positions, columns, frame)
     else:
-        z0, z1 = (state.transformation.to_plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2]))
+        z0, z1 = (
+            state.transformation.convert_to_plane((0.0, 0.0, at))[2] for at in (each.start[2], each.end[2])
+        )
         way = HelixMove(
             state.plane_transform,
             state.transformation.transform_arc(arc),
@@ -50,6 +54,6 @@ def _make_arc_block(state: State, each: PathElement, arc: Arc) -> Block:
             state.axis_positions,
             columns,
         )
-    goals = dict(zip(LINEAR_AXES, state.to_machine_position(each.end), strict=True))
+    goals = dict(zip(LINEAR_AXES, state.convert_to_machine_position(each.end), strict=True))
     rate = None if each.feed is None else state.convert_feed_to_mm_s(each.feed)
     return state.make_move_block(BlockKind.PLANE_ARC, goals, rate, way)

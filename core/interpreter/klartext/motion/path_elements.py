@@ -17,11 +17,18 @@ from core.geometry.lines_and_arcs import (
     Element,
     Line,
     Point,
-    center_from_radius,
+    find_arc_center,
     make_arc,
 )
 from core.geometry.rotation_frames import Vector
-from core.geometry.working_plane import XY, YZ, ZX, AxisOrder, from_plane_order, to_plane_order
+from core.geometry.working_plane import (
+    XY_ORDER,
+    YZ_ORDER,
+    ZX_ORDER,
+    AxisOrder,
+    convert_from_plane_order,
+    convert_to_plane_order,
+)
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import State
 from core.language.klartext.klartext_faults import (
@@ -57,13 +64,13 @@ class PathElement:
     block_text: str
     column: int = 1
     arc: Arc | None = None
-    rotary: Mapping[str, float] = field(default_factory=dict)
-    axis_order: AxisOrder = XY
+    rotary_targets_deg: Mapping[str, float] = field(default_factory=dict)
+    axis_order: AxisOrder = XY_ORDER
 
     @property
     def is_vertical_arc(self) -> bool:
         """Return whether the element is a vertical arc in YZ or ZX."""
-        return self.arc is not None and self.axis_order != XY
+        return self.arc is not None and self.axis_order != XY_ORDER
 
     @property
     def planar_element(self) -> Element | None:
@@ -100,13 +107,13 @@ def make_elements(
     element is invalid.
     """
     node = _with_direction(state, node)
-    order = state.pole_plane if node.function_name in _POLAR_FORMS else XY
+    order = state.pole_plane if node.function_name in _POLAR_FORMS else XY_ORDER
     made = PathElement(start, start, feed, state.line_number, state.text, node.column, None, rotary, order)
     if node.function_name == "CP":
         yield from _turns_about_pole(state, node, made)
         return
     end = compute_end_point(state, node, start)
-    first, last = to_plane_order(order, start), to_plane_order(order, end)
+    first, last = convert_to_plane_order(order, start), convert_to_plane_order(order, end)
     arc = (
         _ARCS[node.function_name](state, node, first[:2], last[:2], previous_direction)
         if node.function_name in _ARCS
@@ -133,8 +140,12 @@ def find_pole_plane(node: Pole, previous_plane: AxisOrder) -> AxisOrder:
     """
     named = {word.axis for word in node.axes}
     if len(named) < 2:
-        return previous_plane if named and named <= {"XYZ"[column] for column in previous_plane[:2]} else XY
-    return {"YZ": YZ, "XZ": ZX}.get("".join(sorted(named)), XY)
+        return (
+            previous_plane
+            if named and named <= {"XYZ"[column] for column in previous_plane[:2]}
+            else XY_ORDER
+        )
+    return {"YZ": YZ_ORDER, "XZ": ZX_ORDER}.get("".join(sorted(named)), XY_ORDER)
 
 
 def compute_end_point(state: State, node: PathFunction, start: Vector) -> Vector:
@@ -147,8 +158,10 @@ def compute_end_point(state: State, node: PathFunction, start: Vector) -> Vector
         return _paraxial(state, node, start, (x, y, z))
     (cx, cy), (radius, angle) = read_pole(state, node), _polar(state, node, start)
     turned, order = math.radians(angle), state.pole_plane
-    third = to_plane_order(order, (x, y, z))[2]
-    return from_plane_order(order, (cx + radius * math.cos(turned), cy + radius * math.sin(turned), third))
+    third = convert_to_plane_order(order, (x, y, z))[2]
+    return convert_from_plane_order(
+        order, (cx + radius * math.cos(turned), cy + radius * math.sin(turned), third)
+    )
 
 
 def _paraxial(state: State, node: PathFunction, start: Vector, end: Vector) -> Vector:
@@ -191,7 +204,7 @@ def _polar(state: State, node: PathFunction, start: Vector) -> tuple[float, floa
     Values that are not programmed remain unchanged.
     """
     cx, cy = read_pole(state, node)
-    x, y, _ = to_plane_order(state.pole_plane, start)
+    x, y, _ = convert_to_plane_order(state.pole_plane, start)
     radius, angle = math.hypot(x - cx, y - cy), math.degrees(math.atan2(y - cy, x - cx))
     if (word := node.find_word("PR")) is not None:
         value = word_values.evaluate_coordinate(state, word)
@@ -211,7 +224,7 @@ def _arc_about_pole(state: State, node: PathFunction, start: Point, end: Point, 
     _demand_radius(state, node, math.dist(start, centre))
     _demand_on_circle(state, node, math.dist(start, centre), math.dist(end, centre))
     return (
-        make_arc(start, end, centre, clockwise=node.rotation_direction == "-")
+        make_arc(start, end, centre, is_clockwise=node.rotation_direction == "-")
         if node.rotation_direction
         else _no_turn(state, node)
     )
@@ -241,7 +254,7 @@ def _arc_by_radius(state: State, node: PathFunction, start: Point, end: Point, _
     if not node.rotation_direction:
         return _no_turn(state, node)
     clockwise = node.rotation_direction == "-"
-    centre = center_from_radius(start, end, abs(radius), clockwise=clockwise == (radius > 0.0))
+    centre = find_arc_center(start, end, abs(radius), is_clockwise=clockwise == (radius > 0.0))
     return Arc(start, end, centre, clockwise)
 
 
@@ -283,7 +296,7 @@ _ARCS = {"C": _arc_about_pole, "CR": _arc_by_radius, "CT": _tangential, "CTP": _
 def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> Iterator[PathElement]:
     """Yield the elements of CP, which rotates about the pole by any angle, with a helix if Z also moves."""
     order, centre = made.axis_order, read_pole(state, node)
-    start = to_plane_order(order, made.start)
+    start = convert_to_plane_order(order, made.start)
     radius = math.dist(start[:2], centre)
     _demand_radius(state, node, radius)
     if not node.rotation_direction:
@@ -306,7 +319,12 @@ def _turns_about_pole(state: State, node: PathFunction, made: PathElement) -> It
         whole = turn * 360.0 <= abs(sweep) + 1e-9
         end = (*(here[:2] if whole else point), start[2] + (z1 - start[2]) * done)
         arc = Arc(here[:2], end[:2], centre, node.rotation_direction == "-")
-        yield replace(made, start=from_plane_order(order, here), end=from_plane_order(order, end), arc=arc)
+        yield replace(
+            made,
+            start=convert_from_plane_order(order, here),
+            end=convert_from_plane_order(order, end),
+            arc=arc,
+        )
         here = end
 
 

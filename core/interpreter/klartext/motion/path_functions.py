@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from core.geometry.chamfer_and_rounding import CornerError, chamfer, make_rounding
 from core.geometry.lines_and_arcs import Arc, Element, Point
 from core.geometry.rotation_frames import Vector
-from core.geometry.working_plane import to_plane_order
+from core.geometry.working_plane import convert_to_plane_order
 from core.interpreter.klartext.flow import word_values
 from core.interpreter.klartext.klartext_state import LINEAR_AXES, POINT_TOLERANCE, State
 from core.interpreter.klartext.motion.feed_rates import convert_to_feed_per_minute, reduce_plunging_feed
@@ -112,7 +112,7 @@ class PathRunner:
             value = word_values.evaluate_coordinate(self._state, word)
             here[word.axis] = here[word.axis] + value if word.is_incremental else value
         self._state.pole_plane = order = find_pole_plane(node, self._state.pole_plane)
-        first, second, _ = to_plane_order(order, (here["X"], here["Y"], here["Z"]))
+        first, second, _ = convert_to_plane_order(order, (here["X"], here["Y"], here["Z"]))
         self._state.pole = first, second
 
     def add_corner(self, node: CornerBlock) -> None:
@@ -121,7 +121,7 @@ class PathRunner:
         if last is None or last.planar_element is None or self._corner is not None:
             text = "{form} must follow a path in the working plane."
             raise self._state.make_error(
-                node.column, ROUNDING_NOT_POSSIBLE, text, _CORNER_HINT, form=node.kind
+                node.column, ROUNDING_NOT_POSSIBLE, text, _CORNER_HINT, form=node.function_name
             )
         self._corner, self._corner_line = node, self._state.line_number
 
@@ -142,7 +142,9 @@ class PathRunner:
         """
         text = "{what} is not allowed while radius compensation is active."
         hint = "End the contour with R0 or DEP before this block."
-        self._state.check(not self._side, column, COMPENSATION_NOT_PERMITTED, text, hint, what=next_function)
+        self._state.check_condition(
+            not self._side, column, COMPENSATION_NOT_PERMITTED, text, hint, what=next_function
+        )
         yield from self._release()
 
     def finish_program(self) -> Iterator[Block]:
@@ -153,14 +155,14 @@ class PathRunner:
         if self._side:
             text = "The program ends while radius compensation is active."
             hint = "End the contour with R0 or DEP."
-            self._state.log.warn(self._state.line_number, 0, "compensation-left-on", text, hint)
+            self._state.log.add_warning(self._state.line_number, 0, "compensation-left-on", text, hint)
             yield from self._close(None)
         yield from self._release()
 
     # --- moves --------------------------------------------------------------------------------------------
 
     def execute_move(
-        self, node: PathFunction, *, datum: Mapping[str, float] | None, has_corner_after: bool
+        self, node: PathFunction, *, machine_datum: Mapping[str, float] | None, has_corner_after: bool
     ) -> Iterator[Block]:
         """Yield the blocks of a path function and of the elements buffered earlier.
 
@@ -174,9 +176,9 @@ class PathRunner:
         check_axes(self._state, node)
         if node.function_name == "LN":
             check_surface_normal(self._state, node, is_compensated=bool(self._side))
-        if datum is not None:
+        if machine_datum is not None:
             yield from self.flush_before(node.column, "M91")
-            yield from self._move_in_machine_frame(node, datum)
+            yield from self._move_in_machine_frame(node, machine_datum)
             return
         made = list(self._elements(node))
         if node.function_name.startswith("APPR"):
@@ -246,7 +248,7 @@ class PathRunner:
     def _approach(self, node: PathFunction, element: PathElement) -> Iterator[Block]:
         text = "APPR is not allowed while radius compensation is active."
         hint = "End the contour with R0 or DEP before this block."
-        self._state.check(not self._side, node.column, COMPENSATION_NOT_PERMITTED, text, hint)
+        self._state.check_condition(not self._side, node.column, COMPENSATION_NOT_PERMITTED, text, hint)
         yield from self._release()
         self._begin(node, _Approach(node, element), element)
         self._side = node.compensation if node.compensation in {"L", "R"} else ""
@@ -297,24 +299,34 @@ class PathRunner:
         before = self._waiting[at]
         assert isinstance(before, PathElement)
         first, last = before.planar_element, after.planar_element
-        size = word_values.number(self._state, corner.size, corner.kind, word_values.MAX_COORDINATE, 0.0)
+        size = word_values.number(
+            self._state, corner.size, corner.function_name, word_values.MAX_COORDINATE, 0.0
+        )
         size *= self._state.mm_per_unit
         if first is None or last is None:
-            text = Message("{form} must be followed by a path in the working plane.", form=corner.kind)
+            text = Message(
+                "{form} must be followed by a path in the working plane.", form=corner.function_name
+            )
             raise self._make_corner_error(corner, text, _CORNER_HINT)
         if size <= POINT_TOLERANCE:
             return after
         try:
-            cut = make_rounding(first, last, size) if corner.kind == "RND" else chamfer(first, last, size)
+            cut = (
+                make_rounding(first, last, size)
+                if corner.function_name == "RND"
+                else chamfer(first, last, size)
+            )
         except CornerError as problem:
             text = Message(
-                "{form} {size} mm: {problem}.", form=corner.kind, size=f"{size:g}", problem=problem
+                "{form} {size} mm: {problem}.", form=corner.function_name, size=f"{size:g}", problem=problem
             )
             raise self._make_corner_error(corner, text, "Use a smaller chamfer or radius.") from None
         feed = before.feed if corner.feed is None else self._feed_of(corner)
         z = before.end[2]
         self._waiting[at] = _replace_points(before, cut[0], before.start[2], z)
-        self._waiting.insert(at + 1, _replace_points(replace(after, feed=feed, rotary={}), cut[1], z, z))
+        self._waiting.insert(
+            at + 1, _replace_points(replace(after, feed=feed, rotary_targets_deg={}), cut[1], z, z)
+        )
         return _replace_points(after, cut[2], z, after.end[2])
 
     def _feed_of(self, corner: CornerBlock) -> float | None:
@@ -346,7 +358,9 @@ class PathRunner:
         """Raise ProgramError if a corner has no next element yet."""
         corner, self._corner = self._corner, None
         if corner is not None:
-            text = Message("{form} must be followed by a path in the working plane.", form=corner.kind)
+            text = Message(
+                "{form} must be followed by a path in the working plane.", form=corner.function_name
+            )
             raise self._make_corner_error(corner, text, _CORNER_HINT)
 
     def _make_corner_error(self, corner: CornerBlock, text: str, hint: str) -> ProgramError:
@@ -370,8 +384,8 @@ class PathRunner:
         if leave is not None:
             feed = self._set_block_feed(leave)
             here = (
-                (*contour.end, self._state.programmed_position[2])
-                if contour.end
+                (*contour.end_point, self._state.programmed_position[2])
+                if contour.end_point
                 else self._state.programmed_position
             )
             direction = contour.end_direction or self._direction or (1.0, 0.0)
@@ -491,7 +505,7 @@ def _rotary(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict
             travel_deg = (
                 axis.find_travel(begin, value)
                 if state.uses_shorter_rotation
-                else value - axis.displayed_angle(begin)
+                else value - axis.get_displayed_angle(begin)
             )
             found[axis.name] = now + (value if word.is_incremental else travel_deg)
     return found

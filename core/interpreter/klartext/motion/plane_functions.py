@@ -16,13 +16,13 @@ from core.geometry.rotation_frames import (
     Vector,
     add_vectors,
     apply_matrix,
-    frame_from_euler_angles,
-    frame_from_points,
-    frame_from_projections,
-    frame_from_spatial_angles,
-    frame_from_vectors,
+    make_frame_from_euler_angles,
+    make_frame_from_points,
+    make_frame_from_projections,
+    make_frame_from_spatial_angles,
+    make_frame_from_vectors,
+    make_rotation,
     multiply_matrices,
-    rotation_about,
     scale_vector,
     subtract_vectors,
     transpose_matrix,
@@ -64,10 +64,10 @@ def make_working_plane(state: State, node: PlaneBlock) -> ActivePlane:
 
     Raises ProgramError if the plane is undefined or cannot be reached.
     """
-    if node.kind == "AXIAL":
+    if node.definition_kind == "AXIAL":
         return _axial(state, node)
     frame = multiply_matrices(
-        _base(state, node), _transform_frame(state, node, _FORMS[node.kind](state, node))
+        _base(state, node), _transform_frame(state, node, _FORMS[node.definition_kind](state, node))
     )
     side = SolutionSide(node.positioning.solution) if node.positioning.solution else None
     table_rot = node.positioning.rotation_mode == "TABLE ROT"
@@ -94,7 +94,9 @@ def _note_swivel_direction(state: State, node: PlaneBlock, frame: Matrix) -> Non
             "determines which direction is used."
         )
         hint = "Write SYM+ or SYM-, or position the table before this block."
-        state.log.add(Diagnostic(state.line_number, node.column, Severity.NOTE, "two-ways", text, hint))
+        state.log.add_finding(
+            Diagnostic(state.line_number, node.column, Severity.NOTE, "two-ways", text, hint)
+        )
 
 
 def _axial(state: State, node: PlaneBlock) -> ActivePlane:
@@ -127,18 +129,18 @@ def _axial(state: State, node: PlaneBlock) -> ActivePlane:
                 angle=f"{angle - zero:+.7g}",
                 ends=ends,
             )
-        angles[axis.name] = axis.displayed_angle(angle)
-    return ActivePlane(state.kinematics.tool_frame(angles), angles, state.line_number)
+        angles[axis.name] = axis.get_displayed_angle(angle)
+    return ActivePlane(state.kinematics.compute_tool_frame(angles), angles, state.line_number)
 
 
 def _points(state: State, node: PlaneBlock) -> Matrix:
     x1, y1, z1, x2, y2, z2, x3, y3, z3 = (number * state.mm_per_unit for number in _lengths(state, node))
-    return _made(state, node, lambda: frame_from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
+    return _made(state, node, lambda: make_frame_from_points((x1, y1, z1), (x2, y2, z2), (x3, y3, z3)))
 
 
 def _vector(state: State, node: PlaneBlock) -> Matrix:
     bx, by, bz, nx, ny, nz = _lengths(state, node)
-    return _made(state, node, lambda: frame_from_vectors((bx, by, bz), (nx, ny, nz)))
+    return _made(state, node, lambda: make_frame_from_vectors((bx, by, bz), (nx, ny, nz)))
 
 
 def _lengths(state: State, node: PlaneBlock) -> list[float]:
@@ -158,23 +160,23 @@ def _made(state: State, node: PlaneBlock, frame: Callable[[], Matrix]) -> Matrix
 
 def _projected(state: State, node: PlaneBlock) -> Matrix:
     first, second, rotation = (_angle(state, word) for word in node.words)
-    return _made(state, node, lambda: frame_from_projections(first, second, rotation))
+    return _made(state, node, lambda: make_frame_from_projections(first, second, rotation))
 
 
 def _euler(state: State, node: PlaneBlock) -> Matrix:
     precession, nutation, rotation = (_angle(state, word) for word in node.words)
-    return frame_from_euler_angles(precession, nutation, rotation)
+    return make_frame_from_euler_angles(precession, nutation, rotation)
 
 
 def _spatial(state: State, node: PlaneBlock) -> Matrix:
     a, b, c = (_angle(state, word) for word in node.words)
-    return frame_from_spatial_angles(a, b, c)
+    return make_frame_from_spatial_angles(a, b, c)
 
 
 def _relative(state: State, node: PlaneBlock) -> Matrix:
     """Return the rotation of PLANE RELATIV about an axis of the active plane or of the workpiece system."""
     (word,) = node.words
-    return rotation_about(_ROTATION_AXES[word.axis], _angle(state, word))
+    return make_rotation(_ROTATION_AXES[word.axis], _angle(state, word))
 
 
 def _base(state: State, node: PlaneBlock) -> Matrix:
@@ -182,7 +184,7 @@ def _base(state: State, node: PlaneBlock) -> Matrix:
 
     The reference frame is the active plane for PLANE RELATIV, and the basic rotation otherwise.
     """
-    relative = node.kind == "RELATIV" and state.active_plane is not None
+    relative = node.definition_kind == "RELATIV" and state.active_plane is not None
     return (
         state.active_plane.frame
         if relative and state.active_plane is not None
@@ -201,8 +203,12 @@ def _transform_frame(state: State, node: PlaneBlock, frame: Matrix) -> Matrix:
         return frame
     text = "MIRROR, ROTATION or SCALE is active and also applies to PLANE {form}."
     hint = "Check the axis angles, write PLANE before MIRROR, ROTATION and SCALE, or use PLANE AXIAL."
-    state.log.warn(state.line_number, node.column, "plane-figure", text, hint, form=node.kind)
-    columns = [figure.to_plane(apply_matrix(frame, figure.to_program(unit))) for unit in IDENTITY]
+    state.log.add_warning(
+        state.line_number, node.column, "plane-figure", text, hint, form=node.definition_kind
+    )
+    columns = [
+        figure.convert_to_plane(apply_matrix(frame, figure.convert_to_program(unit))) for unit in IDENTITY
+    ]
     return transpose_matrix((columns[0], columns[1], columns[2]))
 
 
@@ -229,7 +235,7 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     Raises ProgramError before the state changes.
     """
     _demand_possible(state, node)
-    made = None if node.kind == "RESET" else make_working_plane(state, node)
+    made = None if node.definition_kind == "RESET" else make_working_plane(state, node)
     if made is not None and made.frame != state.kinematics.workpiece_rotation:
         _check_tool_axis(state, node)
     targets = state.kinematics.zero_angles if made is None else made.target_angles
@@ -240,7 +246,7 @@ def plane(state: State, node: PlaneBlock) -> Iterator[Block]:
     _warn_about_shift(state, made)
     for q, name in zip(TARGET_ANGLE_PARAMETERS, ROTARY_AXES, strict=True):
         axis = state.kinematics.find_rotary_axis(name)
-        state.q_values[q] = 0.0 if axis is None else state.kinematics.displayed_angle(axis, targets[name])
+        state.q_values[q] = 0.0 if axis is None else state.kinematics.get_displayed_angle(axis, targets[name])
     if up > POINT_TOLERANCE:
         yield make_retract_block(state, up, feed)
     pivot = _pivot(state, distance) if mode == "MOVE" else None
@@ -273,14 +279,14 @@ def compute_retract_length(state: State, retract_word: RetractWord | None) -> fl
     for slide, at, share in zip(
         state.kinematics.linear_axes,
         state.linear_position,
-        state.kinematics.tool_direction(state.rotary_angles),
+        state.kinematics.compute_tool_direction(state.rotary_angles),
         strict=True,
     ):
         if abs(share) > POINT_TOLERANCE:
             ways.append(((slide.travel_max if share > 0.0 else slide.travel_min) - at) / share)
     up = min(ways, default=math.inf)
     text = "MB MAX needs a software limit, but this machine does not have one along the tool axis."
-    state.check(
+    state.check_condition(
         not math.isinf(up), retract_word.column, INPUT_VALUE_INCORRECT, text, "Write MB with a length."
     )
     return max(up - LIMIT_CLEARANCE_MM, 0.0)
@@ -288,7 +294,7 @@ def compute_retract_length(state: State, retract_word: RetractWord | None) -> fl
 
 def _demand_possible(state: State, node: PlaneBlock) -> None:
     text = "M128 is active."
-    state.check(
+    state.check_condition(
         not state.is_tcpm_active,
         node.column,
         M128_ACTIVE,
@@ -306,14 +312,14 @@ def _check_tool_axis(state: State, node: PlaneBlock) -> None:
 
 def _raised(state: State, up: float) -> Vector:
     return subtract_vectors(
-        state.linear_position, scale_vector(state.kinematics.tool_direction(state.rotary_angles), -up)
+        state.linear_position, scale_vector(state.kinematics.compute_tool_direction(state.rotary_angles), -up)
     )
 
 
 def _pivot(state: State, distance: float) -> Vector:
     """Return the pivot point of MOVE in the machine-parallel system with its origin at the workpiece zero."""
     place = state.kinematics.make_transform(state.rotary_angles, tool_length=state.tool_length_mm)
-    return place.to_frame_point(_raised(state, -distance))
+    return place.convert_to_frame_point(_raised(state, -distance))
 
 
 def _goal(state: State, targets: Mapping[str, float]) -> dict[str, float]:
@@ -338,7 +344,7 @@ def _swivel(
     if pivot is None or turn <= POINT_TOLERANCE:
         return state.make_move_block(BlockKind.PLANE, goal, rate)
     pivot_move = PivotMove(state.kinematics, start, goal, pivot, distance, state.tool_length_mm, turn)
-    return state.make_move_block(BlockKind.PLANE, pivot_move.end_positions(), rate, pivot_move)
+    return state.make_move_block(BlockKind.PLANE, pivot_move.compute_end_positions(), rate, pivot_move)
 
 
 def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
@@ -350,12 +356,14 @@ def _warn_about_shift(state: State, plane: ActivePlane | None) -> None:
         "If the shift is meant for the workpiece coordinate system, write PLANE RESET STAY before TRANS "
         "DATUM."
     )
-    state.log.warn(state.line_number, 0, "datum-in-plane", text, hint, line=state.active_plane.line)
+    state.log.add_warning(
+        state.line_number, 0, "datum-in-plane", text, hint, line=state.active_plane.line_number
+    )
 
 
-def set_tcpm_active(state: State, *, active: bool) -> None:
+def set_tcpm_active(state: State, *, is_active: bool) -> None:
     """Turn tool center point control on or off."""
-    state.is_tcpm_active = active
+    state.is_tcpm_active = is_active
     state.update_derived_values()
 
 
@@ -364,9 +372,11 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
 
     The feed is in mm of the tip path, or in degrees if the tip does not move.
     """
-    first, last = (_parallel(state, state.transformation.to_plane(at)) for at in (element.start, element.end))
+    first, last = (
+        _parallel(state, state.transformation.convert_to_plane(at)) for at in (element.start, element.end)
+    )
     start = state.rotary_angles
-    end = start | dict(element.rotary)
+    end = start | dict(element.rotary_targets_deg)
     path_length_mm = math.dist(first, last)
     turn = math.hypot(*(end[name] - at for name, at in start.items()))
     moves = path_length_mm > POINT_TOLERANCE
@@ -380,7 +390,7 @@ def move_with_rotary_axes(state: State, element: PathElement) -> Block:
         path_length_mm if moves else turn,
         last if moves else None,
     )
-    goals = led.end_positions()
+    goals = led.compute_end_positions()
     rate = (
         None
         if element.feed is None

@@ -17,8 +17,8 @@ from core.geometry.lines_and_arcs import (
     Arc,
     Element,
     Point,
-    left_normal,
-    tangent_point,
+    find_tangent_point,
+    get_left_normal,
 )
 from core.geometry.rotation_frames import Vector
 from core.interpreter.klartext.flow import word_values
@@ -49,7 +49,7 @@ class CompensatedContour:
             self._pieces[id(self._flats[piece.source_index])].append(piece)
 
     @property
-    def end(self) -> Point | None:
+    def end_point(self) -> Point | None:
         """Return the end point of the contour, or None without motion in the plane."""
         return self._flats[-1].end[:2] if self._flats else None
 
@@ -103,29 +103,40 @@ class ContourEntry:
     """
 
     node: PathFunction
-    start: Vector
+    start_position: Vector
     contour_start: Vector
     feed: float | None
-    side: str
+    compensation_side: str
     radius_mm: float
 
 
 def plan_approach_path(state: State, entry: ContourEntry, direction: Point) -> Iterator[PathElement]:
     """Yield the approach to a contour that starts in ``direction`` (a unit vector)."""
-    offset_start = _offset_point(entry.contour_start, direction, entry.side, entry.radius_mm)
-    made = PathElement(entry.start, entry.start, entry.feed, state.line_number, state.text, entry.node.column)
+    offset_start = _offset_point(entry.contour_start, direction, entry.compensation_side, entry.radius_mm)
+    made = PathElement(
+        entry.start_position,
+        entry.start_position,
+        entry.feed,
+        state.line_number,
+        state.text,
+        entry.node.column,
+    )
     form = entry.node.function_name.removeprefix("APPR ").replace("PL", "L").replace("PC", "C")
     if not entry.node.function_name.startswith("APPR"):
-        yield _straight(made, entry.start, offset_start)
+        yield _straight(made, entry.start_position, offset_start)
     elif form in {"LT", "LN"}:
         length = _length(state, entry.node, "LEN")
-        back = (-direction[0], -direction[1]) if form == "LT" else _outward_normal(direction, entry.side)
+        back = (
+            (-direction[0], -direction[1])
+            if form == "LT"
+            else _outward_normal(direction, entry.compensation_side)
+        )
         before = (offset_start[0] + back[0] * length, offset_start[1] + back[1] * length, offset_start[2])
-        yield _straight(made, entry.start, before)
+        yield _straight(made, entry.start_position, before)
         yield _straight(made, before, offset_start)
     else:
         arc = _arc_in(state, entry, direction, offset_start, tangent=form == "LCT")
-        yield _straight(made, entry.start, (*arc.start, offset_start[2]))
+        yield _straight(made, entry.start_position, (*arc.start, offset_start[2]))
         yield _round(made, arc, offset_start[2], offset_start[2])
 
 
@@ -154,7 +165,7 @@ def plan_departure_path(
     # A departure is a reversed approach.
     back = ContourEntry(node, end, contour_end, feed, {"L": "R", "R": "L"}.get(side, ""), radius)
     turned = -direction[0], -direction[1]
-    arc = _arc_in(state, back, turned, start, tangent=form == "LCT").reversed()
+    arc = _arc_in(state, back, turned, start, tangent=form == "LCT").make_reversed()
     yield _round(made, arc, start[2], start[2])
     if form == "LCT":
         yield _straight(made, (*arc.end, start[2]), end)
@@ -168,7 +179,7 @@ def _arc_in(
     The angle of the arc is CCA, or the arc starts at a tangent line.
     """
     size, turn = _radius(state, entry)
-    left = left_normal(direction)
+    left = get_left_normal(direction)
     centre = offset_point[0] + left[0] * size * turn, offset_point[1] + left[1] * size * turn
     if tangent:
         start = _tangent_point(state, entry, centre, size, clockwise=turn < 0)
@@ -191,7 +202,7 @@ def _radius(state: State, entry: ContourEntry) -> tuple[float, float]:
     word = entry.node.find_word("R")
     assert word is not None
     value = word_values.evaluate_coordinate(state, word)
-    turn = -1.0 if (entry.side == "R") != (value < 0.0) else 1.0
+    turn = -1.0 if (entry.compensation_side == "R") != (value < 0.0) else 1.0
     size = value - entry.radius_mm if value > 0.0 else entry.radius_mm - value
     if value == 0.0 or size < SAME_POINT_TOLERANCE_MM:
         raise state.make_error(
@@ -210,20 +221,20 @@ def _tangent_point(
     state: State, entry: ContourEntry, center: Point, size: float, *, clockwise: bool
 ) -> Point:
     """Return the point where a line from the start of the entry is tangent to the circle."""
-    if math.dist(entry.start[:2], center) < size:
+    if math.dist(entry.start_position[:2], center) < size:
         text = "No path is possible for {form} because the tool is inside the arc of this move."
         hint = "Start farther from the contour, or reduce R."
         raise state.make_error(
             entry.node.column, INPUT_VALUE_INCORRECT, text, hint, form=entry.node.function_name
         )
-    return tangent_point(entry.start[:2], center, size, clockwise=clockwise)
+    return find_tangent_point(entry.start_position[:2], center, size, is_clockwise=clockwise)
 
 
 def _offset_point(point: Vector, direction: Point, side: str, radius: float) -> Vector:
     """Return the position of the tool center perpendicular to a point of the contour."""
     if not side:
         return point
-    left = left_normal(direction)
+    left = get_left_normal(direction)
     off = radius if side == "L" else -radius
     return point[0] + left[0] * off, point[1] + left[1] * off, point[2]
 
@@ -233,7 +244,7 @@ def _outward_normal(direction: Point, side: str) -> Point:
 
     Without compensation, it points to the left.
     """
-    left = left_normal(direction)
+    left = get_left_normal(direction)
     return (-left[0], -left[1]) if side == "R" else left
 
 

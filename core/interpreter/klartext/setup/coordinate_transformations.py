@@ -72,7 +72,7 @@ def _read_table_row(state: State, row: Value, column: int) -> tuple[AxisWord, ..
 def _demand_no_turn(state: State, axis: str, value: float, column: int) -> None:
     text = "A datum shift of rotary axis {axis} is not supported."
     hint = "Position the rotary axis with an L block, or program the plane with PLANE."
-    state.check(not value, column, WRONG_AXIS, text, hint, axis=axis)
+    state.check_condition(not value, column, WRONG_AXIS, text, hint, axis=axis)
 
 
 def execute_transformation(state: State, node: CoordinateTransform) -> None:
@@ -81,17 +81,17 @@ def execute_transformation(state: State, node: CoordinateTransform) -> None:
     Raises ProgramError for invalid values.
     """
     figure = state.transformation
-    if node.kind == "MIRROR":
+    if node.transformation_kind == "MIRROR":
         state.transformation = replace(figure, mirrored_axes=node.axes)
         return
     if node.value is None:
         state.transformation = (
             replace(figure, rotation_deg=0.0)
-            if node.kind == "ROTATION"
+            if node.transformation_kind == "ROTATION"
             else replace(figure, scale_factor=1.0)
         )
         return
-    if node.kind == "ROTATION":
+    if node.transformation_kind == "ROTATION":
         value = word_values.number(state, node.value, "ROT", 360.0)
         state.transformation = replace(
             figure, rotation_deg=figure.rotation_deg + value if node.is_incremental else value
@@ -99,7 +99,7 @@ def execute_transformation(state: State, node: CoordinateTransform) -> None:
         return
     factor = word_values.number(state, node.value, "SCL", MAX_SCALE_FACTOR, 0.0)
     text = "A scaling factor of 0 is not allowed."
-    state.check(
+    state.check_condition(
         factor > 0.0, node.column, INPUT_VALUE_INCORRECT, text, "Program SCL with a factor such as 0.99."
     )
     state.transformation = replace(figure, scale_factor=factor)

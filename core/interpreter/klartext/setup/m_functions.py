@@ -23,7 +23,7 @@ from core.interpreter.shared.elementary_blocks import Block
 from core.language.diagnostics import Severity
 from core.language.klartext.klartext_faults import (
     CONTRADICTION,
-    M_UNDEFINED,
+    M_FUNCTION_UNDEFINED,
     NOT_ALLOWED_WITH_M128,
     WRONG_RPM,
     make_syntax_error,
@@ -86,7 +86,7 @@ def check(state: State, codes: Sequence[MFunction]) -> None:
         if code.number == M19 and not limits.can_orient_spindle:
             raise state.make_error(
                 code.column,
-                M_UNDEFINED,
+                M_FUNCTION_UNDEFINED,
                 "M19 stops the spindle at an angle, but {unoriented}.",
                 "{how_oriented}, or remove M19.",
                 unoriented=CANNOT_ORIENT_TEXT,
@@ -98,7 +98,7 @@ def check(state: State, codes: Sequence[MFunction]) -> None:
             text = "M{number} is not defined in the machine file."
             raise state.make_error(
                 code.column,
-                M_UNDEFINED,
+                M_FUNCTION_UNDEFINED,
                 text,
                 _ADVICE.get(code.number, _MACHINE_CODE_HINT),
                 number=code.number,
@@ -125,7 +125,9 @@ def _check_datum(state: State, code: MFunction, codes: Sequence[MFunction]) -> N
     """Raise ProgramError for M91 or M92 while M128 is active, or for M91 and M92 in one block."""
     text = "M{number} is not allowed while M128 is active."
     hint = "Switch M128 off with M129 before this block."
-    state.check(not state.is_tcpm_active, code.column, NOT_ALLOWED_WITH_M128, text, hint, number=code.number)
+    state.check_condition(
+        not state.is_tcpm_active, code.column, NOT_ALLOWED_WITH_M128, text, hint, number=code.number
+    )
     if {M91, M92} <= {other.number for other in codes}:
         text = "M91 and M92 cannot be in the same block because they measure from different datums."
         raise state.make_error(code.column, CONTRADICTION, text, "Remove one of the two.")
@@ -142,9 +144,9 @@ def read_machine_datum(state: State, codes: Sequence[MFunction]) -> Mapping[str,
     return {} if M91 in numbers else None
 
 
-def execute_before_motion(state: State, codes: Sequence[MFunction]) -> Iterator[Block]:
+def execute_before_motion(state: State, m_functions: Sequence[MFunction]) -> Iterator[Block]:
     """Yield the blocks of the M functions that act before the motion."""
-    for code in codes:
+    for code in m_functions:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in _TURNS:
             yield _start(state, code)
@@ -155,16 +157,16 @@ def execute_before_motion(state: State, codes: Sequence[MFunction]) -> Iterator[
         if code.number in {116, 117}:
             state.is_rotary_feed_at_tip = code.number == 116
         if code.number in {128, 129}:
-            set_tcpm_active(state, active=code.number == 128)
+            set_tcpm_active(state, is_active=code.number == 128)
         if code.number == 140:
             yield from _retract(state, code)
         if output is not None and output[1]:
             yield _output(state, *output)
 
 
-def execute_after_motion(state: State, codes: Sequence[MFunction], comment: str) -> Iterator[Block]:
+def execute_after_motion(state: State, m_functions: Sequence[MFunction], comment: str) -> Iterator[Block]:
     """Yield the blocks of the M functions that act after the motion."""
-    for code in codes:
+    for code in m_functions:
         output = state.setup.limits.m_outputs.get(code.number)
         if code.number in {0, 5, 6} and state.modal.spindle:
             yield _stop(state)
@@ -202,7 +204,9 @@ def execute_program_end(state: State) -> Block:
 
 def _start(state: State, code: MFunction) -> Block:
     text = "M{number} starts the spindle, but no TOOL CALL sets S."
-    state.check(state.modal.rpm, code.column, WRONG_RPM, text, "Program S in TOOL CALL.", number=code.number)
+    state.check_condition(
+        state.modal.rpm, code.column, WRONG_RPM, text, "Program S in TOOL CALL.", number=code.number
+    )
     state.modal = state.modal._replace(spindle=_TURNS[code.number], oriented=None)
     return state.make_action_block(actions.SpindleRun(state.modal.rpm * state.modal.spindle))
 

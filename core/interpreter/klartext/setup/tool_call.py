@@ -122,7 +122,9 @@ def _measure(
     if _defined(state, tool) is None and tool and usage.use_tool_offset(tool, state.setup.tools) is None:
         text = "Tool {tool} has no offset, so 0 is used and the machine will not start."
         hint = "Set the tool offset."
-        state.log.warn(state.line_number, column, "tool-offset-missing", text, hint, tool=format_tool(tool))
+        state.log.add_warning(
+            state.line_number, column, "tool-offset-missing", text, hint, tool=format_tool(tool)
+        )
     update_tool_dimensions(state)
 
 
@@ -172,7 +174,7 @@ def _by_cutting_speed(state: State, node: ToolCall, number: int | None) -> float
     radius = find_tool_radius_mm(state, state.modal.tool if number is None else number) or 0.0
     text = "A cutting speed needs the tool radius, but the radius of the tool is not defined."
     hint = "Enter the tool radius R in the tool table, or program S."
-    state.check(radius > 0.0, node.cutting_speed.column, WRONG_RPM, text, hint)
+    state.check_condition(radius > 0.0, node.cutting_speed.column, WRONG_RPM, text, hint)
     return speed * 1000.0 / (2.0 * math.pi * radius)
 
 
@@ -184,7 +186,9 @@ def _speed(state: State, node: ToolCall, number: int | None) -> float | None:
     rpm = word_values.number(state, node.speed, "S", word_values.MAX_SPEED_RPM, 0.0)
     highest = state.setup.limits.max_rpm
     text = "S{rpm} is above the spindle maximum of {highest} rpm."
-    state.check(rpm <= highest, node.speed.column, WRONG_RPM, text, "Lower S.", rpm=rpm, highest=highest)
+    state.check_condition(
+        rpm <= highest, node.speed.column, WRONG_RPM, text, "Lower S.", rpm=rpm, highest=highest
+    )
     return rpm
 
 

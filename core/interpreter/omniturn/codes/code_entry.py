@@ -21,11 +21,11 @@ EXAMPLE_TAIL = "G94F300X.6Z1\nM30\n"
 class ActionKind(Enum):
     """Kind of action of a code, which determines when the code is executed (see ``block_execution``)."""
 
-    PLAIN = auto()  # a line without a one-shot code: a straight move or no move
+    PLAIN_MOVE = auto()  # a line without a one-shot code: a straight move or no move
     WORD = auto()  # a letter
     MODE = auto()  # active until another code of the same group
     FRAME = auto()  # its X and Z are not a motion
-    LOCK = auto()  # the spindle becomes the C axis, before the motion
+    SPINDLE_LOCK = auto()  # the spindle becomes the C axis, before the motion
     SPINDLE = auto()  # starts the spindle; before the motion
     START = auto()  # an M function before the motion
     ARC = auto()
@@ -78,8 +78,8 @@ class RejectCondition(Enum):
     WITH_FEED = "the line contains F, G94 or G95 and is not the first line of the program"
     WITH_M = "the line contains an M code"
     NOSE_COMPENSATION = "G41 or G42 is active"
-    COARSE = "G35 is active"
-    NOT_COARSE = "G35 is not active"
+    COARSE_FEED = "G35 is active"
+    NO_COARSE_FEED = "G35 is not active"
     INCREMENTAL_DIAMETERS = "G72 and G91 are active"
     SURFACE_SPEED = "G96 is active"
     FEED_PER_REV = "G95 is active"
@@ -184,8 +184,8 @@ class CodeEntry:
 
     ``example`` contains the program lines between ``EXAMPLE_HEAD`` and ``EXAMPLE_TAIL``; ``subroutine``
     contains the lines after the program end. ``allowed_words`` are the permitted words other than G and M.
-    ``rules`` limit the numbers of these words, and ``required_words`` and ``exclusive_words`` specify which
-    words are required or exclude each other. ``reject_conditions`` lists the conditions that reject the
+    ``word_rules`` limit the numbers of these words, and ``required_words`` and ``exclusive_words`` specify
+    which words are required or exclude each other. ``reject_conditions`` lists the conditions that reject the
     code, in the order of the checks. ``other_diagnostic_codes`` are the diagnostic codes of checks that
     need geometry, other lines or the program structure. Raises CodeEntryError if words, rules and the
     meaning of F contradict each other.
@@ -202,7 +202,7 @@ class CodeEntry:
     s_meaning: SMeaning = SMeaning.SPEED
     allowed_words: frozenset[str] = frozenset()
     group: str = ""  # a line may have only one mode of a group
-    rules: Mapping[str, WordRule] = field(default_factory=dict)
+    word_rules: Mapping[str, WordRule] = field(default_factory=dict)
     required_words: WordGroup | None = None
     exclusive_words: tuple[WordGroup, ...] = ()
     reject_conditions: Mapping[RejectCondition, ErrorTemplate] = field(default_factory=dict)
@@ -212,9 +212,9 @@ class CodeEntry:
     calls_subroutine: bool = False  # calls a subroutine
     depends_on_input: bool = False  # the call depends on an input
     allows_block_delete: bool = True  # "/" may precede it
-    allowed_with_compensation: bool = False  # allowed with G41 and G42
-    allowed_before_corner: bool = False  # allowed between a move with C or R and the next move
-    allowed_in_contour: bool = False  # allowed in the contour of G75 and G78
+    is_allowed_with_compensation: bool = False  # allowed with G41 and G42
+    is_allowed_after_corner: bool = False  # allowed between a move with C or R and the next move
+    is_allowed_in_contour: bool = False  # allowed in the contour of G75 and G78
     mdi_error_text: str = ""  # template with {code}: why MDI rejects the code, which needs other lines
     other_diagnostic_codes: frozenset[str] = frozenset()
 
@@ -225,7 +225,7 @@ class CodeEntry:
             )
         if self.action_kind is ActionKind.MODE and not self.group:
             raise CodeEntryError(f"{self.name}: a mode needs its group", "no-group")
-        if self.action_kind is not ActionKind.WORD and self.rules.keys() - self.allowed_words:
+        if self.action_kind is not ActionKind.WORD and self.word_rules.keys() - self.allowed_words:
             raise CodeEntryError(
                 f"{self.name}: a rule for a word that may not stand there", "rule-without-word"
             )
@@ -234,7 +234,7 @@ class CodeEntry:
     def entry_errors(self) -> tuple[ErrorTemplate, ...]:
         """Return the errors whose messages are in this entry."""
         together = (*self.exclusive_words, *((self.required_words,) if self.required_words else ()))
-        of_words = (each for rule in self.rules.values() for each in rule.errors)
+        of_words = (each for rule in self.word_rules.values() for each in rule.errors)
         return (*self.reject_conditions.values(), *of_words, *(each.refusal for each in together))
 
     @property

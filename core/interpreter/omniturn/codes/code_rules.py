@@ -55,7 +55,7 @@ def number(state: State, statement: Statement, letter: str, code: CodeEntry | No
     Raises ProgramError if the rule of the line's code rejects the number.
     """
     code = code or statement.code_entry
-    rule, word = code.rules[letter], statement.words.get(letter)
+    rule, word = code.word_rules[letter], statement.words.get(letter)
     if word is not None and word.value is None and rule.bare_value is not None:
         return rule.bare_value
     return check_value(state, statement, letter, None if word is None else word.value, code)
@@ -76,7 +76,7 @@ def check_value(
     number above the limit. Raises ProgramError if the rule rejects the number.
     """
     code = code or statement.code_entry
-    rule, word = code.rules[letter], statement.words.get(letter)
+    rule, word = code.word_rules[letter], statement.words.get(letter)
     refusal = _wrong(state, rule, word, value)
     if refusal is None:
         return value
@@ -112,15 +112,15 @@ def format_limit(state: State, maximum: WordLimit) -> str:
     if maximum not in {WordLimit.FEED, WordLimit.ACTIVE_FEED, WordLimit.LEAD}:
         return f"{value:g}"
     per_rev = maximum is WordLimit.LEAD or (maximum is WordLimit.ACTIVE_FEED and state.modal.per_rev)
-    return state.modal.format_feed(value, per_rev=per_rev)
+    return state.modal.format_feed(value, is_per_rev=per_rev)
 
 
 def _feed_in_force(state: State) -> float:
-    return MAX_FEEDS_PER_REV[state.modal.coarse] if state.modal.per_rev else state.setup.limits.max_feed
+    return MAX_FEEDS_PER_REV[state.modal.coarse] if state.modal.per_rev else state.setup.limits.max_feed_mm_s
 
 
 _LIMITS: dict[WordLimit, Callable[[State], float]] = {
-    WordLimit.FEED: lambda state: state.setup.limits.max_feed,
+    WordLimit.FEED: lambda state: state.setup.limits.max_feed_mm_s,
     WordLimit.ACTIVE_FEED: _feed_in_force,
     WordLimit.LEAD: lambda state: MAX_FEEDS_PER_REV[state.modal.coarse],
     WordLimit.SURFACE_SPEED: lambda _: 6000 * MM_S_PER_M_MIN,
@@ -183,14 +183,14 @@ def _collet_open(state: State, _made: Statement, _code: CodeEntry) -> bool:
 _CONDITION_CHECKS: dict[RejectCondition, Callable[[State, Statement, CodeEntry], bool]] = {
     RejectCondition.WITH_OTHER_WORDS: _with_others,
     RejectCondition.WITH_FEED: lambda _, statement, _code: (
-        (statement.f_is_feed and "F" in statement.words)
+        (statement.is_f_feed and "F" in statement.words)
         or 94 in statement.modal_codes
         or 95 in statement.modal_codes
     ),
     RejectCondition.WITH_M: lambda _, statement, _code: statement.m_number is not None,
     RejectCondition.NOSE_COMPENSATION: lambda state, _, _code: state.modal.compensation_code != 40,
-    RejectCondition.COARSE: lambda state, _, _code: bool(state.modal.coarse),
-    RejectCondition.NOT_COARSE: lambda state, _, _code: not state.modal.coarse,
+    RejectCondition.COARSE_FEED: lambda state, _, _code: bool(state.modal.coarse),
+    RejectCondition.NO_COARSE_FEED: lambda state, _, _code: not state.modal.coarse,
     RejectCondition.INCREMENTAL_DIAMETERS: lambda state, _, _code: (
         state.modal.diameter and not state.absolute
     ),
@@ -205,7 +205,7 @@ _CONDITION_CHECKS: dict[RejectCondition, Callable[[State, Statement, CodeEntry],
     RejectCondition.COLLET_OPEN: _collet_open,
     RejectCondition.C_LOCKED: lambda state, _, _code: state.modal.c_locked,
     RejectCondition.C_NOT_LOCKED: lambda state, _, _code: not state.modal.c_locked,
-    RejectCondition.C_DISABLED: lambda state, _, _code: not state.setup.limits.c_enabled,
+    RejectCondition.C_DISABLED: lambda state, _, _code: not state.setup.limits.is_c_enabled,
     # This condition is checked only for lines without a straight move.
     RejectCondition.NO_STRAIGHT_MOVE: lambda *_: True,
 }

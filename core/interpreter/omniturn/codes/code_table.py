@@ -21,7 +21,7 @@ from core.interpreter.omniturn.codes.flow_codes import FLOW_CHAPTERS
 from core.interpreter.omniturn.codes.move_codes import MOVE_CHAPTERS
 
 PLAIN_LINE_ENTRY = CodeEntry(
-    "", "", "", "", action_kind=ActionKind.PLAIN, handler="motion.straight_moves:make_statement_move",
+    "", "", "", "", action_kind=ActionKind.PLAIN_MOVE, handler="motion.straight_moves:make_statement_move",
     allowed_words=PLAIN_WORDS, f_meaning=FMeaning.FEED
 )  # fmt: skip
 

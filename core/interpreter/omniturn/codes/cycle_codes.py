@@ -140,14 +140,14 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
             action_kind=ActionKind.CYCLE, handler="cycles.drilling_cycles:plan_drilling",
             allowed_words=names("X Z F S"),
             f_meaning=FMeaning.FEED,
-            reject_conditions=_NOT_READY, rules={"Z": _DEPTH}, min_block_count=2,
+            reject_conditions=_NOT_READY, word_rules={"Z": _DEPTH}, min_block_count=2,
             other_diagnostic_codes=names("cycle-depth")),
         CodeEntry("G83", "G83ZnKnFnRnLnCn", "Drills in pecks of K, retracting to R.",
             "X0Z.1\nG83Z-.65K.2F.004",
             action_kind=ActionKind.CYCLE, handler="cycles.drilling_cycles:plan_pecking",
             allowed_words=names("X Z C K R L F S"),
             f_meaning=FMeaning.FEED, reject_conditions=_NOT_READY, min_block_count=2,
-            rules={
+            word_rules={
                 "Z": _DEPTH,
                 "K": _make_required_rule("the depth of one peck"),
                 "L": WordRule("the retract rate", minimum=0, excludes_minimum=True, maximum=WordLimit.FEED,
@@ -165,16 +165,16 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
             handler="cycles.roughing_cycles:plan_box_cycle",
             allowed_words=names("X Z I U F S"), f_meaning=FMeaning.FEED, reject_conditions=_NOT_READY,
             min_block_count=4,
-            rules={"X": _OPPOSITE_CORNER_RULE, "Z": _OPPOSITE_CORNER_RULE, "I": _CUT, "U": _LEFT},
+            word_rules={"X": _OPPOSITE_CORNER_RULE, "Z": _OPPOSITE_CORNER_RULE, "I": _CUT, "U": _LEFT},
             other_diagnostic_codes=names("cycle-nothing cycle-passes")),
         _contour("G75", "G75InUnFnPn",
         "Roughs the contour on the following lines, which end with RF.",
             f"G75I.05U.01F.006\n{_CONTOUR}\nRF", allowed_words=names("I U P F S"), min_block_count=4,
-            rules={"P": _DESCRIBED, "I": _CUT, "U": _LEFT},
+            word_rules={"P": _DESCRIBED, "I": _CUT, "U": _LEFT},
             other_diagnostic_codes=_CONTOUR_CYCLE | names("cycle-passes cycle-plunge")),
         _contour("G78", "G78UnFnPn",
         "Cuts one pass along the contour at a distance of U.", f"G78U.01F.004\n{_CONTOUR}\nRF",
-            allowed_words=names("U P F S"), min_block_count=3, rules={"P": _DESCRIBED, "U": _LEFT},
+            allowed_words=names("U P F S"), min_block_count=3, word_rules={"P": _DESCRIBED, "U": _LEFT},
             other_diagnostic_codes=_CONTOUR_CYCLE),
         make_flow_entry("RF", "RF", "Ends the contour description for G75 and G78.",
             f"G78U.02F.004\n{_CONTOUR}\nRF",
@@ -188,7 +188,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
         _thread("G33", "G33XnZnInKnAnCnPO",
         "Cuts a thread in passes to X with lead K.", "X.24Z.2\nG33X.21Z-.5I.01K.05C",
             allowed_words=names("X Z C I K A P O F S T D"),
-            rules={
+            word_rules={
                 "X": WordRule("the position of the last pass", missing_error=ErrorTemplate(
                     "word-missing",
                     "X, the position of the last pass, is missing.", "Write X.")),
@@ -209,7 +209,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
         _thread("G34", "G34ZnInKnAnPn",
         "Cuts one thread pass at the current X.", "X.24Z.2\nG34Z-.5I.01K.05",
             allowed_words=names("Z I K A P F S T D"),
-            rules={
+            word_rules={
                 "Z": _END,
                 "I": _FIRST_PASS(minimum=-inf, is_nonzero=True),
                 "K": _LEAD,
@@ -220,13 +220,13 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
         "Allows leads of up to 1 in, or up to 2 in with F2. Write G35 alone on a line, and "
         "G92 with the current point on the next line.", _COARSE,
             allowed_words=names("F"), f_meaning=FMeaning.LEAD_RANGE,
-            rules={"F": WordRule("thread leads of up to 2 in/rev", minimum=2, maximum=2,
+            word_rules={"F": WordRule("thread leads of up to 2 in/rev", minimum=2, maximum=2,
             invalid_error=ErrorTemplate(
                 "coarse-range",
                 "{word}: with G35, only F2 is allowed (leads up to 2 in/rev).",
                 "Write G35 or G35F2."))},
             reject_conditions={RejectCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
-            RejectCondition.COARSE: ErrorTemplate(
+            RejectCondition.COARSE_FEED: ErrorTemplate(
                 "coarse-order", "G35 is already active.", "Delete the line.", 1)},
             other_diagnostic_codes=names("coarse-preset")),
         _coarse("G36", "G36",
@@ -234,7 +234,7 @@ CYCLE_CHAPTERS: tuple[Chapter, ...] = (
         "and G92 on the next line.",
             _COARSE, f_meaning=FMeaning.NONE,
             reject_conditions={RejectCondition.WITH_OTHER_WORDS: _COARSE_ERROR,
-            RejectCondition.NOT_COARSE: ErrorTemplate(
+            RejectCondition.NO_COARSE_FEED: ErrorTemplate(
                 "coarse-order", "G36 ends G35, but G35 is not active.", "Delete the line.", 1)},
             other_diagnostic_codes=names("coarse-place coarse-preset")),
     )),

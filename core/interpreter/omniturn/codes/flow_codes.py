@@ -99,7 +99,7 @@ FLOW_CHAPTERS: tuple[Chapter, ...] = (
             allowed_words=names("C I P M"),
             calls_subroutine=True, depends_on_input=True, mdi_error_text=
                 "{code} cannot call a subroutine in MDI; subroutine calls are possible only in a program.",
-            rules={
+            word_rules={
                 "C": WordRule(
                 "required state of the input, on (1) or off (0)", minimum=0, maximum=1, is_whole=True,
                 invalid_error=ErrorTemplate(

@@ -98,7 +98,7 @@ def _rules(entry: CodeEntry) -> list[str]:
 
     The rules are the limits of the words, the conditions that reject the code, and other findings.
     """
-    rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.rules.items()]
+    rules = [f"`{letter}` {_rule(rule)}" for letter, rule in entry.word_rules.items()]
     if entry.required_words is not None:
         letters, refusal = entry.required_words
         rules.append(f"one of {_letters(letters)} is required: `{refusal.diagnostic_code}`")

@@ -43,7 +43,7 @@ _ARC_BOTH = ErrorTemplate("arc-both",
 _arc = partial(
     CodeEntry, action_kind=ActionKind.ARC, handler="motion.arc_moves:make_arc_block",
         allowed_words=names("X Z I K R F S T D"), f_meaning=FMeaning.FEED,
-    rules={
+    word_rules={
         "R": WordRule("the radius", minimum=0, excludes_minimum=True, invalid_error=ErrorTemplate(
             "arc-r-sign", "R must be greater than 0.", "Use I and K for larger arcs.", "R")),
     },
@@ -51,7 +51,8 @@ _arc = partial(
         "arc-centre-missing", "The arc has neither R nor I and K.", "Add R, or I and K.")),
     exclusive_words=(WordGroup(("R", "I"), _ARC_BOTH), WordGroup(("R", "K"), _ARC_BOTH)),
     reject_conditions={RejectCondition.INCREMENTAL_DIAMETERS: _ARC_MODE},
-    min_block_count=1, allowed_with_compensation=True, allowed_before_corner=True, allowed_in_contour=True,
+    min_block_count=1, is_allowed_with_compensation=True, is_allowed_after_corner=True,
+    is_allowed_in_contour=True,
     other_diagnostic_codes=names(
                 "arc-coordinate-missing arc-no-chord arc-no-radius arc-over-half arc-radius"
             ),
@@ -162,19 +163,19 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             action_kind=ActionKind.MOTION, handler="setup.spindle_and_dwell:execute_dwell",
             allowed_words=names("F S T D"),
             f_meaning=FMeaning.SECONDS,
-            rules={"F": WordRule(
+            word_rules={"F": WordRule(
                 "seconds", minimum=0.1,
                 missing_error=ErrorTemplate("word-missing", "G04 does not contain a dwell time.",
             "Write G04F with the time in seconds."),
                 invalid_error=ErrorTemplate(
                     "dwell-range", "G04F{value} is too short: the shortest dwell is 0.1 s.", "Correct F."))},
-            min_block_count=1, allowed_with_compensation=True, allowed_before_corner=True,
-            allowed_in_contour=True,
+            min_block_count=1, is_allowed_with_compensation=True, is_allowed_after_corner=True,
+            is_allowed_in_contour=True,
             other_diagnostic_codes=names("dwell-long dwell-too-short")),
         CodeEntry("F", "Fn", "Feed: in/min under G94, in/rev under G95.", "Z0F.002",
             action_kind=ActionKind.WORD, handler="motion.feeds:execute_feed_words", allowed_words=names("F"),
             f_meaning=FMeaning.FEED,
-            rules={"F": WordRule(
+            word_rules={"F": WordRule(
                 "feed in inches per minute or per revolution", minimum=0.00005, maximum=WordLimit.ACTIVE_FEED,
                 invalid_error=ErrorTemplate(
                     "feed-range", "Feed {value} is out of range: {least} to {most}.", "Raise F."),
@@ -183,11 +184,11 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             other_diagnostic_codes=names("feed-high feed-low feed-missing")),
         make_letter_entry("C", "XnZnCn",
         "Chamfer to the next straight line, set back by n on both lines.",
-            "X.3Z0\nX.5C.03\nZ-.3", handler="motion.corners:read_corner", rules={"C": _CORNER_SIZE},
+            "X.3Z0\nX.5C.03\nZ-.3", handler="motion.corners:read_corner", word_rules={"C": _CORNER_SIZE},
             exclusive_words=(WordGroup(("R", "C"), _CORNER_BOTH),), other_diagnostic_codes=_CORNER),
         make_letter_entry("R", "XnZnRn",
         "Corner radius n, tangent to this straight line and the next one.", "X.3Z0\nX.5R.05\nZ-.3",
-            handler="motion.corners:read_corner", rules={"R": _CORNER_SIZE},
+            handler="motion.corners:read_corner", word_rules={"R": _CORNER_SIZE},
             exclusive_words=(WordGroup(("R", "C"), _CORNER_BOTH),), other_diagnostic_codes=_CORNER,
             reject_conditions={RejectCondition.NO_STRAIGHT_MOVE: ErrorTemplate(
                 "corner-without-move",
@@ -197,29 +198,30 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
     )),
     ("Modes", (
         make_mode_entry("G70", "G70", "Inches.", "G70\nX.5",
-            handler="motion.straight_moves:execute_geometry_modes", group="units",
+            handler="motion.straight_moves:execute_dimension_modes", group="units",
             other_diagnostic_codes=names("finer-than-step")),
         make_mode_entry("G71", "G71",
         "Metric units, active until G70 or a restart.", "G71\nX12.5Z2.5\nG70",
-            handler="motion.straight_moves:execute_geometry_modes", group="units",
+            handler="motion.straight_moves:execute_dimension_modes", group="units",
             other_diagnostic_codes=names("finer-than-step")),
         make_mode_entry("G72", "G72", "X words are diameters.", "G72\nX1.\nG73",
-            handler="motion.straight_moves:execute_geometry_modes", group="X words"),
+            handler="motion.straight_moves:execute_dimension_modes", group="X words"),
         make_mode_entry("G73", "G73",
         "X words are radii; this is the setting at program start.", "G73\nX.5",
-            handler="motion.straight_moves:execute_geometry_modes", group="X words"),
+            handler="motion.straight_moves:execute_dimension_modes", group="X words"),
         make_mode_entry("G90", "G90",
         "Absolute positions; the first line must contain G90 or G91.", "G90\nX.5Z0",
-            handler="motion.straight_moves:execute_geometry_modes", group="distance",
+            handler="motion.straight_moves:execute_dimension_modes", group="distance",
             other_diagnostic_codes=names("first-line")),
         make_mode_entry("G91", "G91", "Incremental.", "G91\nX-.1\nG90",
-            handler="motion.straight_moves:execute_geometry_modes", group="distance",
+            handler="motion.straight_moves:execute_dimension_modes", group="distance",
             other_diagnostic_codes=names("first-line")),
         CodeEntry("G92", "G92XnZn", "Sets the coordinates of the current point; no axis moves.", "G92X.6Z.2",
             action_kind=ActionKind.FRAME, handler="setup.tools_and_offsets:set_preset",
             allowed_words=names("X Z F S T D"),
             f_meaning=FMeaning.FEED,
-            required_words=_PLACE, min_block_count=1, allowed_before_corner=True, allowed_in_contour=True,
+            required_words=_PLACE, min_block_count=1, is_allowed_after_corner=True,
+            is_allowed_in_contour=True,
             other_diagnostic_codes=names("preset-thread")),
         make_mode_entry("G94", "G94Fn", "Feed in inches per minute.", "G94F5\nZ0",
             handler="motion.feeds:execute_feed_words", group="feed mode",
@@ -234,7 +236,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         "Tool offset n, from 1 to 32; the next move must contain X and Z. T0 cancels "
         "the tool offset and the work shift.",
             "T2\nX.6Z.1", handler="setup.tools_and_offsets:change_tool",
-            reject_conditions={RejectCondition.COARSE: ErrorTemplate(
+            reject_conditions={RejectCondition.COARSE_FEED: ErrorTemplate(
                 "coarse-tool",
                 "T is not allowed between G35 and G36.", "Write G36 before the T word.", "T")},
             other_diagnostic_codes=names("tool-first-move tool-offset-missing tool-under-css")),
@@ -248,8 +250,8 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
             "G10X0Z-.5\nT1\nX.6Z.1",
             action_kind=ActionKind.FRAME, handler="setup.tools_and_offsets:add_work_shift",
             allowed_words=names("X Z F S T D"), f_meaning=FMeaning.FEED,
-            required_words=_PLACE, min_block_count=1, allowed_with_compensation=True,
-            allowed_before_corner=True, allowed_in_contour=True,
+            required_words=_PLACE, min_block_count=1, is_allowed_with_compensation=True,
+            is_allowed_after_corner=True, is_allowed_in_contour=True,
             other_diagnostic_codes=names("shift-without-tool")),
         CodeEntry("G40", "G40",
         "Turns nose compensation off; the preceding move is the departure from the "
@@ -274,7 +276,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         make_letter_entry("S", "Sn", "Spindle speed in rpm with G97, surface speed in ft/min with G96.",
             "S1500",
             handler="setup.spindle_and_dwell:execute_speed_word", allowed_words=names("S"),
-            rules={"S": WordRule(
+            word_rules={"S": WordRule(
                 "rpm", minimum=0, maximum=WordLimit.RPM, invalid_error=_SPEED_SIGN,
                 too_large_error=ErrorTemplate(
                     "speed-range",
@@ -287,7 +289,7 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         make_mode_entry("G96", "G96Sn", "Constant surface speed in ft/min; the rpm changes with the radius.",
             "G96S200\nX.3\nG97S1000", handler="setup.spindle_and_dwell:execute_spindle_modes",
             group="spindle mode",
-            rules={"S": WordRule(
+            word_rules={"S": WordRule(
                 "surface speed in ft/min, or in m/min with G71",
                 minimum=0, maximum=WordLimit.SURFACE_SPEED, invalid_error=_SPEED_SIGN,
                 too_large_error=ErrorTemplate(
@@ -299,38 +301,38 @@ MOVE_CHAPTERS: tuple[Chapter, ...] = (
         make_mode_entry("G76", "G76Sn", "Minimum rpm under G96.", "G96S200\nG76S300\nX.3\nG97S1000",
             handler="setup.spindle_and_dwell:execute_spindle_modes", group="speed limits",
             s_meaning=SMeaning.SPEED_LIMIT,
-            rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
+            word_rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
         make_mode_entry("G77", "G77Sn", "Maximum rpm under G96.", "G96S200\nG77S2000\nX.1\nG97S1000",
             handler="setup.spindle_and_dwell:execute_spindle_modes", group="speed limits",
             s_meaning=SMeaning.SPEED_LIMIT,
-            rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
+            word_rules={"S": _SPEED_LIMIT}, other_diagnostic_codes=names("speed-limits")),
         CodeEntry("G89", "G89",
         "Stops the spindle and locks it in place, like M89.",
-            f"{_LOCK_PREPARATION}\nG89\nCI90S60\nG04F2\nM05", action_kind=ActionKind.LOCK,
+            f"{_LOCK_PREPARATION}\nG89\nCI90S60\nG04F2\nM05", action_kind=ActionKind.SPINDLE_LOCK,
                 handler="motion.c_axis:lock_spindle",
             allowed_words=names("S"),
-            f_meaning=FMeaning.NONE, s_meaning=SMeaning.C_SPEED, allowed_before_corner=True,
-            rules={"S": _C_SPEED},
+            f_meaning=FMeaning.NONE, s_meaning=SMeaning.C_SPEED, is_allowed_after_corner=True,
+            word_rules={"S": _C_SPEED},
             reject_conditions={RejectCondition.C_DISABLED: _NO_C, RejectCondition.WITH_M: ErrorTemplate(
                 "not-alone",
                 "G89 locks the spindle and cannot be combined with M codes.", "Split the line.")}),
         make_m_code_entry("M19", "M19Sn",
         "Turns the spindle to angle 0 and locks it until M05.",
-            f"{_LOCK_PREPARATION}\nM19S60\nG04F3\nM05", action_kind=ActionKind.LOCK,
+            f"{_LOCK_PREPARATION}\nM19S60\nG04F3\nM05", action_kind=ActionKind.SPINDLE_LOCK,
                 handler="motion.c_axis:lock_spindle", s_meaning=SMeaning.C_SPEED,
-            rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
+            word_rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
         make_m_code_entry("M89", "M89",
         "Stops the spindle and locks it in place.",
-            f"{_LOCK_PREPARATION}\nM89\nCI45S60\nG04F2\nM05", action_kind=ActionKind.LOCK,
+            f"{_LOCK_PREPARATION}\nM89\nCI45S60\nG04F2\nM05", action_kind=ActionKind.SPINDLE_LOCK,
                 handler="motion.c_axis:lock_spindle",
             s_meaning=SMeaning.C_SPEED,
-            rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
+            word_rules={"S": _C_SPEED}, reject_conditions={RejectCondition.C_DISABLED: _NO_C}),
         _c_word("CA", "CAn", "Turns the spindle to angle n.",
             f"{_LOCK_PREPARATION}\nM19S60\nG04F3\nCA90S60\nG04F2\nM05",
-            rules={"C": _ANGLE, "S": _C_SPEED}),
+            word_rules={"C": _ANGLE, "S": _C_SPEED}),
         _c_word("CI", "CIn",
         "Turns the spindle by n degrees; the sign sets the direction.",
-            f"{_LOCK_PREPARATION}\nM89\nCI-30S60\nG04F2\nM05", rules={"C": _ANGLE, "S": _C_SPEED}),
+            f"{_LOCK_PREPARATION}\nM89\nCI-30S60\nG04F2\nM05", word_rules={"C": _ANGLE, "S": _C_SPEED}),
     )),
 )
 # fmt: on

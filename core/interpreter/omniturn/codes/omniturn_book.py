@@ -53,7 +53,7 @@ def _head(code: CodeEntry) -> str:
 
 
 def _meanings(code: CodeEntry) -> Iterator[tuple[str, str]]:
-    for letter, rule in code.rules.items():
+    for letter, rule in code.word_rules.items():
         yield f"{_head(code)}.{letter}", rule.description + _range(rule)
 
 

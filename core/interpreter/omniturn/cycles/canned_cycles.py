@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot
 
-from core.geometry.lines_and_arcs import Arc, Line, Point, arc_length
+from core.geometry.lines_and_arcs import Arc, Line, Point, compute_arc_length
 from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value
 from core.interpreter.omniturn.motion.feeds import check_move_feed
 from core.interpreter.omniturn.motion.move_words import format_move
@@ -19,7 +19,7 @@ from core.interpreter.shared.elementary_blocks import Block, BlockKind
 LIFT_MM = 0.02 * units.MM_PER_INCH
 """How far a tool is drawn off the cut before it goes back, mm."""
 
-MAX_PASSES = 10_000
+MAX_PASS_COUNT = 10_000
 _TOLERANCE_MM = 1e-9  # mm
 
 
@@ -28,7 +28,7 @@ def get_cycle_code(statement: Statement) -> str:
     return f"G{statement.one_shot_code}"
 
 
-def check_ready(state: State, statement: Statement) -> None:
+def check_cycle_start(state: State, statement: Statement) -> None:
     """Raise ProgramError if a cycle cannot start.
 
     A cycle cannot start if the start point or the feed is unknown, or if nose compensation is active.
@@ -49,7 +49,7 @@ def check_pass_count(statement: Statement, letter: str, count: int, description:
 
     ``description`` is the plural noun for the passes in the message.
     """
-    if count > MAX_PASSES:
+    if count > MAX_PASS_COUNT:
         raise statement.make_error(
             letter,
             "cycle-passes",
@@ -58,7 +58,7 @@ def check_pass_count(statement: Statement, letter: str, count: int, description:
             text=get_cycle_code(statement),
             count=f"{count:,}",
             what=description,
-            most_passes=f"{MAX_PASSES:,}",
+            most_passes=f"{MAX_PASS_COUNT:,}",
             letter=letter,
         )
 
@@ -85,7 +85,7 @@ def make_move_blocks(state: State, statement: Statement, moves: Sequence[CycleMo
 def _length(start: Point, move: CycleMove) -> float:
     if move.center is None:
         return hypot(move.x - start[0], move.z - start[1])
-    return arc_length(start, (move.x, move.z), move.center, clockwise=move.is_clockwise)
+    return compute_arc_length(start, (move.x, move.z), move.center, is_clockwise=move.is_clockwise)
 
 
 def _block(state: State, statement: Statement, move: CycleMove) -> Block:
@@ -105,7 +105,7 @@ def _block(state: State, statement: Statement, move: CycleMove) -> Block:
         text,
         start,
         state.feed if move.rapid_rate_mm_s is None else move.rapid_rate_mm_s,
-        per_rev=move.rapid_rate_mm_s is None and state.per_rev,
+        is_feed_per_rev=move.rapid_rate_mm_s is None and state.per_rev,
         rpm=state.compute_rpm_at(move.x),
         surface_speed=state.modal.active_surface_speed,
         center=move.center or (0.0, 0.0),

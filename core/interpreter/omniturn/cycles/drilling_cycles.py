@@ -38,7 +38,7 @@ def plan_pecking(state: State, statement: Statement) -> list[CycleMove]:
     peck = read_length_mm(state, statement, "K")
     if peck > (start - depth) * (1.0 + _ROUNDING_TOLERANCE):
         deep = state.modal.format_length(start - depth)
-        state.log.warn(
+        state.log.add_warning(
             statement.line,
             statement.words["K"].column,
             "peck-depth",
@@ -93,7 +93,7 @@ def _retract(state: State, statement: Statement, first: float) -> float:
     out = r + (state.secondary_z if state.absolute else state.z)
     text = "{text} is inside the hole, at or below the depth of the first peck."
     hint = "R is the Z position to which the drill retracts from the hole."
-    statement.check(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
+    statement.check_condition(out > first, "R", "cycle-retract", text, hint, text=statement.words["R"].text)
     return out
 
 
@@ -101,6 +101,6 @@ def _rate(state: State, statement: Statement) -> float:
     """Return the feed rate of the retract and return moves (L) in mm/s."""
     value = statement.get_value("L")
     if value is None:
-        return min(_RETRACT_RATE, state.setup.limits.max_feed)
+        return min(_RETRACT_RATE, state.setup.limits.max_feed_mm_s)
     rate = value * units.get_mm_per_unit(is_metric=state.modal.metric) / 60
     return check_value(state, statement, "L", rate) or 0.0

@@ -24,7 +24,7 @@ from core.interpreter.omniturn.motion.arc_moves import make_arc_block
 from core.interpreter.omniturn.motion.corners import ContourCornerStage, read_corner_size_mm
 from core.interpreter.omniturn.motion.move_words import RewordedMoveFactory
 from core.interpreter.omniturn.motion.straight_moves import (
-    execute_geometry_modes,
+    execute_dimension_modes,
     round_to_resolution,
     set_position,
 )
@@ -32,12 +32,12 @@ from core.interpreter.omniturn.omniturn_state import Corner, State
 from core.interpreter.omniturn.omniturn_statement import UNREADABLE_FLOW, Statement
 from core.interpreter.omniturn.setup.tools_and_offsets import set_preset
 from core.interpreter.shared.contour_passes import (
-    MAX_COMPARISONS,
-    MAX_ELEMENTS,
+    MAX_COMPARISON_COUNT,
+    MAX_ELEMENT_COUNT,
+    ContourClearanceError,
     ContourFrame,
     CycleMove,
     RoughingPlanner,
-    StartTooCloseError,
     compute_equal_depths,
     count_passes,
     make_contour_frame,
@@ -62,12 +62,14 @@ def read_contour(state: State, statement: Statement, lines: Sequence[Statement])
     """
     reader = _Reader(state, statement)
     for each in lines:
-        if not (each.block_delete and state.setup.block_delete):
+        if not (each.has_block_delete and state.setup.block_delete):
             reader.read_line(each)
     elements = reader.finish()
     text = "The contour of G{one_shot} does not contain a line or an arc."
     hint = "Write the points of the contour."
-    statement.check(elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot_code)
+    statement.check_condition(
+        elements, "", "cycle-contour-empty", text, hint, one_shot=statement.one_shot_code
+    )
     return elements
 
 
@@ -88,11 +90,11 @@ class _Reader:
     def read_line(self, line: Statement) -> None:
         if line.flow_code == UNREADABLE_FLOW:
             raise _refused(line, 1, "This line of the contour cannot be read", "Correct the line.")
-        idle_corner = not line.moves_x_or_z and not _CORNERS.isdisjoint(line.words)
+        idle_corner = not line.has_x_or_z_move and not _CORNERS.isdisjoint(line.words)
         if line.flow_code or idle_corner or not _TURNS.isdisjoint(line.words):
             hint = "Write the contour block by block, with only straight moves, arcs, chamfers and roundings."
             raise _refused(line, 1, "{line} is not allowed in a contour", hint, line=line.text)
-        if line.one_shot_code is not None and not line.code_entry.allowed_in_contour:
+        if line.one_shot_code is not None and not line.code_entry.is_allowed_in_contour:
             column = line.code_word.column if line.code_word else 1
             text = "G{one_shot} is not allowed in a contour"
             raise _refused(
@@ -102,10 +104,10 @@ class _Reader:
             text = "Nose compensation cannot be turned on or off in a contour"
             raise _refused(line, 1, text, "Program a separate contour for finishing.", "cycle-nose-comp")
         self._tell_ignored(line)
-        execute_geometry_modes(self._own, line)
+        execute_dimension_modes(self._own, line)
         if line.one_shot_code == 92:
             deque(set_preset(self._own, line), maxlen=0)
-        elif line.moves_x_or_z:
+        elif line.has_x_or_z_move:
             self._move(line)
 
     def finish(self) -> list[Element]:
@@ -119,7 +121,7 @@ class _Reader:
                     "The contour changes modes or coordinates; the previous ones are restored after the "
                     "cycle."
                 )
-                self._state.log.warn(self._made.line, self._made.code_column, "cycle-modes", text)
+                self._state.log.add_warning(self._made.line, self._made.code_column, "cycle-modes", text)
                 break
         state = self._state
         moves = RewordedMoveFactory(state.setup.limits.max_rpm)
@@ -140,7 +142,7 @@ class _Reader:
                 one_shot=self._made.one_shot_code,
             )
             found = Diagnostic(line.line, words[0].column, Severity.NOTE, "cycle-ignored", text)
-            self._state.log.add(found)
+            self._state.log.add_finding(found)
 
     def _move(self, line: Statement) -> None:
         arc = line.code_entry.action_kind is ActionKind.ARC
@@ -195,14 +197,14 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
     cut = read_length_mm(state, statement, "I") if statement.one_shot_code == 75 else None
     left = read_length_mm(state, statement, "U")
     contour = read_contour(state, statement, lines)
-    if len(contour) > MAX_ELEMENTS:
+    if len(contour) > MAX_ELEMENT_COUNT:
         raise statement.make_error(
             "G",
             "cycle-contour-long",
             "The contour has {contour_count} lines and arcs; the maximum is {most_elements}.",
             "Program the contour with fewer, longer moves.",
             contour_count=f"{len(contour):,}",
-            most_elements=f"{MAX_ELEMENTS:,}",
+            most_elements=f"{MAX_ELEMENT_COUNT:,}",
         )
     view = _make_view(state, statement, contour)
     try:
@@ -216,7 +218,7 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
         _passes(state, statement, rougher, area, cut, len(contour))
     try:
         rougher.add_finishing_pass(is_reversed=view.is_reversed)
-    except StartTooCloseError:
+    except ContourClearanceError:
         text = (
             "On the path from the start point to the contour and back, the tool comes closer to "
             "the contour than the distance U."
@@ -234,7 +236,7 @@ def plan_contour_cycle(state: State, statement: Statement, lines: Sequence[State
             "the contour cuts all of its material."
         )
         hint = "Check whether the tool fits into the undercut."
-        state.log.warn(statement.line, statement.code_column, "cycle-undercut", text, hint)
+        state.log.add_warning(statement.line, statement.code_column, "cycle-undercut", text, hint)
     return [view.transform_move(move) for move in rougher.moves]
 
 
@@ -256,10 +258,12 @@ def _passes(
     elements: int,
 ) -> None:
     text = "No material remains to be cut between the contour and the start point."
-    statement.check(area.max_depth > 0, "G", "cycle-nothing", text, "Start farther from the contour in X.")
+    statement.check_condition(
+        area.max_depth > 0, "G", "cycle-nothing", text, "Start farther from the contour in X."
+    )
     count = count_passes(area.max_depth, cut)
     check_pass_count(statement, "I", count, "passes")
-    if count * elements > MAX_COMPARISONS:
+    if count * elements > MAX_COMPARISON_COUNT:
         text = "{count} passes along a contour of {elements} lines and arcs are too many to calculate."
         hint = "Increase I, or program the contour with fewer moves."
         raise statement.make_error(
@@ -269,7 +273,7 @@ def _passes(
     if rougher.has_plunged:
         text = "The contour rises and falls again, so the tool plunges into the material after the rise."
         hint = "Check whether the tool can plunge into the material."
-        state.log.warn(statement.line, statement.code_column, "cycle-plunge", text, hint)
+        state.log.add_warning(statement.line, statement.code_column, "cycle-plunge", text, hint)
 
 
 def _make_view(state: State, statement: Statement, contour: list[Element]) -> ContourFrame:
@@ -284,13 +288,15 @@ def _make_view(state: State, statement: Statement, contour: list[Element]) -> Co
         hint = (
             "Move the start point so that both ends of the contour are on the same side of it, in X and in Z."
         )
-        statement.check(to_first * to_last >= 0, "G", "cycle-quadrant", text, hint, letter=letter)
+        statement.check_condition(to_first * to_last >= 0, "G", "cycle-quadrant", text, hint, letter=letter)
         text = (
             "Both ends of the contour have the same {letter} as the start point, so the contour does not "
             "enclose an area to cut."
         )
         hint = "Move the start point away from the contour."
-        statement.check(not to_first == to_last == 0, "G", "cycle-nothing", text, hint, letter=letter)
+        statement.check_condition(
+            not to_first == to_last == 0, "G", "cycle-nothing", text, hint, letter=letter
+        )
     return make_contour_frame(start, first, last)
 
 
@@ -331,5 +337,5 @@ def _corner(state: State, statement: Statement, letter: str, start: float, offse
     end = read_length_mm(state, statement, letter) + (offset if state.absolute else start)
     text = "The box has zero size along {letter} because its corner is at the start point."
     hint = "Correct {letter} or the start point."
-    statement.check(end != start, letter, "cycle-nothing", text, hint, letter=letter)
+    statement.check_condition(end != start, letter, "cycle-nothing", text, hint, letter=letter)
     return end

@@ -20,7 +20,7 @@ from core.message import Message
 # --- words and checks of a thread
 
 
-MAX_PASSES = 1000  # a real thread takes fewer than 100 passes
+MAX_PASS_COUNT = 1000  # a real thread takes fewer than 100 passes
 _MIN_LEAD = 0.0254  # mm/rev; the finest pitch of ISO 1501 is 0.08 mm
 _ROUNDING = 1 + 1e-9
 _CLICK = 1e-6  # of a pass; tolerance for the rounding of √ and decimal fractions
@@ -33,7 +33,7 @@ class ThreadCycle:
 
     ``x0`` and ``z0`` are the start point. ``x_outward_sign`` is the sign of X away from the part.
     ``z_cutting_sign`` is the sign of Z in the cutting direction. ``depth`` is the depth of the last pass
-    from the start point. ``first_infeed`` is the I word per side. ``taper`` is the change of X from the
+    from the start point. ``first_infeed`` is the I word per side. ``taper_mm`` is the change of X from the
     start point to the end.
     """
 
@@ -42,11 +42,11 @@ class ThreadCycle:
     z1: float
     x_outward_sign: float
     z_cutting_sign: float
-    depth: float
-    first_infeed: float
-    lead: float
-    taper: float
-    angle_rad: float
+    depth_mm: float
+    first_infeed_mm: float
+    lead_mm: float
+    taper_mm: float
+    flank_angle_rad: float
     pass_count: int
     has_pullout: bool
 
@@ -57,7 +57,7 @@ class ThreadCycle:
         The taper is added if the far end is farther out than the start point.
         """
         return self.x0 + self.x_outward_sign * (
-            3 * self.first_infeed + max(self.x_outward_sign * self.taper, 0.0)
+            3 * self.first_infeed_mm + max(self.x_outward_sign * self.taper_mm, 0.0)
         )
 
 
@@ -80,11 +80,11 @@ def read_thread(state: State, statement: Statement) -> ThreadCycle:
         z1=z1,
         x_outward_sign=out,
         z_cutting_sign=along,
-        depth=depth,
-        first_infeed=abs(first),
-        lead=lead,
-        taper=_read_radius_word(state, statement, "A") or 0.0,
-        angle_rad=angle,
+        depth_mm=depth,
+        first_infeed_mm=abs(first),
+        lead_mm=lead,
+        taper_mm=_read_radius_word(state, statement, "A") or 0.0,
+        flank_angle_rad=angle,
         pass_count=1 if once else _count(statement, depth, first, lead),
         has_pullout="P" in statement.words,
     )
@@ -109,7 +109,7 @@ def _lead(state: State, statement: Statement) -> float:
         check_value(state, statement, "K", lead and lead * state.mm_per_z_unit, extra_remedy=coarser) or 0.0
     )
     if value < _MIN_LEAD:
-        least = state.modal.format_feed(_MIN_LEAD, per_rev=True)
+        least = state.modal.format_feed(_MIN_LEAD, is_per_rev=True)
         text = "{text}: the minimum lead is {minimum}."
         raise statement.make_error(
             "K", "thread-lead-range", text, "Correct K.", text=statement.words["K"].text, minimum=least
@@ -120,10 +120,10 @@ def _lead(state: State, statement: Statement) -> float:
 def _check_spindle(state: State, statement: Statement, lead: float) -> None:
     check_conditions(state, statement, statement.code_entry)
     modal, rpm = state.modal, abs(state.compute_rpm_at(state.x))
-    speed, most = lead * rpm / 60, state.setup.limits.max_feed
+    speed, most = lead * rpm / 60, state.setup.limits.max_feed_mm_s
     if speed > most * _ROUNDING:
-        shown = modal.format_feed(speed, per_rev=False)
-        limit = modal.format_feed(most, per_rev=False)
+        shown = modal.format_feed(speed, is_per_rev=False)
+        limit = modal.format_feed(most, is_per_rev=False)
         text = "At {rpm} rpm this lead needs a feed of {value}; the maximum is {limit}."
         hint = "Lower S."
         raise statement.make_error(
@@ -165,12 +165,14 @@ def _count(statement: Statement, depth: float, first_infeed: float, lead: float)
     """Return the number of passes. Raises ProgramError if I does not match the lead."""
     text = "{text}: the first pass would be deeper than the lead."
     hint = "Correct I (the depth of the first pass) or K."
-    statement.check(first_infeed <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text)
+    statement.check_condition(
+        first_infeed <= lead, "I", "thread-depth", text, hint, text=statement.words["I"].text
+    )
     count = max(ceil((depth / first_infeed + 1.0) ** 2 - _CLICK), 1)
-    if count > MAX_PASSES:
+    if count > MAX_PASS_COUNT:
         text = "The thread would take {count} passes; the maximum is {most_passes}."
         raise statement.make_error(
-            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MAX_PASSES:,}"
+            "I", "thread-passes", text, "Correct I.", count=f"{count:,}", most_passes=f"{MAX_PASS_COUNT:,}"
         )
     return count
 
@@ -181,7 +183,7 @@ def _read_radius_word(state: State, statement: Statement, letter: str) -> float 
     return None if value is None else value * state.mm_per_x_unit / state.mm_per_z_unit
 
 
-MANY_PASSES_LIMIT = 60
+PASS_COUNT_WARNING_LIMIT = 60
 _FACE = 1e-9  # mm
 
 
@@ -201,14 +203,14 @@ def compute_pass_depths(thread: ThreadCycle) -> list[float]:
     After k passes, the depth is I(√k - 1), so that each pass removes the same area.
     """
     if thread.pass_count == 1:
-        return [thread.depth]
-    cuts = [thread.first_infeed * (k**0.5 - 1.0) for k in range(1, thread.pass_count)]
-    return [*cuts, thread.depth]
+        return [thread.depth_mm]
+    cuts = [thread.first_infeed_mm * (k**0.5 - 1.0) for k in range(1, thread.pass_count)]
+    return [*cuts, thread.depth_mm]
 
 
 def compute_start_z(thread: ThreadCycle, depth: float) -> float:
     """Return the start Z of a pass at this depth, shifted along the flank in the cutting direction, in mm."""
-    return thread.z0 + thread.z_cutting_sign * depth * tan(thread.angle_rad)
+    return thread.z0 + thread.z_cutting_sign * depth * tan(thread.flank_angle_rad)
 
 
 class _ThreadBlockGenerator:
@@ -225,11 +227,11 @@ class _ThreadBlockGenerator:
         for k, depth in enumerate(depths, start=1):
             z = compute_start_z(thread, depth)
             x = thread.x0 - thread.x_outward_sign * depth
-            slope = thread.taper / (thread.z1 - thread.z0)
+            slope = thread.taper_mm / (thread.z1 - thread.z0)
             if k > 1:
                 yield from self._rapid(retract, z)
             yield from self._rapid(x + slope * (z - thread.z0), z)
-            end = x + thread.taper
+            end = x + thread.taper_mm
             yield self._cut(end, thread.z1, f"({k}/{len(depths)})")
             if thread.has_pullout:
                 yield self._cut(retract, thread.z1 + thread.z_cutting_sign * abs(retract - end), "P")
@@ -245,14 +247,14 @@ class _ThreadBlockGenerator:
             yield self._block(x, z, BlockKind.RAPID, self._state.modal.rapid_rate, self._text("G00", x, z))
 
     def _cut(self, x: float, z: float, what: str) -> Block:
-        lead = self._state.modal.format_feed(self._thread.lead, per_rev=True).split()[0]
+        lead = self._state.modal.format_feed(self._thread.lead_mm, is_per_rev=True).split()[0]
         text = f"{self._text('G33', x, z)}K{lead} {what}"
-        return self._block(x, z, BlockKind.THREAD, self._thread.lead, text)
+        return self._block(x, z, BlockKind.THREAD, self._thread.lead_mm, text)
 
     def _block(self, x: float, z: float, kind: BlockKind, feed: float, text: str) -> Block:
         state, per_rev = self._state, kind is BlockKind.THREAD
         start, state.x, state.z = (state.x, state.z, state.c), x, z
-        return state.move(kind, self._line, text, start, feed, per_rev=per_rev, rpm=self._rpm)
+        return state.move(kind, self._line, text, start, feed, is_feed_per_rev=per_rev, rpm=self._rpm)
 
     def _text(self, code: str, x: float, z: float) -> str:
         """Return the motion as a program line, in the active unit and as radius or diameter."""
@@ -266,17 +268,17 @@ def _warn(state: State, statement: Statement, thread: ThreadCycle) -> None:
 
     The table position is wrong if it is not the position of the active plane.
     """
-    if thread.pass_count > MANY_PASSES_LIMIT:
+    if thread.pass_count > PASS_COUNT_WARNING_LIMIT:
         text = "The thread takes {passes} passes."
         hint = "Check I (a larger I gives fewer passes) and the X start position of the tool."
-        state.log.warn(
+        state.log.add_warning(
             statement.line, statement.code_column, "thread-passes", text, hint, passes=thread.pass_count
         )
-    speed = thread.lead * abs(state.compute_rpm_at(state.x)) / 60
-    needed = speed**2 / (2 * state.setup.limits.z_acceleration)
+    speed = thread.lead_mm * abs(state.compute_rpm_at(state.x)) / 60
+    needed = speed**2 / (2 * state.setup.limits.z_acceleration_mm_s2)
     run_up = _run_up(thread)
     if run_up < needed:
-        state.log.warn(
+        state.log.add_warning(
             statement.line,
             statement.code_column,
             "thread-run-up",
@@ -294,7 +296,7 @@ def _run_up(thread: ThreadCycle) -> float:
     If the pass crosses part zero, the run-up ends at part zero. Otherwise, the run-up is the whole pass,
     because the start of the part is unknown.
     """
-    z = compute_start_z(thread, thread.depth)
+    z = compute_start_z(thread, thread.depth_mm)
     if copysign(1.0, z) != copysign(1.0, thread.z1) and thread.z1 != 0.0:
         return abs(z)
     return abs(thread.z1 - z)

@@ -10,9 +10,9 @@ from copy import copy
 from typing import Protocol
 
 from core.interpreter.omniturn.flow.loops_and_subroutines import (
-    get_calling_state,
     get_input_terminal,
     is_call_made,
+    is_called_when_closed,
 )
 from core.interpreter.omniturn.motion.corners import ContourBuffer
 from core.interpreter.omniturn.omniturn_interpreter import Interpreter
@@ -43,8 +43,8 @@ class BranchRecord(Protocol):
 class BranchingPass(Interpreter):
     """A pass that can be copied at a conditional call, so that the copy executes the other branch.
 
-    ``fork`` returns the copy. An input is assumed not to change until the next action. ``has_input_change``
-    is True if a branch contradicts this assumption.
+    ``copy_for_other_branch`` returns the copy. An input is assumed not to change until the next action.
+    ``has_input_change`` is True if a branch contradicts this assumption.
     """
 
     def __init__(self, program: Program, setup: Setup, branch_record: BranchRecord) -> None:
@@ -88,7 +88,7 @@ class BranchingPass(Interpreter):
             self._stopped,
         )
 
-    def fork(self, statement: Statement, is_call_made: bool) -> BranchingPass:
+    def copy_for_other_branch(self, statement: Statement, is_call_made: bool) -> BranchingPass:
         """Return a copy of this pass that takes the other branch at this line.
 
         The copy has its own diagnostic log.
@@ -99,7 +99,7 @@ class BranchingPass(Interpreter):
         state.log, state.contour = twin._log, ContourState()
         state.reported, state.pending_shift = set(state.reported), dict(state.pending_shift)
         twin._modifier, twin._tools = ContourBuffer(state), ToolUsage()
-        twin._flow = self._flow.copy()
+        twin._flow = self._flow.copy_position()
         twin._flow.next_index = statement.line - 1
         twin._held = dict(self._held)
         twin._ahead = None
@@ -123,7 +123,7 @@ class BranchingPass(Interpreter):
                 self._fresh = False
             elif self._guide.is_known(self):
                 self.is_merged = True
-                self._flow.stop()
+                self._flow.stop_here()
                 return
             elif statement.depends_on_input and not self._left_out(statement):
                 self._choose(statement)
@@ -131,21 +131,21 @@ class BranchingPass(Interpreter):
         yield from super()._statement(statement)
 
     def _left_out(self, statement: Statement) -> bool:
-        return statement.block_delete and self._state.setup.block_delete
+        return statement.has_block_delete and self._state.setup.block_delete
 
     def _choose(self, statement: Statement) -> None:
         answer = self._known_input(statement)
         takes = (
             is_call_made(statement, self._state.setup.inputs)
             if answer is None
-            else answer == get_calling_state(statement)
+            else answer == is_called_when_closed(statement)
         )
         self._choice = takes
         self._guide.record_branch(self, statement, takes)
 
     def _is_call_made(self, statement: Statement) -> bool:
         takes, self._choice = bool(self._choice), None
-        self._held[get_input_terminal(statement)] = takes == get_calling_state(statement)
+        self._held[get_input_terminal(statement)] = takes == is_called_when_closed(statement)
         self._held_to = self._state.blocks
         return takes
 

@@ -53,7 +53,7 @@ class _Finder:
         if statement.flow_code == "}":
             self._open_subroutine(statement)
             return
-        ends_job = _ends_program(statement) and not statement.block_delete
+        ends_job = _ends_program(statement) and not statement.has_block_delete
         self._job_end = statement.line - 1 if ends_job and self._inside is not None else None
         if statement.flow_code == "M99":
             self._close_subroutine(statement)
@@ -250,12 +250,12 @@ def get_input_terminal(statement: Statement) -> str:
     return FLOW_CODES[statement.flow_code].required_input[0] or f"{statement.get_value('I'):.0f}"
 
 
-def is_call_made(statement: Statement, inputs: Callable[[str], bool]) -> bool:
+def is_call_made(statement: Statement, read_input: Callable[[str], bool]) -> bool:
     """Return whether a conditional call is made in the present state of the inputs."""
-    return inputs(get_input_terminal(statement)) == get_calling_state(statement)
+    return read_input(get_input_terminal(statement)) == is_called_when_closed(statement)
 
 
-def get_calling_state(statement: Statement) -> bool:
+def is_called_when_closed(statement: Statement) -> bool:
     """Return the input state for which a conditional call is made."""
     return statement.flow_code == "M95" or statement.get_value("C") == 1
 
@@ -267,14 +267,14 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         super().__init__(FlowFrame(structure, 0, structure.main_end_index))
         self._stop: int | None = None  # index of the line before which execution stops
 
-    def copy(self) -> Flow:
+    def copy_position(self) -> Flow:
         """Return an independent copy of this position."""
         twin = copy(self)
         twin.frames = [replace(each, remaining_repeats=dict(each.remaining_repeats)) for each in self.frames]
         twin.active_frame = twin.frames[-1]
         return twin
 
-    def stop(self) -> None:
+    def stop_here(self) -> None:
         """End the program at the present position, so that no further line is executed."""
         self._stop = None
         self.end_index = self.next_index
@@ -305,7 +305,7 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
             for each in self.frames
         )
 
-    def resume(self, line: int, position: FlowPosition) -> None:
+    def resume_at(self, line: int, position: FlowPosition) -> None:
         """Set the next line (counted from 1) and the active loops and calls."""
         if position:
             structure = self.active_frame.routine
@@ -329,12 +329,12 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
         left = self.active_frame.remaining_repeats
         return left[start] if left and next(reversed(left)) == start else 0
 
-    def record_loop_executions(self, start: int, times: int) -> None:
-        """Record ``times`` executions of the loop whose LS is at index ``start``.
+    def record_loop_executions(self, start: int, execution_count: int) -> None:
+        """Record ``execution_count`` executions of the loop whose LS is at index ``start``.
 
         Each execution ends at the first line of the loop.
         """
-        self.active_frame.remaining_repeats[start] -= times
+        self.active_frame.remaining_repeats[start] -= execution_count
 
     def execute_flow_line(self, statement: Statement) -> None:
         """Execute a line with LS, LF or M99."""
@@ -362,7 +362,9 @@ class Flow(ControlFlow[FlowFrame[ProgramStructure]]):
                 deepest_call=MAX_CALL_DEPTH,
             )
             raise statement.make_error("P", "recursion", text, "A subroutine must not call itself.")
-        self.enter(FlowFrame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1))
+        self.enter_subprogram(
+            FlowFrame(structure, start + 1, structure.subroutine_ends.get(number, start) + 1)
+        )
         if self._stop is not None:
             self._update_end()
 

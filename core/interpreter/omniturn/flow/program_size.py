@@ -10,7 +10,7 @@ from core.interpreter.omniturn.codes.code_entry import ActionKind
 from core.interpreter.omniturn.flow.loops_and_subroutines import get_subroutine_number, is_call_made
 from core.interpreter.omniturn.omniturn_program import Program
 from core.interpreter.omniturn.omniturn_statement import Statement
-from core.interpreter.shared.interpretation import MAX_BLOCKS, MAX_CALL_DEPTH, MAX_LINES
+from core.interpreter.shared.interpretation import MAX_BLOCK_COUNT, MAX_CALL_DEPTH, MAX_LINE_COUNT
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.message import Message
 
@@ -26,7 +26,7 @@ class ProgramSize(NamedTuple):
     largest_loop_line: int = 0
 
 
-def check_program_size(program: Program, inputs: Callable[[str], bool]) -> Diagnostic | None:
+def check_program_size(program: Program, read_input: Callable[[str], bool]) -> Diagnostic | None:
     """Return the error for a program that executes too many blocks or lines, or None.
 
     Loops multiply the counts, and each call adds the counts of its subroutine. Conditional calls depend on
@@ -34,24 +34,24 @@ def check_program_size(program: Program, inputs: Callable[[str], bool]) -> Diagn
     """
     if not program.structure.loop_ends and not program.structure.subroutines:
         return _refusal(ProgramSize(len(program.executable_lines), len(program.executable_lines)))
-    counter = _Counter(program, inputs)
+    counter = _Counter(program, read_input)
     return _refusal(counter.region(0, program.structure.main_end_index, 0))
 
 
 def _refusal(count: ProgramSize) -> Diagnostic | None:
     hint = "Reduce the loop counts."
-    if count.block_count > MAX_BLOCKS:
+    if count.block_count > MAX_BLOCK_COUNT:
         text = Message(
             "The program generates {blocks} blocks; the maximum is {most_blocks}.",
             blocks=_format_count(count.block_count),
-            most_blocks=f"{MAX_BLOCKS:,}",
+            most_blocks=f"{MAX_BLOCK_COUNT:,}",
         )
         return make_error_diagnostic(count.largest_loop_line or 1, 0, "too-many-blocks", text, hint)
-    if count.line_count > MAX_LINES:
+    if count.line_count > MAX_LINE_COUNT:
         text = Message(
             "The program executes {lines} lines; the maximum is {most_lines}.",
             lines=_format_count(count.line_count),
-            most_lines=f"{MAX_LINES:,}",
+            most_lines=f"{MAX_LINE_COUNT:,}",
         )
         return make_error_diagnostic(count.largest_loop_line or 1, 0, "too-many-lines", text, hint)
     return None
@@ -103,7 +103,7 @@ class _Counter:
     def _close(self, end: int, times: int, before: ProgramSize, body: ProgramSize) -> ProgramSize:
         blocks, lines = body.block_count * times, (body.line_count + 1) * times
         worst = body.largest_loop_line
-        if not worst and (blocks > MAX_BLOCKS or lines > MAX_LINES):
+        if not worst and (blocks > MAX_BLOCK_COUNT or lines > MAX_LINE_COUNT):
             worst = self._program.structure.loop_starts[end] + 1
         return _sum(before, ProgramSize(blocks, lines, worst))
 
@@ -144,9 +144,9 @@ def estimate_block_count(statement: Statement) -> int:
         )
     m_code = statement.m_code_entry
     starts = m_code is not None and m_code.action_kind is ActionKind.SPINDLE
-    speed = "S" in statement.words and not starts and not statement.s_is_limit
+    speed = "S" in statement.words and not starts and not statement.is_s_speed_limit
     moves = (
-        statement.moves_x_or_z if statement.one_shot_code is None else statement.code_entry.min_block_count
+        statement.has_x_or_z_move if statement.one_shot_code is None else statement.code_entry.min_block_count
     )
     return (
         ("T" in statement.words)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import degrees, dist, pi
 
-from core.geometry.lines_and_arcs import Point, arc_length, center_from_radius
+from core.geometry.lines_and_arcs import Point, compute_arc_length, find_arc_center
 from core.interpreter.omniturn.codes.code_rules import check_conditions, check_value, check_word_groups
 from core.interpreter.omniturn.motion.feeds import check_move_feed
 from core.interpreter.omniturn.motion.straight_moves import (
@@ -40,7 +40,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
     else:
         centre = _center_by_words(state, statement, programmed)
         _check_radii(state, statement, dist(start, centre), dist((state.x, state.z), centre))
-    length = arc_length(start, (state.x, state.z), centre, clockwise=clockwise)
+    length = compute_arc_length(start, (state.x, state.z), centre, is_clockwise=clockwise)
     check_move_feed(state, statement.line, start[0], state.x, length)
     _warn_about_large_arc(state, statement, length / dist(start, centre))
     warn_about_title_rapid(state, statement.line)
@@ -50,7 +50,7 @@ def make_arc_block(state: State, statement: Statement) -> Block:
         statement.get_block_text("move"),
         (*start, state.c),
         state.feed,
-        per_rev=state.per_rev,
+        is_feed_per_rev=state.per_rev,
         rpm=state.compute_rpm_at(state.x),
         surface_speed=state.modal.active_surface_speed,
         center=centre,
@@ -66,7 +66,7 @@ def _warn_about_large_arc(state: State, statement: Statement, sweep: float) -> N
     if pi + _ROUNDING_TOLERANCE < sweep < 2.0 * pi - _ROUNDING_TOLERANCE:
         text = "The arc spans {sweep} degrees."
         hint = "Check G02 and G03, and the signs of I and K."
-        state.log.warn(
+        state.log.add_warning(
             statement.line, statement.code_column, "arc-over-half", text, hint, sweep=f"{degrees(sweep):.0f}"
         )
 
@@ -89,7 +89,7 @@ def _centre_by_radius(state: State, statement: Statement, start: Point, *, clock
         if not state.modal.diameter and halved <= 2 * radius + _TOLERANCE:
             hint = "G73 is active, so X is a radius. If the X words are diameters, write G72 before them."
         raise statement.make_error("R", "arc-radius", text, hint)
-    return center_from_radius(start, (state.x, state.z), radius, clockwise=clockwise)
+    return find_arc_center(start, (state.x, state.z), radius, is_clockwise=clockwise)
 
 
 def _center_by_words(state: State, statement: Statement, start: Point) -> Point:

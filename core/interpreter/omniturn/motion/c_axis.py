@@ -107,7 +107,7 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
     warn_about_short_dwell(state)
     c0, x0, z0 = state.c, state.x, state.z
     goal = _target(state, statement, word)
-    if statement.moves_x_or_z:
+    if statement.has_x_or_z_move:
         x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
         set_position(state, x, z)
         check_tool_first_move(state, statement.line, x, z)
@@ -128,7 +128,9 @@ def move_c_axis(state: State, statement: Statement) -> Iterator[Block]:
         rpm = 0.0
     warn_about_title_rapid(state, statement.line)
     start, text = (x0, z0, c0), statement.get_block_text("move")
-    yield state.move(state.kind, statement.line, text, start, state.feed, per_rev=state.per_rev, rpm=rpm)
+    yield state.move(
+        state.kind, statement.line, text, start, state.feed, is_feed_per_rev=state.per_rev, rpm=rpm
+    )
 
 
 def rotate_c_axis(state: State, line: int, text: str, target_deg: float) -> Block:
@@ -154,7 +156,7 @@ def _target(state: State, statement: Statement, word: Word) -> float:
     step, value = state.setup.limits.c_resolution_deg, word.value or 0.0
     count = round(value / step)
     if abs(value / step - count) > 1e-6:
-        state.log.warn(
+        state.log.add_warning(
             statement.line,
             word.column,
             "finer-than-step",
@@ -190,9 +192,9 @@ def _check_turns(state: State, statement: Statement, word: Word, path_mm: float,
             word, "c-too-little", text, hint, turn=c_travel_deg, needed=round(needed, 4)
         )
     speed = feed * modal.c_rpm / 60.0
-    if speed > limits.max_feed * (1.0 + 1e-9):
-        shown = modal.format_feed(speed, per_rev=False)
-        most = modal.format_feed(limits.max_feed, per_rev=False)
+    if speed > limits.max_feed_mm_s * (1.0 + 1e-9):
+        shown = modal.format_feed(speed, is_per_rev=False)
+        most = modal.format_feed(limits.max_feed_mm_s, is_per_rev=False)
         text = "At a C speed of {c_rpm} rpm this feed is {value}; the maximum is {maximum}."
         hint = "Lower F or S."
         raise statement.make_error(

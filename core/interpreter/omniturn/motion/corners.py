@@ -89,13 +89,13 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
         if (
             held is not None
             and statement.one_shot_code is not None
-            and not statement.code_entry.allowed_before_corner
+            and not statement.code_entry.is_allowed_after_corner
         ):
             what = statement.code_word.text if statement.code_word is not None else "the motion"
             text = Message("{what} on line {line} is not a straight move", what=what, line=statement.line)
             raise _refused(held, "corner-next", text)
 
-    def finish(self) -> None:
+    def check_program_end(self) -> None:
         """Check the corner state at the end of the program.
 
         Raises ProgramError if a corner has no following move.
@@ -137,7 +137,7 @@ class LineCornerStage(CornerStage[Corner, CompensationSwitch]):
 
     def _warn(self, held: _BufferedMove, text: str) -> None:
         hint = "Remove C or R."
-        self._log.warn(held.block.line, held.corner.column, "corner-straight", text, hint)
+        self._log.add_warning(held.block.line, held.corner.column, "corner-straight", text, hint)
 
     def _make_size_error(self, buffered: _BufferedMove, block: Block, needed_mm: float) -> ProgramError:
         if not needed_mm:
@@ -162,7 +162,7 @@ class ContourCornerStage(LineCornerStage):
 
     def insert_corners(self, moves: Iterable[tuple[Block, Corner | None]]) -> list[Block]:
         """Return the moves with their corners inserted. Raises ProgramError if a corner is not possible."""
-        found = [each for move in moves for each in self.accept(*move) if isinstance(each, Block)]
+        found = [each for move in moves for each in self.accept_item(*move) if isinstance(each, Block)]
         if self._held is not None:
             raise _refused(self._held, "corner-next", "the contour ends at this corner")
         return found
@@ -216,7 +216,7 @@ class ContourBuffer:
         self._nose = CompensationStage(state.log, moves)
         self._count: int | None = None  # number of the last returned block while the modifier is active
 
-    def accept(self, block: Block) -> Iterator[Block]:
+    def accept_block(self, block: Block) -> Iterator[Block]:
         """Accept a block, and yield the blocks that later lines cannot change.
 
         Raises ProgramError if the corner or the compensation is not possible.
@@ -243,15 +243,15 @@ class ContourBuffer:
         self._begin(self._state.blocks)
         yield from self._put(switch, None)
 
-    def finish(self) -> Iterator[Block]:
+    def check_program_end(self) -> Iterator[Block]:
         """Process the end of the program. Raises ProgramError if a corner has no second move."""
-        self._corners.finish()
+        self._corners.check_program_end()
         yield from ()
 
-    def discard(self) -> None:
+    def discard_blocks(self) -> None:
         """Discard all buffered blocks after an error."""
-        self._corners.discard()
-        self._nose.discard()
+        self._corners.discard_move()
+        self._nose.discard_moves()
         self._count = None
         self._state.contour.is_buffering = False
         self._state.contour.open_corner = None
@@ -264,8 +264,8 @@ class ContourBuffer:
     def _put(self, item: StageItem, corner: Corner | None) -> Iterator[Block]:
         state = self._state
         count = self._count or 0
-        for item_cut in self._corners.accept(item, corner):
-            for block in self._nose.accept(item_cut):
+        for item_cut in self._corners.accept_item(item, corner):
+            for block in self._nose.accept_item(item_cut):
                 count += 1
                 block.n = count
                 self._count = count

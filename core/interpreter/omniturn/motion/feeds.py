@@ -21,8 +21,8 @@ from core.language.diagnostics import make_program_error
 from core.language.omniturn import Word
 from core.message import Message
 
-_MIN_FEED = LETTER_ENTRIES["F"].rules["F"].minimum * units.MM_PER_INCH  # per minute or per revolution
-SLOW_MOVE_S = 30.0  # s; a longer move is probably a mistake
+_MIN_FEED = LETTER_ENTRIES["F"].word_rules["F"].minimum * units.MM_PER_INCH  # per minute or per revolution
+SLOW_MOVE_TIME_S = 30.0  # s; a longer move is probably a mistake
 _TAPPING_LINES = 6  # number of lines within which tapping reverses the spindle
 _ROUNDING = 1 + 1e-9
 
@@ -33,7 +33,7 @@ def execute_feed_words(state: State, statement: Statement, *, is_first_line: boo
     ``is_first_line`` means that the line is the first line of the program.
     """
     modes = {0, 1, 94, 95}.intersection(statement.modal_codes)
-    word = statement.words.get("F") if statement.f_is_feed else None
+    word = statement.words.get("F") if statement.is_f_feed else None
     if not modes and word is None:
         return
     if 0 in modes and not is_first_line:
@@ -68,9 +68,9 @@ def _modes(state: State, statement: Statement, modes: set[int], *, has_feed: boo
 def _rapid(state: State, statement: Statement) -> None:
     modal = state.modal
     if modal.rapid:
-        state.title_rapid = 0 if statement.moves_x_or_z else state.title_rapid
+        state.title_rapid = 0 if statement.has_x_or_z_move else state.title_rapid
         return
-    titled = statement.comment is not None and not statement.moves_x_or_z
+    titled = statement.comment is not None and not statement.has_x_or_z_move
     cutting = state.cut and modal.feed is not None
     state.title_rapid = statement.line if titled and cutting else 0
     state.set_modal(state.modal._replace(rapid=True))
@@ -128,7 +128,7 @@ def _is_usual(state: State, feed: float) -> bool:
     return state.steady_feed is not None and least <= feed <= most
 
 
-def passes_feed_checks(state: State, feed: float) -> bool:
+def is_feed_accepted(state: State, feed: float) -> bool:
     """Return whether a move at another feed passes all checks except the length check.
 
     The feed is in mm/s or mm/rev. The function requires ``state.fast``, which means that a move at the
@@ -137,7 +137,8 @@ def passes_feed_checks(state: State, feed: float) -> bool:
     if not (state.cut and _is_usual(state, feed)) or state.is_first_feed(feed):
         return False
     return (
-        not state.modal.per_rev or compute_feed_speed(state, feed) <= state.setup.limits.max_feed * _ROUNDING
+        not state.modal.per_rev
+        or compute_feed_speed(state, feed) <= state.setup.limits.max_feed_mm_s * _ROUNDING
     )
 
 
@@ -146,10 +147,10 @@ def compute_feed_speed(state: State, feed: FloatOrArray) -> FloatOrArray:
     return feed * abs(state.rpm) / 60 if state.modal.per_rev else feed
 
 
-def set_feed(state: State, feed: float) -> None:
+def set_series_feed(state: State, feed: float) -> None:
     """Set the feed to that of the last move of a series, so that the next plain move needs no checks."""
     state.set_modal(replace_feed(state.modal, feed))
-    state.slow_length_mm = compute_feed_speed(state, feed) * SLOW_MOVE_S
+    state.slow_length_mm = compute_feed_speed(state, feed) * SLOW_MOVE_TIME_S
     state.fast = True
 
 
@@ -157,10 +158,12 @@ def describe_feed_error(
     modal: ModalState, feed: float, minimum: float, maximum: float
 ) -> tuple[str, str, str]:
     """Return the code, message and remedy for an invalid feed under G94 or G95."""
-    rule = LETTER_ENTRIES["F"].rules["F"]
+    rule = LETTER_ENTRIES["F"].word_rules["F"]
     refusal = rule.too_large_error if feed > maximum else rule.invalid_error
     assert refusal is not None
-    low, high, shown = (modal.format_feed(each, per_rev=modal.per_rev) for each in (minimum, maximum, feed))
+    low, high, shown = (
+        modal.format_feed(each, is_per_rev=modal.per_rev) for each in (minimum, maximum, feed)
+    )
     hint = (
         "Look for a missing decimal point, or for G95 where G94 is intended."
         if modal.per_rev
@@ -177,14 +180,14 @@ def warn_about_crash_feed(
     The warning is omitted if the spindle reverses soon, as in tapping.
     """
     modal, word = state.modal, statement.words.get("F")
-    if word is None or not statement.f_is_feed or not modal.per_rev or modal.coarse or modal.feed is None:
+    if word is None or not statement.is_f_feed or not modal.per_rev or modal.coarse or modal.feed is None:
         return
     if modal.feed <= HIGH_FEED_MM_PER_REV or _taps(modal.spindle, following_lines):
         return
-    shown = modal.format_feed(modal.feed, per_rev=True)
+    shown = modal.format_feed(modal.feed, is_per_rev=True)
     text = "Feed {value} is very high for cutting."
     hint = "Look for a missing decimal point."
-    state.log.warn(statement.line, word.column, "feed-high", text, hint, value=shown)
+    state.log.add_warning(statement.line, word.column, "feed-high", text, hint, value=shown)
 
 
 def _taps(spindle: int, ahead: Sequence[ExecutableLine]) -> bool:
@@ -233,12 +236,12 @@ def check_move_feed(state: State, line: int, x0: float, x: float, length: float)
         _raise_once(state, line, "spindle-stopped", text, "Start the spindle with M03 or M04, or use G94.")
         return
     speed = modal.feed * rpm / 60 if modal.per_rev else modal.feed
-    most = state.setup.limits.max_feed
+    most = state.setup.limits.max_feed_mm_s
     if speed > most * _ROUNDING:
-        limit = modal.format_feed(most, per_rev=False)
+        limit = modal.format_feed(most, is_per_rev=False)
         if modal.per_rev:
-            shown = modal.format_feed(modal.feed, per_rev=True)
-            most_per_rev = modal.format_feed(most * 60 / rpm, per_rev=True)
+            shown = modal.format_feed(modal.feed, is_per_rev=True)
+            most_per_rev = modal.format_feed(most * 60 / rpm, is_per_rev=True)
             message = Message(
                 "Feed {value} exceeds the maximum of {most_per_rev} at {rpm} rpm ({limit}).",
                 value=shown,
@@ -247,7 +250,7 @@ def check_move_feed(state: State, line: int, x0: float, x: float, length: float)
                 limit=limit,
             )
         else:
-            shown = modal.format_feed(speed, per_rev=False)
+            shown = modal.format_feed(speed, is_per_rev=False)
             message = Message("Feed {value} exceeds the maximum of {limit}.", value=shown, limit=limit)
         raise make_program_error(line, 0, "feed-over-speed", message, "Lower F or S.")
     _warn_slow(state, line, length, speed)
@@ -261,14 +264,14 @@ def _raise_once(state: State, line: int, code: str, message: str, hint: str) -> 
 
 
 def _warn_slow(state: State, line: int, length: float, speed: float) -> None:
-    state.slow_length_mm = speed * SLOW_MOVE_S
+    state.slow_length_mm = speed * SLOW_MOVE_TIME_S
     if length > state.slow_length_mm:
         seconds = length / speed
         modal = state.modal
-        shown = modal.format_feed(modal.feed or 0.0, per_rev=modal.per_rev)
+        shown = modal.format_feed(modal.feed or 0.0, is_per_rev=modal.per_rev)
         text = "This move takes {seconds} s at {value}."
         hint = "Check F and G94/G95."
-        state.log.warn(line, 0, "feed-low", text, hint, seconds=f"{seconds:.0f}", value=shown)
+        state.log.add_warning(line, 0, "feed-low", text, hint, seconds=f"{seconds:.0f}", value=shown)
 
 
 COARSE_FEED_CODES = frozenset({35, 36})

@@ -14,11 +14,11 @@ import numpy as np
 
 from core.interpreter.omniturn.flow.loops_and_subroutines import Flow
 from core.interpreter.omniturn.motion.feeds import (
-    SLOW_MOVE_S,
+    SLOW_MOVE_TIME_S,
     check_move_feed,
     compute_feed_speed,
-    passes_feed_checks,
-    set_feed,
+    is_feed_accepted,
+    set_series_feed,
 )
 from core.interpreter.omniturn.motion.plain_moves import (
     MAX_RUN_LENGTH,
@@ -64,7 +64,7 @@ def mask_plain_lines(state: State, lines: LineColumns) -> BoolArray:
         return answer
     fed = lines.is_plain_move & ~answer & ~np.isnan(lines.f) & (lines.g != 0)
     for f in set(lines.f[fed].tolist()):
-        if passes_feed_checks(state, state.convert_feed(f)):
+        if is_feed_accepted(state, state.convert_feed(f)):
             answer |= fed & (lines.f == f)
     return answer
 
@@ -109,7 +109,7 @@ def make_series(
     state.px, state.pz, state.x, state.z = float(px[-1]), float(pz[-1]), float(x1[-1]), float(z1[-1])
     state.blocks += len(line_numbers)
     if feed is not None:
-        set_feed(state, float(feed[-1]))
+        set_series_feed(state, float(feed[-1]))
     return made
 
 
@@ -149,7 +149,9 @@ def _tell(state: State, series: StraightMoveSeries, lines: LineColumns, finer: B
     """Log warnings for rounded words and slow moves, line by line, until the log is full."""
     dx, dz = series.x - series.x0, series.z - series.z0
     slow_length = (
-        state.slow_length_mm if series.feed is None else compute_feed_speed(state, series.feed) * SLOW_MOVE_S
+        state.slow_length_mm
+        if series.feed is None
+        else compute_feed_speed(state, series.feed) * SLOW_MOVE_TIME_S
     )
     slow = (np.abs(dx) + np.abs(dz) > slow_length) & state.cut
     for at in np.flatnonzero(finer | slow).tolist():
@@ -161,7 +163,7 @@ def _tell(state: State, series: StraightMoveSeries, lines: LineColumns, finer: B
             round_coordinates(state, line, series.texts[line - 1], x, z)
         if slow[at]:
             if series.feed is not None:
-                set_feed(state, float(series.feed[at]))
+                set_series_feed(state, float(series.feed[at]))
             check_move_feed(state, line, float(series.x0[at]), float(series.x[at]), hypot(dx[at], dz[at]))
 
 
@@ -178,7 +180,9 @@ class SeriesReader:
         self._loops = program.structure.loop_ends
         self._without = range(0)  # indices of lines at which no series starts
 
-    def read_next_series(self, lines: int, blocks: int) -> tuple[StraightMoveSeries, int] | None:
+    def read_next_series(
+        self, max_line_count: int, max_block_count: int
+    ) -> tuple[StraightMoveSeries, int] | None:
         """Return the next moves and the number of executed lines, or None if a series is not worthwhile.
 
         ``lines`` and ``blocks`` are the remaining numbers of lines and blocks up to the limits. Requires
@@ -190,7 +194,9 @@ class SeriesReader:
         # This range changes if a series or another kind of line is found.
         self._without = range(at, at + MIN_SERIES_LENGTH)
         return (
-            self._passes(at, lines, blocks) if at - 1 in self._loops else self._consecutive(at, lines, blocks)
+            self._passes(at, max_line_count, max_block_count)
+            if at - 1 in self._loops
+            else self._consecutive(at, max_line_count, max_block_count)
         )
 
     def _consecutive(

@@ -32,21 +32,21 @@ def format_move(modal: ModalState, element: Element, required_letters: str = "")
     moved_z = arc or "Z" in required_letters or abs(end[1] - start[1]) > _TOLERANCE_MM
     words = ""
     if moved_x or not moved_z:
-        words += "X" + number((end[0] - base_x) / scale_x, metric=modal.metric)
+        words += "X" + number((end[0] - base_x) / scale_x, is_metric=modal.metric)
     if moved_z:
-        words += "Z" + number((end[1] - base_z) / scale, metric=modal.metric)
+        words += "Z" + number((end[1] - base_z) / scale, is_metric=modal.metric)
     return words if isinstance(element, Line) else _arc(modal, element, words)
 
 
 def _arc(modal: ModalState, arc: Arc, words: str) -> str:
     scale = units.get_mm_per_unit(is_metric=modal.metric)
     code = "G02" if arc.clockwise else "G03"
-    if abs(arc.sweep) < _HALF_TURN:
-        return f"{code}{words}R{number(arc.radius / scale, metric=modal.metric)}"
+    if abs(arc.sweep_rad) < _HALF_TURN:
+        return f"{code}{words}R{number(arc.radius / scale, is_metric=modal.metric)}"
     distances = modal.diameter or modal.absolute is False
     base_x, base_z = arc.start if distances else (modal.secondary_x, modal.secondary_z)
-    i = number((arc.center[0] - base_x) / scale, metric=modal.metric)
-    k = number((arc.center[1] - base_z) / scale, metric=modal.metric)
+    i = number((arc.center[0] - base_x) / scale, is_metric=modal.metric)
+    k = number((arc.center[1] - base_z) / scale, is_metric=modal.metric)
     return f"{code}{words}I{i}K{k}"
 
 
@@ -76,12 +76,12 @@ def _without_secondary_offset(block: Block, element: Element, words: dict[str, f
     )
 
 
-def number(value: float, *, metric: bool) -> str:
+def number(value: float, *, is_metric: bool) -> str:
     """Return a number as program text without trailing zeros.
 
     The text has at most five decimal places in inches and four in mm.
     """
-    text = f"{value:.{4 if metric else 5}f}".rstrip("0").rstrip(".")
+    text = f"{value:.{4 if is_metric else 5}f}".rstrip("0").rstrip(".")
     if text in {"-0", ""}:
         return "0"
     return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text

@@ -10,8 +10,14 @@ from collections.abc import Iterator, Sequence
 from math import dist
 from typing import NamedTuple
 
-from core.geometry.contour_offset import WINDOW_ELEMENTS
-from core.geometry.lines_and_arcs import SAME_POINT_TOLERANCE_MM, Element, Line, Point, distance_to_point
+from core.geometry.contour_offset import GOUGE_CHECK_ELEMENT_COUNT
+from core.geometry.lines_and_arcs import (
+    SAME_POINT_TOLERANCE_MM,
+    Element,
+    Line,
+    Point,
+    compute_distance_to_point,
+)
 from core.interpreter.omniturn.codes.code_rules import check_conditions
 from core.interpreter.omniturn.codes.code_table import FLOW_CODES, G_CODES
 from core.interpreter.omniturn.omniturn_state import CompensationSwitch, StageItem, State
@@ -42,7 +48,7 @@ class ApproachOrDeparture(NamedTuple):
 
     block: Block
     is_departure: bool
-    code: int  # 41 or 42
+    compensation_code: int  # 41 or 42
     nose_radius_mm: float  # of the nose, mm
     contour: Sequence[Element]
 
@@ -74,11 +80,13 @@ class ApproachOrDeparture(NamedTuple):
                 length=self.block.modal.format_length(dist(free_end, corner)),
                 nose=self.block.modal.format_length(self.nose_radius_mm),
             )
-        self._check_distance(min(distance_to_point(element, free_end) for element in self.contour), log)
+        self._check_distance(
+            min(compute_distance_to_point(element, free_end) for element in self.contour), log
+        )
         if is_gouging(path, self.contour, self.nose_radius_mm):
             text = "With G{code}, the tool nose cuts into the part during the {lead}."
             hint = "Choose a different path for the {lead}, or switch between G41 and G42."
-            raise _refused(self.block, "comp-gouge", text, hint, code=self.code, lead=self.name)
+            raise _refused(self.block, "comp-gouge", text, hint, code=self.compensation_code, lead=self.name)
 
     def _check_distance(self, off: float, log: DiagnosticLog) -> None:
         if off >= 2 * self.nose_radius_mm - SAME_POINT_TOLERANCE_MM:
@@ -91,7 +99,7 @@ class ApproachOrDeparture(NamedTuple):
         hint = "Start the approach, or end the departure, at least twice the nose radius away from the part."
         if near:
             raise self.make_error("-near", text, hint)
-        log.warn(self.block.line, 0, f"comp-{self.name}-near", text, hint)
+        log.add_warning(self.block.line, 0, f"comp-{self.name}-near", text, hint)
 
 
 _DISTANCE_TEXTS = {  # key: whether it is a departure, and whether it is closer than R
@@ -121,7 +129,7 @@ class _Contour(ContourStage):
         super().__init__(moves, approach, radius if switch.code == 41 else -radius)
         self._log, self._mark = log, switch
         self._first: list[Element] = []  # of the contour, near the approach
-        self._recent: deque[Element] = deque(maxlen=WINDOW_ELEMENTS)
+        self._recent: deque[Element] = deque(maxlen=GOUGE_CHECK_ELEMENT_COUNT)
 
     def move(self, block: Block) -> Iterator[Block]:
         """Add a move, which is the departure if no other move follows.
@@ -138,7 +146,7 @@ class _Contour(ContourStage):
         if last is self.approach_move:
             return
         element = make_element(last.block)
-        if len(self._first) < WINDOW_ELEMENTS:
+        if len(self._first) < GOUGE_CHECK_ELEMENT_COUNT:
             self._first.append(element)
         self._recent.append(element)
         yield from self._yield_pieces(self._add_move(last, element))
@@ -196,20 +204,20 @@ class CompensationStage:
 
     def __init__(self, log: DiagnosticLog, moves: AdjustedMoveFactory) -> None:
         self._log, self._moves = log, moves
-        self.discard()
+        self.discard_moves()
 
     @property
     def is_active(self) -> bool:
         """Return whether G41 or G42 is active."""
         return self._mark is not None
 
-    def discard(self) -> None:
+    def discard_moves(self) -> None:
         """Discard buffered moves and turn compensation off."""
         self._mark: CompensationSwitch | None = None
         self.nose_radius_mm = 0.0  # nose radius in mm, set at the approach
         self._contour: _Contour | None = None
 
-    def accept(self, item: StageItem) -> Iterator[Block]:
+    def accept_item(self, item: StageItem) -> Iterator[Block]:
         """Accept an item, and yield the blocks that later items cannot change.
 
         Raises ProgramError if compensation is not possible.
@@ -240,7 +248,7 @@ class CompensationStage:
     def _close(self) -> Iterator[Block]:
         if self._contour is not None:
             yield from self._contour.close()
-        self.discard()
+        self.discard_moves()
 
 
 def _refused(block: Block, code: str, text: str, hint: str, /, **values: object) -> ProgramError:
@@ -273,7 +281,7 @@ def execute_compensation_code(
     check_conditions(state, statement, G_CODES[code])
     text = "G{code} is not allowed in a subroutine."
     hint = "Write the compensated contour in the main program."
-    statement.check(not is_in_subroutine, 1, "comp-subroutine", text, hint, code=code)
+    statement.check_condition(not is_in_subroutine, 1, "comp-subroutine", text, hint, code=code)
     state.set_modal(state.modal._replace(compensation_code=code))
     state.contour.approach_line = 0 if code == 40 else statement.line
     state.contour.is_buffering, state.fast = True, False
@@ -295,8 +303,8 @@ def check_compensated_line(state: State, statement: Statement) -> None:
         raise statement.make_error(1, "comp-with", text, "Write G40 before this line.", state=on)
     text = "A subroutine cannot be called while G{state} is active."
     hint = "Write the compensated contour in the main program."
-    statement.check(not statement.calls_subroutine, 1, "comp-subroutine", text, hint, state=on)
-    refused = statement.one_shot_code is not None and not statement.code_entry.allowed_with_compensation
+    statement.check_condition(not statement.calls_subroutine, 1, "comp-subroutine", text, hint, state=on)
+    refused = statement.one_shot_code is not None and not statement.code_entry.is_allowed_with_compensation
     if refused or statement.locks_spindle or _TURNS_C & statement.words.keys():
         word = statement.code_word or statement.m_word
         what = word.text if word is not None else "C"
@@ -333,7 +341,7 @@ def check_approach_move(state: State, block: Block) -> None:
             "Enter the nose radius in the offset table.",
             {"secondary": state.modal.secondary, "state": on},
         )
-        state.log.warn(block.line, 0, "comp-no-radius", template, hint, **message_values)
+        state.log.add_warning(block.line, 0, "comp-no-radius", template, hint, **message_values)
 
 
 def get_nose_radius_mm(state: State) -> float:

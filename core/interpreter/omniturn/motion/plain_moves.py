@@ -81,7 +81,7 @@ class LineColumns(NamedTuple):
     is_plain_move: BoolArray
 
     @staticmethod
-    def empty(line_count: int) -> LineColumns:
+    def make_empty(line_count: int) -> LineColumns:
         """Return the columns for ``line_count`` lines, none of which is a plain move yet."""
         x, z, f = (np.full(line_count, np.nan) for _ in range(3))
         return LineColumns(
@@ -156,7 +156,7 @@ def _read_length(
     """
     rare = 0
     while len(rows) >= _FEW and rare < _FEW:
-        lines, begin = _Lines.of(starts[rows]), starts[rows[0]]
+        lines, begin = _Lines.from_line_starts(starts[rows]), starts[rows[0]]
         form = shapes[begin : begin + length]
         same = np.ones(len(rows), bool)
         for at, character in enumerate(form.tolist()):
@@ -164,7 +164,13 @@ def _read_length(
         alike = rows if same.all() else rows[same]
         match = _words(form.tobytes().decode()) if len(alike) >= _FEW else None
         if match is not None:
-            _read_shape(columns, alike, match, digits, lines if alike is rows else _Lines.of(starts[alike]))
+            _read_shape(
+                columns,
+                alike,
+                match,
+                digits,
+                lines if alike is rows else _Lines.from_line_starts(starts[alike]),
+            )
         rare += len(alike) < _FEW
         rows = rows[~same]
 
@@ -179,7 +185,7 @@ class _Lines(NamedTuple):
     step: int
 
     @classmethod
-    def of(cls, first: IntArray) -> _Lines:
+    def from_line_starts(cls, first: IntArray) -> _Lines:
         """Return the lines that start at these characters, in ascending order."""
         steps = np.diff(first)
         return cls(first, int(steps[0]) if len(steps) and (steps == steps[0]).all() else 0)
@@ -238,7 +244,7 @@ class ExecutableLines(Sequence[ExecutableLine]):
         self._others = statements
         self._pages: dict[int, list[ExecutableLine]] = {}
 
-    def copy(self) -> ExecutableLines:
+    def copy_lines(self) -> ExecutableLines:
         """Return a copy with independent lines and shared arrays of numbers."""
         return ExecutableLines(
             self.columns._replace(is_plain_move=self.columns.is_plain_move.copy()), self._others.copy()
@@ -294,21 +300,22 @@ def _joined(lines: Sequence[str], these: range) -> str:
 
 
 def parse_lines(
-    lines: Sequence[str], read: Callable[[int, str], ExecutableLine], *, in_order: bool
+    lines: Sequence[str], parse_line: Callable[[int, str], ExecutableLine], *, reads_every_line: bool
 ) -> ExecutableLines:
     """Return the lines ready for execution.
 
-    ``read`` is called with the number (from 1) and the text of each line that is not parsed as an array.
-    With ``in_order``, it is called for every line, because the meaning of a line depends on earlier lines.
+    ``parse_line`` is called with the number (from 1) and the text of each line that is not parsed as an
+    array. With ``reads_every_line``, it is called for every line, because the meaning of a line depends on
+    earlier lines.
     """
-    columns = LineColumns.empty(len(lines))
+    columns = LineColumns.make_empty(len(lines))
     others: dict[int, ExecutableLine] = {}
     for first in range(0, len(lines), MAX_RUN_LENGTH):
         part = columns.select_lines(slice(first, first + MAX_RUN_LENGTH))
-        if not in_order:
+        if not reads_every_line:
             parse_columns(_joined(lines, range(first, min(first + MAX_RUN_LENGTH, len(lines)))), part)
         for at in np.flatnonzero(~part.is_plain_move).tolist():
-            line = read(first + at + 1, lines[first + at])
+            line = parse_line(first + at + 1, lines[first + at])
             if isinstance(line, tuple):
                 part.store_line(at, line)
             else:

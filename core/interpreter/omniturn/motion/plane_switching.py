@@ -18,7 +18,7 @@ from core.interpreter.omniturn.omniturn_state import State
 from core.interpreter.omniturn.omniturn_statement import Statement
 from core.interpreter.omniturn.setup.spindle_and_dwell import warn_about_short_dwell
 from core.interpreter.shared import units
-from core.interpreter.shared.c_turn_at_centerline import check_centerline_turn
+from core.interpreter.shared.centerline_rotation import needs_centerline_rotation
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.modal_state import VirtualMill
 from core.language.diagnostics import ProgramError
@@ -100,8 +100,8 @@ def _split_at_centerline(state: State, statement: Statement, move: PlaneMove) ->
     """
     if isinstance(move.frame, SidePlane):
         return [move]
-    share = move.critical_fraction()
-    rho, h = move.distance_from_axis(share), abs(move.frame.tool_height_mm)
+    share = move.get_critical_fraction()
+    rho, h = move.compute_distance_from_axis(share), abs(move.frame.tool_height_mm)
     if rho < h - _SAME_PLANE_MOVES:
         near, least = state.modal.format_length(rho), state.modal.format_length(h)
         text = Message(
@@ -120,21 +120,21 @@ def _turn_at_centerline(state: State, statement: Statement, leg: PlaneMove) -> I
     """Yield a rotation of C if the tool is on the centerline, until the path leads outward along X."""
     mill = state.modal.mill
     assert mill is not None
-    turn = replace(leg, start_angle=mill.polar_angle_rad).find_start_rotation()
+    turn = replace(leg, start_angle_rad=mill.polar_angle_rad).find_start_rotation()
     state.set_modal(state.modal._replace(mill=mill._replace(polar_angle_rad=mill.polar_angle_rad + turn)))
-    if check_centerline_turn(state.log, statement.line, turn):
+    if needs_centerline_rotation(state.log, statement.line, turn):
         yield rotate_c_axis(state, statement.line, statement.text, state.c - degrees(turn))
 
 
 def _block(state: State, statement: Statement, leg: PlaneMove) -> Block:
     mill = state.modal.mill
     assert mill is not None
-    leg = replace(leg, start_angle=mill.polar_angle_rad)
-    (x, z, c) = leg.machine_positions(_ENDS)[1].tolist()
+    leg = replace(leg, start_angle_rad=mill.polar_angle_rad)
+    (x, z, c) = leg.compute_machine_positions(_ENDS)[1].tolist()
     theta = (
-        leg.start_angle
+        leg.start_angle_rad
         if isinstance(leg.frame, SidePlane)
-        else float(leg.polar_angles(leg.mill_points(_ENDS), _ENDS)[1])
+        else float(leg.compute_polar_angles(leg.compute_mill_points(_ENDS), _ENDS)[1])
     )
     start = state.x, state.z, state.c
     state.px, state.pz, state.c = x, z, c
@@ -249,7 +249,7 @@ def _diameter(state: State, statement: Statement, mill: VirtualMill) -> None:
         raise make_plane_error(
             statement, "plane-diameter", "D must be a diameter greater than 0.", "Correct the value.", "D"
         )
-    state.set_modal(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter=diameter))))
+    state.set_modal(state.modal._replace(mill=mill._replace(frame=replace(mill.frame, diameter_mm=diameter))))
 
 
 def _feed(state: State, statement: Statement) -> None:
@@ -257,7 +257,7 @@ def _feed(state: State, statement: Statement) -> None:
     word = statement.plane_line.words.get("F")
     if word is None or word.value is None:
         return
-    feed, most = state.convert_feed(word.value), state.setup.limits.max_feed
+    feed, most = state.convert_feed(word.value), state.setup.limits.max_feed_mm_s
     modal, mill = state.modal, state.modal.mill
     within = min(max(feed, _MIN_FEED), most)
     state.set_modal(

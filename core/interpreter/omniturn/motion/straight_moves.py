@@ -122,7 +122,7 @@ def warn_about_title_rapid(state: State, line: int) -> None:
     if state.title_rapid and state.modal.rapid:
         text = "This move is a rapid because of the G00 next to the comment on line {title_rapid}."
         hint = "Write G01 if the move is meant to cut."
-        state.log.warn(line, 0, "title-rapid", text, hint, title_rapid=state.title_rapid)
+        state.log.add_warning(line, 0, "title-rapid", text, hint, title_rapid=state.title_rapid)
     state.title_rapid = 0
 
 
@@ -150,7 +150,9 @@ def round_mill_length(state: State, line: int, word: Word) -> float:
     if finer:
         text = "{word} is finer than the resolution; {value} is used."
         hint = "Round the number."
-        state.log.warn(line, word.column, "finer-than-step", text, hint, word=word.text, value=f"{value:.5f}")
+        state.log.add_warning(
+            line, word.column, "finer-than-step", text, hint, word=word.text, value=f"{value:.5f}"
+        )
     return value * state.mm_per_z_unit
 
 
@@ -196,7 +198,7 @@ def _nearest(step: float, value: float) -> tuple[float, bool]:
 def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     name = "mm" if state.modal.metric else "in"
     step = f"{get_resolution(state, word.letter):.5f}".rstrip("0")
-    state.log.warn(
+    state.log.add_warning(
         line,
         word.column,
         "finer-than-step",
@@ -209,7 +211,7 @@ def _warn_of_finer(state: State, line: int, word: Word, value: float) -> None:
     )
 
 
-def execute_geometry_modes(state: State, statement: Statement) -> None:
+def execute_dimension_modes(state: State, statement: Statement) -> None:
     """Execute the modes of a line for distances, units and X words."""
     if not statement.modal_codes:
         return

@@ -35,12 +35,12 @@ def _words(line: str) -> str:
     return _COMMENT.sub("", line).replace(" ", "").upper()
 
 
-def compute_modal_after_end(previous: ModalState, rpm: float, *, reset: bool) -> ModalState:
+def compute_modal_after_end(previous: ModalState, rpm: float, *, resets_m_functions: bool) -> ModalState:
     """Return the modal state after the program end.
 
-    This is the power-up state, except that units, tool offset and preset remain. Without ``reset``, the M
-    functions also remain. ``rpm`` is the unsigned commanded speed at the end. M30 resets the M functions,
-    and M02 does not.
+    This is the power-up state, except that units, tool offset and preset remain. Without
+    ``resets_m_functions``, the M functions also remain. ``rpm`` is the unsigned commanded speed at the end.
+    M30 resets the M functions, and M02 does not.
     """
     return ModalState(
         metric=previous.metric,
@@ -51,10 +51,10 @@ def compute_modal_after_end(previous: ModalState, rpm: float, *, reset: bool) ->
         preset_x=previous.preset_x,
         preset_z=previous.preset_z,
         collet_closed=previous.collet_closed,
-        spindle=0 if reset else previous.spindle,
-        rpm=rpm if previous.spindle and not reset else previous.rpm,
-        coolant=previous.coolant and not reset,
-        outputs=frozenset() if reset else previous.outputs,
+        spindle=0 if resets_m_functions else previous.spindle,
+        rpm=rpm if previous.spindle and not resets_m_functions else previous.rpm,
+        coolant=previous.coolant and not resets_m_functions,
+        outputs=frozenset() if resets_m_functions else previous.outputs,
         comment=previous.comment,
         # Whole revolutions remain; other offsets are removed.
         offset_c=previous.offset_c if previous.offset_c % 360.0 == 0.0 else 0.0,

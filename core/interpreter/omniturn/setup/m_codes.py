@@ -78,7 +78,9 @@ def end_program(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of M30, which resets the M functions, or of M02, which does not reset them."""
     reset = statement.m_number == 30
     warn_about_short_dwell(state)
-    state.stay(compute_modal_after_end(state.modal, abs(state.compute_rpm_at(state.x)), reset=reset))
+    state.stay(
+        compute_modal_after_end(state.modal, abs(state.compute_rpm_at(state.x)), resets_m_functions=reset)
+    )
     yield _done(state, statement, actions.ProgramEnd(reset=reset))
 
 
@@ -91,9 +93,9 @@ def check_m_codes(state: State, lines: tuple[Statement, ...]) -> None:
                 "M{code} has no effect because the machine file defines this code as ignored.",
                 code=f"{statement.m_number:02d}",
             )
-            state.log.add(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
+            state.log.add_finding(Diagnostic(statement.line, column, Severity.NOTE, "no-effect", text))
         elif statement.m_number not in state.setup.limits.m_outputs:
-            state.log.add(_unknown(state, statement))
+            state.log.add_finding(_unknown(state, statement))
 
 
 def _unknown(state: State, statement: Statement) -> Diagnostic:

@@ -51,7 +51,7 @@ def _limit(state: State, statement: Statement, code: int) -> float:
 def execute_speed_word(state: State, statement: Statement) -> None:
     """Execute S of a line, which is in rpm under G97 and a surface speed under G96."""
     word = statement.words.get("S")
-    if word is None or word.value is None or statement.s_is_limit:
+    if word is None or word.value is None or statement.is_s_speed_limit:
         return
     modal, speed = state.modal, word.value
     if modal.css:
@@ -75,7 +75,7 @@ def run_spindle(state: State, statement: Statement) -> Iterator[Block]:
         "S" not in statement.words
         or statement.m_number == 5
         or not state.modal.spindle
-        or statement.s_is_limit
+        or statement.is_s_speed_limit
     ):
         return
     state.reported.discard("spindle-stopped")
@@ -90,7 +90,7 @@ def stop_spindle(state: State, statement: Statement) -> Iterator[Block]:
     yield state.action(statement.line, statement.get_block_text("m"), SpindleStop())
 
 
-_SHORTEST = G_CODES[4].rules["F"].minimum  # s
+_SHORTEST = G_CODES[4].word_rules["F"].minimum  # s
 _LONG = 60.0  # s with an active tool; warm-up programs have no tool
 _ARRIVAL_TOLERANCE = 1e-9  # s, degrees
 
@@ -99,7 +99,7 @@ def execute_dwell(state: State, statement: Statement) -> Iterator[Block]:
     """Yield the block of G04. Raises ProgramError if F is missing or out of range."""
     seconds = number(state, statement, "F") or 0.0
     if seconds > _LONG and state.modal.tool:
-        state.log.warn(
+        state.log.add_warning(
             statement.line,
             statement.words["F"].column,
             "dwell-long",
@@ -119,7 +119,7 @@ def record_c_turn_time(state: State, line: int, column: int, turn_deg: float) ->
     limits = state.setup.limits
     if limits.has_c_feedback or turn_deg <= _ARRIVAL_TOLERANCE:
         return
-    speed, accel = (state.modal.c_rpm or limits.c_max_rpm) * 6.0, limits.c_acceleration
+    speed, accel = (state.modal.c_rpm or limits.c_max_rpm) * 6.0, limits.c_acceleration_deg_s2
     ramps = speed * speed / accel
     seconds = turn_deg / speed + speed / accel if turn_deg >= ramps else 2.0 * sqrt(turn_deg / accel)
     state.turning = (line, column, seconds)
@@ -137,7 +137,7 @@ def warn_about_short_dwell(state: State) -> None:
             "finish its move."
         )
         hint = "Program a dwell of at least G04F{needed} after this line."
-        state.log.warn(line, column, "dwell-too-short", text, hint, needed=f"{needed:.2f}")
+        state.log.add_warning(line, column, "dwell-too-short", text, hint, needed=f"{needed:.2f}")
 
 
 def _shorten_arrival(state: State, dwell_s: float) -> None:

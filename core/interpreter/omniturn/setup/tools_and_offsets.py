@@ -47,7 +47,7 @@ def change_tool(state: State, statement: Statement, word: Word, usage: ToolUsage
     number = int(word.value or 0)
     if modal.css and number:
         text = "G96 is active at a tool change, so the spindle drive must follow every sudden change in X."
-        state.log.warn(statement.line, word.column, "tool-under-css", text, "Write G97 before T.")
+        state.log.add_warning(statement.line, word.column, "tool-under-css", text, "Write G97 before T.")
     offset = _offset(state, statement.line, word, usage)
     if number:
         state.pending_shift.update(dict.fromkeys(state.pending_shift, True))
@@ -104,7 +104,9 @@ def set_preset(state: State, statement: Statement) -> Iterator[Block]:
         text = (
             "On this control, G92 presets the position and does not cut a thread. Threads are cut with G33."
         )
-        state.log.warn(statement.line, statement.get_column("F"), "preset-thread", text, "Write G33XnZnInKn.")
+        state.log.add_warning(
+            statement.line, statement.get_column("F"), "preset-thread", text, "Write G33XnZnInKn."
+        )
     x, z = round_to_resolution(state, statement, "X"), round_to_resolution(state, statement, "Z")
     x, z = state.x if x is None else x, state.z if z is None else z
     modal = state.modal
@@ -119,4 +121,4 @@ def warn_about_idle_shifts(state: State) -> None:
     for line, taken in state.pending_shift.items():
         if not taken:
             text = "No T follows this G10, so its work shift never takes effect."
-            state.log.warn(line, 0, "shift-without-tool", text, "Write G10 before a T word.")
+            state.log.add_warning(line, 0, "shift-without-tool", text, "Write G10 before a T word.")

@@ -24,7 +24,7 @@ from core.interpreter.sinumerik.cycles.stock_removal import (
     run_stock_removal,
 )
 from core.interpreter.sinumerik.cycles.tapping_cycles import run_compensating_tapping, run_rigid_tapping
-from core.interpreter.sinumerik.cycles.thread_cycle import run_thread, run_thread_chain
+from core.interpreter.sinumerik.cycles.thread_cycle import run_chain_threading, run_threading
 from core.interpreter.sinumerik.cycles.undercut_cycles import (
     run_shoulder_undercut,
     run_thread_undercut,
@@ -53,9 +53,9 @@ _CYCLE_FUNCTIONS: Mapping[str, Callable[[CycleCall], Iterator[Block]]] = {
     "CYCLE94": run_shoulder_undercut,
     "CYCLE940": run_undercut,
     "CYCLE96": run_thread_undercut,
-    "CYCLE97": run_thread,
-    "CYCLE98": run_thread_chain,
-    "CYCLE99": run_thread,
+    "CYCLE97": run_threading,
+    "CYCLE98": run_chain_threading,
+    "CYCLE99": run_threading,
 }
 
 
@@ -119,4 +119,4 @@ def note_ineffective_cycle(state: State, log: DiagnosticLog, line: LexedBlock) -
             why=IGNORED_CYCLES[line.called_name],
         )
         found = line.make_error(line.call_column, "no-effect", why, "").diagnostic
-        log.add(replace(found, severity=Severity.NOTE))
+        log.add_finding(replace(found, severity=Severity.NOTE))

@@ -36,7 +36,7 @@ _CORRECT, _POINT = "Correct the value.", "Look for a missing decimal point."
 _PARAMETER_CODE = "cycle-parameter"
 _Alarm = int | str
 WRONG_MACHINING_TYPE = 61002
-MAX_PASSES = 10_000
+MAX_PASS_COUNT = 10_000
 DEFAULT_RETRACT_MM = 1.0  # mm; default retract distance from the part without _VRT
 _SAME = 1e-9  # mm
 
@@ -105,7 +105,7 @@ class CycleCall:
         """
         text = "{call} cannot run in a frame that is rotated, scaled or mirrored."
         hint = "Write TRANS without axes before this block."
-        self.require(self.state.programmed_frame.is_shift_only, "cycle-frame", text, hint)
+        self.require_condition(self.state.programmed_frame.is_shift_only, "cycle-frame", text, hint)
         plane = self.state.transformation
         if plane is not None and (self.line.called_name not in _LIVE_TOOL_CYCLES or not plane.has_z_depth):
             template = (
@@ -117,7 +117,7 @@ class CycleCall:
             raise self.make_call_error("transformation", template, hint, plane=plane.name)
         text, on = "{what} is not allowed while G{state} is active.", self.state.modal.compensation_code
         hint = "Write G40 and a move before this block."
-        self.require(on == 40, "comp-with", text, hint, what=self.line.called_name, state=on)
+        self.require_condition(on == 40, "comp-with", text, hint, what=self.line.called_name, state=on)
 
     def has_argument(self, name: str) -> bool:
         """Return whether the call passes this parameter."""
@@ -239,14 +239,14 @@ class CycleCall:
         name: str,
         text: str,
         hint: str = _POINT,
-        maximum: int = MAX_PASSES,
+        maximum: int = MAX_PASS_COUNT,
     ) -> int:
         """Return the number of passes for a total depth in mm.
 
         Each pass is at most ``depth_per_pass`` deep, in mm. Raises ProgramError if the number is too high.
         """
         count = count_passes(total_depth, depth_per_pass)
-        self.check_parameter(count <= min(maximum, MAX_PASSES), name, text, hint, count=f"{count:,}")
+        self.check_parameter(count <= min(maximum, MAX_PASS_COUNT), name, text, hint, count=f"{count:,}")
         return count
 
     def check_feed_known(
@@ -267,7 +267,7 @@ class CycleCall:
     def check_tool(self) -> None:
         """Raise ProgramError unless a tool with an offset is active."""
         modal, text = self.state.modal, "{call} needs an active tool with an offset."
-        self.require(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
+        self.require_condition(modal.tool and modal.edge, 61000, text, "Write T and D before this block.")
 
     def make_parameter_error(
         self, name: str, what: str, hint: str = _CORRECT, code: _Alarm = _PARAMETER_CODE, /, **values: object
@@ -306,7 +306,9 @@ class CycleCall:
             self.line.call_column, code, fill_template(text, values), fill_template(hint, values)
         )
 
-    def require(self, condition: object, code: _Alarm, text: str, hint: str, /, **values: object) -> None:
+    def require_condition(
+        self, condition: object, code: _Alarm, text: str, hint: str, /, **values: object
+    ) -> None:
         """Raise the error of ``make_call_error`` unless ``condition`` is true."""
         if not condition:
             raise self.make_call_error(code, text, hint, **values)
@@ -314,10 +316,10 @@ class CycleCall:
     def _fault(self, column: int, code: _Alarm, text: str, hint: str) -> ProgramError:
         return ProgramError(make_alarm(self.line.number, column, code, self.line.block_name, text, hint))
 
-    def warn(self, code: str, text: str, hint: str, /, **values: object) -> None:
+    def log_warning(self, code: str, text: str, hint: str, /, **values: object) -> None:
         """Log a warning about the call."""
         found = self.make_call_error(code, text, hint, **values).diagnostic
-        self.state.log.add(replace(found, severity=Severity.WARNING))
+        self.state.log.add_finding(replace(found, severity=Severity.WARNING))
 
     def make_blocks(self, steps: Sequence[CycleStep]) -> Iterator[Block]:
         """Yield the motions as blocks.

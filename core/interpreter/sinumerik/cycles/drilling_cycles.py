@@ -18,7 +18,7 @@ from core.interpreter.shared.actions import (
 )
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.cycles.cycle_parameters import (
-    MAX_PASSES,
+    MAX_PASS_COUNT,
     NO_SPINDLE_DIRECTION,
     CycleCall,
     CycleStep,
@@ -26,8 +26,8 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
     make_dwell_steps,
 )
 from core.interpreter.sinumerik.setup.spindle_and_dwell import (
-    check_can_position,
-    compute_shortest_turn,
+    check_spindle_positioning,
+    compute_shortest_c_travel,
     is_oriented_by_drive,
 )
 from core.interpreter.sinumerik.sinumerik_state import State
@@ -54,7 +54,7 @@ class HolePositions(NamedTuple):
     bottom_z: float
     drilling_sign: float
 
-    def step_to(self, z: float, feed: float | None = None) -> CycleStep:
+    def make_step(self, z: float, feed: float | None = None) -> CycleStep:
         """Return a step to ``z``, which is a rapid if ``feed`` is None."""
         return CycleStep(self.x, z, feed)
 
@@ -77,7 +77,7 @@ def read_hole(cycle: CycleCall) -> HolePositions:
         )
         bottom = cycle.read_length_mm("DP")
         if cycle.read_length_mm("DPR") and abs(abs(bottom - reference) - cycle.read_length_mm("DPR")) > _SAME:
-            cycle.warn("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
+            cycle.log_warning("cycle-depth-both", "DP and DPR differ, so DP is used.", "Omit DP or DPR.")
     else:
         bottom = cycle.read_length_mm("DP")
         if cycle.has_argument("DPR"):
@@ -124,10 +124,10 @@ def run_drilling(cycle: CycleCall) -> Iterator[Block]:
     dwells = make_dwell_steps(read_dwell_s(cycle, "DTB"))
     return cycle.make_blocks(
         [
-            hole.step_to(hole.clearance_z),
-            hole.step_to(hole.bottom_z, feed),
+            hole.make_step(hole.clearance_z),
+            hole.make_step(hole.bottom_z, feed),
             *dwells,
-            hole.step_to(hole.retract_z),
+            hole.make_step(hole.retract_z),
         ]
     )
 
@@ -140,11 +140,11 @@ def run_boring(cycle: CycleCall) -> Iterator[Block]:
     hole = read_hole(cycle)
     into, out = cycle.check_feed_known(cycle.read_feed("FFR")), cycle.check_feed_known(cycle.read_feed("RFF"))
     steps = [
-        hole.step_to(hole.clearance_z),
-        hole.step_to(hole.bottom_z, into),
+        hole.make_step(hole.clearance_z),
+        hole.make_step(hole.bottom_z, into),
         *make_dwell_steps(read_dwell_s(cycle, "DTB")),
     ]
-    return cycle.make_blocks([*steps, hole.step_to(hole.clearance_z, out), hole.step_to(hole.retract_z)])
+    return cycle.make_blocks([*steps, hole.make_step(hole.clearance_z, out), hole.make_step(hole.retract_z)])
 
 
 def run_pecking(cycle: CycleCall) -> Iterator[Block]:
@@ -159,20 +159,20 @@ def run_pecking(cycle: CycleCall) -> Iterator[Block]:
     clears = cycle.read_machining_type("VARI", range(2)) == 1
     at_start, at_bottom = read_dwell_s(cycle, "DTS"), read_dwell_s(cycle, "DTB")
     back, ahead = cycle.read_size_mm("_VRT") or 1.0, cycle.read_size_mm("_DIS1")
-    steps, reached, first = [hole.step_to(hole.clearance_z)], hole.reference_z, True
+    steps, reached, first = [hole.make_step(hole.clearance_z)], hole.reference_z, True
     for depth in compute_peck_depths(cycle, hole):
         if clears and not first:
             short = reached - hole.drilling_sign * (ahead or min(back, abs(depth - reached)))
-            steps.append(hole.step_to(short))
-        steps += [hole.step_to(depth, feed * (factor if first else 1.0)), *make_dwell_steps(at_bottom)]
+            steps.append(hole.make_step(short))
+        steps += [hole.make_step(depth, feed * (factor if first else 1.0)), *make_dwell_steps(at_bottom)]
         first, reached = False, depth
         if abs(depth - hole.bottom_z) < _SAME:
             break
         if clears:
-            steps += [hole.step_to(hole.clearance_z), *make_dwell_steps(at_start)]
+            steps += [hole.make_step(hole.clearance_z), *make_dwell_steps(at_start)]
         else:
-            steps.append(hole.step_to(depth - hole.drilling_sign * back, feed))
-    return cycle.make_blocks([*steps, hole.step_to(hole.retract_z)])
+            steps.append(hole.make_step(depth - hole.drilling_sign * back, feed))
+    return cycle.make_blocks([*steps, hole.make_step(hole.retract_z)])
 
 
 def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
@@ -203,7 +203,7 @@ def compute_peck_depths(cycle: CycleCall, hole: HolePositions) -> list[float]:
     while reached < whole - _SAME:
         shorter = step * -less if less < 0.0 else step - less
         step = max(shorter, smallest or max(0.0, less)) if not halved else whole - reached
-        if step < 1e-3 or len(found) > MAX_PASSES:
+        if step < 1e-3 or len(found) > MAX_PASS_COUNT:
             raise cycle.make_parameter_error(
                 "DAM", "{name} makes the pecks too small", "Enter _MDEP, or reduce DAM."
             )
@@ -227,7 +227,7 @@ def _turning(cycle: CycleCall) -> list[CycleStep]:
         )
     modal, sign = cycle.state.modal, 1 if direction == 3.0 else -1
     hint = "Write G97 with S before this block."
-    cycle.require(modal.rpm and not modal.css, "speed-missing", "{call} needs S in rpm.", hint)
+    cycle.require_condition(modal.rpm and not modal.css, "speed-missing", "{call} needs S in rpm.", hint)
     return [] if modal.spindle == sign else [make_action_step(SpindleRun(sign * modal.rpm), sign)]
 
 
@@ -238,7 +238,7 @@ def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
     tool retracts at rapid.
     """
     hole, state = read_hole(cycle), cycle.state
-    check_can_position(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
+    check_spindle_positioning(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
     cycle.check_zero("RPO", "this lathe has no Y axis")
     angle = cycle.read_angle_deg("POSS", "{name} must be an angle from 0 to less than 360 degrees")
     aside, up = cycle.read_length_mm("RPA"), cycle.read_length_mm("RPAP")
@@ -247,9 +247,9 @@ def run_boring_with_liftoff(cycle: CycleCall) -> Iterator[Block]:
     steps = [*_steps_to_bottom(cycle, hole), *_steps_to_spindle_angle(cycle, hole, angle)]
     lifted = hole._replace(x=cycle.x + aside)
     steps += [
-        lifted.step_to(hole.bottom_z + up),
-        lifted.step_to(hole.retract_z),
-        hole.step_to(hole.retract_z),
+        lifted.make_step(hole.bottom_z + up),
+        lifted.make_step(hole.retract_z),
+        hole.make_step(hole.retract_z),
     ]
     return cycle.make_blocks(steps)
 
@@ -259,7 +259,7 @@ def _steps_to_bottom(cycle: CycleCall, hole: HolePositions) -> list[CycleStep]:
 
     The spindle runs in the direction SDIR.
     """
-    steps = [hole.step_to(hole.clearance_z), *_turning(cycle), hole.step_to(hole.bottom_z, _feed(cycle))]
+    steps = [hole.make_step(hole.clearance_z), *_turning(cycle), hole.make_step(hole.bottom_z, _feed(cycle))]
     return [*steps, *make_dwell_steps(read_dwell_s(cycle, "DTB"))]
 
 
@@ -267,7 +267,7 @@ def _steps_to_spindle_angle(cycle: CycleCall, hole: HolePositions, angle: float)
     """Return the steps that orient the spindle to an angle, by its drive or as the C axis."""
     if is_oriented_by_drive(cycle.state):
         return [make_action_step(SpindlePositioning(angle), 0)]
-    return make_spindle_lock_steps(cycle, hole.step_to(hole.bottom_z), angle)
+    return make_spindle_lock_steps(cycle, hole.make_step(hole.bottom_z), angle)
 
 
 def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float) -> list[CycleStep]:
@@ -275,7 +275,7 @@ def make_spindle_lock_steps(cycle: CycleCall, position: CycleStep, angle: float)
 
     The spindle is locked at the present position. The angle is in degrees.
     """
-    turn, speed = compute_shortest_turn(cycle.state, angle), cycle.state.setup.limits.max_axis_speeds[2]
+    turn, speed = compute_shortest_c_travel(cycle.state, angle), cycle.state.setup.limits.max_axis_speeds[2]
     turned = [position._replace(feed=speed, c_travel_deg=turn)] if turn else []
     return [make_action_step(SpindleLock(orient=False), 0), *turned]
 
@@ -287,7 +287,7 @@ def stop(cycle: CycleCall) -> Iterator[Block]:
     """
     hole = read_hole(cycle)
     rest = [make_action_step(SpindleStop(stands=True), 0), make_action_step(ProgramStop(optional=False))]
-    return cycle.make_blocks([*_steps_to_bottom(cycle, hole), *rest, hole.step_to(hole.retract_z)])
+    return cycle.make_blocks([*_steps_to_bottom(cycle, hole), *rest, hole.make_step(hole.retract_z)])
 
 
 HOLE_PATTERNS = frozenset({"HOLES1", "HOLES2"})

@@ -29,7 +29,7 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
     CycleStep,
     make_dwell_steps,
 )
-from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_edge_key
+from core.tool_edges import format_edge_name, get_edge_number, get_tool_number, make_row_number
 
 WRONG_GROOVE_WIDTH = 61602
 WRONG_GROOVE_FORM = 61603
@@ -101,12 +101,12 @@ def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     key, tools = state.modal.tool, state.setup.tools
     cycle.check_tool()
     number = cycle.read_whole_number("_DN", 0, 0, 9) or get_edge_number(key) + 1
-    other = make_edge_key(get_tool_number(key), number)
+    other = make_row_number(get_tool_number(key), number)
     if key not in tools and other not in tools:
         width = min(_USUAL_WIDTH, max_width)
         text = "{call} assumes a tool {width} mm wide because {key} is not set."
         hint = "Set both tool corners on the TOOL OFFSETS page (F8)."
-        cycle.warn("tool-width", text, hint, width=width, key=format_edge_name(key))
+        cycle.log_warning("tool-width", text, hint, width=width, key=format_edge_name(key))
         return width, False
     if key not in tools or other not in tools:
         name = format_edge_name(other)
@@ -118,7 +118,7 @@ def get_tool_width(cycle: CycleCall, max_width: float) -> tuple[float, bool]:
     corner_offset_mm = here.z - there.z
     text = "{key} and {other} are at the same position, so the tool has no width."
     hint = "Correct the offsets of the two tool corners."
-    cycle.require(
+    cycle.require_condition(
         abs(corner_offset_mm) >= _SAME,
         WRONG_GROOVE_WIDTH,
         text,

@@ -15,12 +15,12 @@ from typing import NamedTuple
 from core.geometry.contour_offset import RoughingArea, TrimError
 from core.geometry.lines_and_arcs import Arc, Element, Line, Point, shift_element
 from core.interpreter.shared.contour_passes import (
-    MAX_COMPARISONS,
-    MAX_ELEMENTS,
+    MAX_COMPARISON_COUNT,
+    MAX_ELEMENT_COUNT,
+    ContourClearanceError,
     ContourFrame,
     CycleMove,
     RoughingPlanner,
-    StartTooCloseError,
     make_contour_frame,
 )
 from core.interpreter.shared.contour_stage import make_element
@@ -35,7 +35,7 @@ from core.interpreter.sinumerik.cycles.cycle_parameters import (
 )
 from core.interpreter.sinumerik.flow.control_structures import Routine, find_label_index
 from core.interpreter.sinumerik.flow.variables import VariableScope
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import SinumerikCornerStage, make_corner
+from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import make_straight_block
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
 from core.interpreter.sinumerik.setup.modes_and_offsets import execute_modes
@@ -59,7 +59,7 @@ _END = frozenset({2, 17, 30})
 
 
 def find_contour_lines(
-    contour_name: str, active_routine: Routine, routine: Routine | None
+    contour_name: str, active_routine: Routine, contour_routine: Routine | None
 ) -> list[SourceLine] | None:
     """Return the lines of a contour with this name, or None if the name does not exist."""
     if ":" in contour_name:
@@ -75,7 +75,11 @@ def find_contour_lines(
         if start is None or end is None:
             return None
         return [active_routine.get_line(at) for at in range(start, end + 1)]
-    return None if routine is None else [routine.get_line(at) for at in routine.line_range]
+    return (
+        None
+        if contour_routine is None
+        else [contour_routine.get_line(at) for at in contour_routine.line_range]
+    )
 
 
 def read_contour(state: State, lines: Iterable[SourceLine]) -> list[Element]:
@@ -136,7 +140,7 @@ class _Reader:
                 self._state, statement
             )
             corner = make_corner(self._state, statement, block)
-            self._blocks += self._corners.accept(block, corner)
+            self._blocks += self._corners.accept_item(block, corner)
         return bool(_END & statement.m_words.keys())
 
     def _check(self, statement: Statement) -> None:
@@ -152,7 +156,7 @@ class _Reader:
 
     def elements(self) -> list[Element]:
         """Return all elements after the first move."""
-        self._blocks += self._corners.finish()
+        self._blocks += self._corners.flush_at_program_end()
         elements = [make_element(block) for block in self._blocks[1:] if block.moves]
         return [each for each in elements if each.length > _SAME]
 
@@ -208,11 +212,11 @@ def run_stock_removal(cycle: CycleCall, contour: list[Element]) -> Iterator[Bloc
     kind = read_machining_type(cycle)
     text = "{name} refers to a contour without lines or arcs"
     cycle.check_parameter(contour, "NPP", text, "Write the points of the contour.", WRONG_CONTOUR_DEFINITION)
-    if len(contour) > MAX_ELEMENTS:
+    if len(contour) > MAX_ELEMENT_COUNT:
         text = "{name} has {contour_count} elements; the maximum is {most_elements}"
         hint = "Split the contour into smaller parts."
         raise cycle.make_parameter_error(
-            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MAX_ELEMENTS:,}"
+            "NPP", text, hint, contour_count=f"{len(contour):,}", most_elements=f"{MAX_ELEMENT_COUNT:,}"
         )
     plan = _Plan(cycle, kind, contour)
     steps = plan.plan_approach()
@@ -256,7 +260,7 @@ class _Plan:
         """
         *_, last = contour = list(self._contour)
         contour[-1] = self._straight_out(last)
-        contour[0] = self._straight_out(contour[0].reversed()).reversed()
+        contour[0] = self._straight_out(contour[0].make_reversed()).make_reversed()
         return contour
 
     def _straight_out(self, element: Element) -> Element:
@@ -317,7 +321,7 @@ class _Plan:
         )
         text = "{name} would need {count} passes, which is too many"
         count = cycle.compute_pass_count(
-            area.max_depth, infeed, "MID", text, maximum=MAX_COMPARISONS // len(contour)
+            area.max_depth, infeed, "MID", text, maximum=MAX_COMPARISON_COUNT // len(contour)
         )
         rougher = RoughingPlanner(area, 1.0, self._off)
         rougher.add_roughing_passes(count)
@@ -337,7 +341,7 @@ class _Plan:
     def _run(self, rougher: RoughingPlanner, view: ContourFrame) -> list[CycleMove]:
         try:
             rougher.add_finishing_pass(is_reversed=view.is_reversed)
-        except StartTooCloseError:
+        except ContourClearanceError:
             text = "{name} specifies a contour that the tool cannot approach or leave with enough clearance"
             hint = "End the contour at a point where the tool can leave it."
             raise self._cycle.make_parameter_error("NPP", text, hint, 61607) from None
@@ -428,7 +432,7 @@ def _tool_nose(cycle: CycleCall) -> tuple[float, Point]:
     if not edge.quadrant:
         text = "the tool has no tip quadrant, so {call} ignores the nose radius on tapers and arcs."
         hint = "Enter the tip quadrant on the TOOL OFFSETS page (F8)."
-        cycle.warn("comp-no-quadrant", text, hint)
+        cycle.log_warning("comp-no-quadrant", text, hint)
         return 0.0, (0.0, 0.0)
     z, x = TIP_DIRECTIONS[edge.quadrant]
     return edge.nose_radius, (x * edge.nose_radius, z * edge.nose_radius)

@@ -30,7 +30,7 @@ from core.interpreter.sinumerik.cycles.thread_cycle import (
     get_coarse_lead,
 )
 from core.interpreter.sinumerik.motion.linear_moves import compute_travel, make_travel_block
-from core.interpreter.sinumerik.setup.spindle_and_dwell import check_spindle_is_c
+from core.interpreter.sinumerik.setup.spindle_and_dwell import check_spindle_c_axis
 from core.interpreter.sinumerik.sinumerik_state import MotionKind, State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 
@@ -67,7 +67,7 @@ def run_rigid_tapping(cycle: CycleCall) -> Iterator[Block]:
     Raises ProgramError for invalid parameters.
     """
     hole, state = read_hole(cycle), cycle.state
-    check_spindle_is_c(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
+    check_spindle_c_axis(state, lambda text, hint: cycle.make_call_error("spindle-position", text, hint))
     lead = read_tap_lead(cycle)
     check_lead_nonzero(cycle, lead, "PIT")
     into = _speed(cycle, "SST", state.modal.rpm)
@@ -77,12 +77,12 @@ def run_rigid_tapping(cycle: CycleCall) -> Iterator[Block]:
     cycle.check_parameter(rest == 5 or state.modal.rpm, "SDAC", text, "Write S before this block.")
     wanted = cycle.read_angle_deg("POSS", "{name} must be an angle from 0 to less than 360 degrees")
     steps = [
-        hole.step_to(hole.clearance_z),
-        *make_spindle_lock_steps(cycle, hole.step_to(hole.clearance_z), wanted),
+        hole.make_step(hole.clearance_z),
+        *make_spindle_lock_steps(cycle, hole.make_step(hole.clearance_z), wanted),
     ]
     steps += [
         *_tapping_steps(cycle, hole, lead, (into, out)),
-        hole.step_to(hole.retract_z),
+        hole.make_step(hole.retract_z),
         *_final_spindle_steps(cycle, rest),
     ]
     return cycle.make_blocks(steps)
@@ -112,7 +112,7 @@ def _speed(cycle: CycleCall, name: str, default: float) -> float:
             "{maximum} rpm."
         )
         hint = "Lower the speed."
-        cycle.warn("tap-speed", text, hint, name=name, value=value, maximum=most)
+        cycle.log_warning("tap-speed", text, hint, name=name, value=value, maximum=most)
     return min(value, most)
 
 
@@ -160,7 +160,7 @@ def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
     modal, sign = state.modal, state.modal.spindle
     text = "{call} needs the spindle to turn at a speed in rpm."
     hint = "Write G97 with S and M3 or M4 before this block."
-    cycle.require(sign and modal.rpm and not modal.css, NO_SPINDLE_DIRECTION, text, hint)
+    cycle.require_condition(sign and modal.rpm and not modal.css, NO_SPINDLE_DIRECTION, text, hint)
     by_feed = _uses_active_feed(cycle)
     back, rest = (
         cycle.read_whole_number("SDR", 0, 0, 5),
@@ -177,17 +177,17 @@ def run_compensating_tapping(cycle: CycleCall) -> Iterator[Block]:
     feed = (
         cycle.check_feed_known(modal.feed) if by_feed else lead if modal.per_rev else lead * modal.rpm / 60.0
     )
-    into, out = (hole.step_to(z, feed)._replace(is_tapping=True) for z in (hole.bottom_z, hole.clearance_z))
+    into, out = (hole.make_step(z, feed)._replace(is_tapping=True) for z in (hole.bottom_z, hole.clearance_z))
     deep = [
         into,
         *make_dwell_steps(read_dwell_s(cycle, "DTB")),
         make_action_step(SpindleRun(-sign * modal.rpm), -sign),
     ]
     steps = [
-        hole.step_to(hole.clearance_z),
+        hole.make_step(hole.clearance_z),
         *(step._replace(ends_in_hole=True) for step in deep),
         out,
-        hole.step_to(hole.retract_z),
+        hole.make_step(hole.retract_z),
     ]
     return cycle.make_blocks([*steps, *_final_spindle_steps(cycle, rest)])
 
@@ -213,7 +213,7 @@ def make_tap_block(state: State, statement: Statement) -> Block:
     """
     word = statement.g_words.get("motion")
     code = f"G{int(state.motion)}"
-    check_spindle_is_c(state, lambda text, hint: statement.make_error(word, "spindle-position", text, hint))
+    check_spindle_c_axis(state, lambda text, hint: statement.make_error(word, "spindle-position", text, hint))
     if not state.modal.c_locked:
         text = "{code} turns the spindle as the C axis, but the spindle is not locked as C."
         raise statement.make_error(
@@ -227,15 +227,17 @@ def make_tap_block(state: State, statement: Statement) -> Block:
     lead = statement.words.get("K")
     pitch = state.length(statement, lead) if lead is not None else state.tap_lead_mm
     text = "{code} needs the lead K."
-    statement.check(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
+    statement.check_condition(pitch, lead or word, "thread-lead-missing", text, "Write K.", code=code)
     state.tap_lead_mm = pitch
     travel = compute_travel(state, statement)
     stroke = travel.z - travel.z0
     text = "{code} does not move along Z."
-    statement.check(abs(stroke) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code)
+    statement.check_condition(
+        abs(stroke) >= _SAME, word, "thread-length", text, "Enter Z of the end point.", code=code
+    )
     rpm = state.modal.rpm
     text = "No spindle speed is programmed for {code}."
-    statement.check(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
+    statement.check_condition(rpm, word, "speed-missing", text, "Write S in the block.", code=code)
     rpm = min(rpm, state.setup.limits.c_max_rpm)
     # With G331, a positive lead turns in the direction of M3. With G332, the direction is reversed.
     sense = 1.0 if state.motion is MotionKind.TAP else -1.0

@@ -15,7 +15,7 @@ from core.geometry.lines_and_arcs import Point
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.cycles.cycle_parameters import (
     DEFAULT_RETRACT_MM,
-    MAX_PASSES,
+    MAX_PASS_COUNT,
     WRONG_MACHINING_TYPE,
     CycleCall,
     CycleStep,
@@ -76,8 +76,8 @@ def _depths(cycle: CycleCall, *, equal_chip: bool) -> tuple[float, ...]:
     """
     depth, left = cycle.read_positive_mm("TDEP"), cycle.read_size_mm("FAL")
     count, idle = (
-        cycle.read_whole_number("NRC", 1, 0, MAX_PASSES),
-        cycle.read_whole_number("NID", 0, 0, MAX_PASSES),
+        cycle.read_whole_number("NRC", 1, 0, MAX_PASS_COUNT),
+        cycle.read_whole_number("NID", 0, 0, MAX_PASS_COUNT),
     )
     text = "{name} is not less than TDEP, so no depth remains for roughing"
     cycle.check_parameter(left < depth, "FAL", text, "Reduce FAL.")
@@ -135,7 +135,7 @@ def _starts(cycle: CycleCall) -> tuple[float, int]:
     return cycle.read_angle_deg("NSP", "{name} must be a start angle from 0 to less than 360 degrees"), starts
 
 
-def run_thread(cycle: CycleCall) -> Iterator[Block]:
+def run_threading(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE97 or CYCLE99. Raises ProgramError before the first block."""
     lead, kind = _read_lead(cycle), _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0
@@ -159,7 +159,7 @@ def run_thread(cycle: CycleCall) -> Iterator[Block]:
     return _cut(cycle, passes, _start_delays(cycle, [lead]), out, clear, start, [((x_end, end), lead)])
 
 
-def run_thread_chain(cycle: CycleCall) -> Iterator[Block]:
+def run_chain_threading(cycle: CycleCall) -> Iterator[Block]:
     """Return the blocks of CYCLE98. Raises ProgramError before the first block."""
     kind = _kind(cycle)
     out = -1.0 if kind in {2, 4} else 1.0

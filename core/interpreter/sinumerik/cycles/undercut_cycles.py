@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from core.geometry.chamfer_and_rounding import make_rounding
 from core.geometry.contour_offset import GougeError, offset_known_contour
-from core.geometry.lines_and_arcs import Arc, Element, Line, Point, left_normal, shift_element
+from core.geometry.lines_and_arcs import Arc, Element, Line, Point, get_left_normal, shift_element
 from core.interpreter.shared.elementary_blocks import Block
 from core.interpreter.sinumerik.cycles.cycle_parameters import (
     DEFAULT_RETRACT_MM,
@@ -258,7 +258,7 @@ def read_position_signs(cycle: CycleCall, position_number: int) -> tuple[float, 
     """
     state = cycle.state
     text = "{call} needs an active tool with an offset."
-    cycle.require(state.modal.edge, 61000, text, "Write T and D before this block.")
+    cycle.require_condition(state.modal.edge, 61000, text, "Write T and D before this block.")
     quadrant = state.edge.quadrant
     if quadrant not in _SIGNS_BY_POSITION and (not position_number or state.edge.nose_radius):
         text = "the tip quadrant of the tool is {quadrant}, but an undercut needs a quadrant from 1 to 4."
@@ -318,7 +318,7 @@ def _nose(cycle: CycleCall, size: UndercutSize) -> float:
     nose = cycle.state.edge.nose_radius
     text = "the nose radius {nose} is larger than the radius {radius} of this undercut."
     hint = "Use a tool with a smaller nose radius."
-    cycle.require(
+    cycle.require_condition(
         nose <= size.corner_radius + _SAME,
         NOSE_RADIUS_TOO_LARGE,
         text,
@@ -349,7 +349,7 @@ def _tip_path(cycle: CycleCall, undercut_position: UndercutPosition, contour: li
     edge = cycle.state.edge
     if not edge.nose_radius:
         return contour
-    left = left_normal((0.0, -undercut_position.side_sign))[0] * undercut_position.outward_sign
+    left = get_left_normal((0.0, -undercut_position.side_sign))[0] * undercut_position.outward_sign
     try:
         offset_pieces = offset_known_contour(contour, edge.nose_radius if left > 0.0 else -edge.nose_radius)
     except GougeError as problem:

@@ -12,7 +12,7 @@ from core.interpreter.shared.checkpoint import CAxisMove, Checkpoint, PassStart,
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState
 from core.interpreter.sinumerik.flow.subprogram_flow import Flow
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import SinumerikCornerStage
+from core.interpreter.sinumerik.motion.chamfers_and_roundings import SinumerikCornerStage
 from core.interpreter.sinumerik.sinumerik_state import ZERO_SETTABLE_OFFSET, State, format_motion
 from core.language.diagnostics import Diagnostic, make_error_diagnostic
 from core.language.sinumerik.control_statements import ControlKeyword

@@ -128,34 +128,38 @@ def match_structures(lines: Iterable[LexedBlock]) -> dict[int, tuple[int, ...]]:
 
 
 def execute_control_line(
-    line: LexedBlock, jump: ControlStatement, state: State, program: Routine, index: int
+    line: LexedBlock, control_statement: ControlStatement, state: State, program: Routine, index: int
 ) -> int | None:
     """Execute a control statement, and return the index of the next line to execute.
 
     Returns None if execution continues with the following line. Raises ProgramError for an invalid
     statement.
     """
-    steering = jump.keyword
+    steering = control_statement.keyword
     if steering in _GOTO:
-        if jump.condition is None or _worth(line, jump, state, jump.condition):
-            return _target(line, jump, program, index)
+        if control_statement.condition is None or _worth(
+            line, control_statement, state, control_statement.condition
+        ):
+            return _target(line, control_statement, program, index)
         return (
             None
-            if jump.else_jump is None
-            else execute_control_line(line, jump.else_jump, state, program, index)
+            if control_statement.else_jump is None
+            else execute_control_line(line, control_statement.else_jump, state, program, index)
         )
     if steering is ControlKeyword.CASE:
-        return _case(line, jump, state, program, index)
+        return _case(line, control_statement, state, program, index)
     if steering is ControlKeyword.DEFINE:
-        _execute_def(line, jump, state)
+        _execute_def(line, control_statement, state)
     elif steering is ControlKeyword.MESSAGE:
-        state.set_modal(state.modal._replace(comment=_format_message(line, jump, state)))
+        state.set_modal(state.modal._replace(comment=_format_message(line, control_statement, state)))
     elif steering is ControlKeyword.ALARM:
-        number = _worth(line, jump, state, jump.condition)
+        number = _worth(line, control_statement, state, control_statement.condition)
         text = Message("the program itself triggers alarm {number}.", number=f"{number:g}")
-        raise line.make_error(jump.column, "program-alarm", text, "Check the preceding blocks for the cause.")
+        raise line.make_error(
+            control_statement.column, "program-alarm", text, "Check the preceding blocks for the cause."
+        )
     elif steering in _START_KEYWORDS or steering in _END_KEYWORDS or steering is ControlKeyword.ELSE:
-        return _structure(line, jump, state, program, program.map_structures()[index])
+        return _structure(line, control_statement, state, program, program.map_structures()[index])
     return None
 
 
@@ -215,7 +219,7 @@ def _execute_def(line: LexedBlock, jump: ControlStatement, state: State) -> None
             scope.strings[each.name] = each.text
             continue
         first = 0.0 if each.formula is None else _worth(line, jump, state, each.formula)
-        scope.define(each.name, first, _sizes(line, jump, state, each))
+        scope.define_variable(each.name, first, _sizes(line, jump, state, each))
         if each.values is not None:
             left = state.variables.assign_values(each.name, scope.list_elements(each.name)[0], each.values,
                                         lambda asked: _worth(line, jump, state, asked))  # fmt: skip
@@ -290,13 +294,13 @@ def _target(line: LexedBlock, jump: ControlStatement, program: Routine, index: i
 
 
 def find_label_index(
-    jump_keyword: ControlKeyword, target: str, program: Routine, start_index: int
+    jump_keyword: ControlKeyword, label: str, program: Routine, start_index: int
 ) -> int | None:
     """Return the index of the line with this label or block number.
 
     Returns None if the line does not exist in the jump's search direction.
     """
-    places = program.find_label_lines(target)
+    places = program.find_label_lines(label)
     next_hit = next((place for place in places if place > start_index), None)
     before = next((place for place in reversed(places) if place <= start_index), None)
     if jump_keyword is ControlKeyword.GOTO_BACK or (jump_keyword is ControlKeyword.GOTO and next_hit is None):

@@ -60,7 +60,7 @@ class SavedFunctions:
         """Return a copy of the active functions and frame."""
         return cls(state.modal, state.motion, state.plane, state.settable, state.programmed_frame)
 
-    def restore(self, state: State) -> None:
+    def restore_to(self, state: State) -> None:
         """Restore the G functions and the frame.
 
         F, S and M functions remain as the called program has set them.
@@ -158,7 +158,7 @@ class _ArgumentTransfer:
             )
             hint = "Use the array sizes given in the PROC line."
             raise line.make_error(argument.column, WRONG_ARRAY_SIZE, text, hint)
-        self.scope.define(parameter.name, 0.0, sizes)
+        self.scope.define_variable(parameter.name, 0.0, sizes)
         for inside, outside in zip(
             self.scope.list_elements(parameter.name), outer.list_elements(name), strict=True
         ):
@@ -237,9 +237,9 @@ class Flow(ControlFlow[_Call]):
             name: Routine(source, lines, third_axis_name=axis) for name, lines in found[1:] if name
         }
         for each in source.subprograms:
-            routine = Routine(each, split_sections(each)[0].lines, each.name, axis)
+            routine = Routine(each, split_sections(each)[0].line_range, each.name, axis)
             self._known.setdefault(derive_program_name(each), routine)
-        lines = found[0].lines
+        lines = found[0].line_range
         self._main = Routine(source, lines, third_axis_name=axis)
         super().__init__(_Call(self._main, lines.start, lines.stop, scope=state.variables.variable_scope))
         read = (source, *source.subprograms)
@@ -300,7 +300,7 @@ class Flow(ControlFlow[_Call]):
             for name, outer in call.references:
                 variables.set_value(outer, call.scope.numbers[name])
             if call.saved_functions is not None:
-                call.saved_functions.restore(self._state)
+                call.saved_functions.restore_to(self._state)
 
     def has_routine(self, name: str) -> bool:
         """Return whether a program with this name exists."""
@@ -339,17 +339,19 @@ class Flow(ControlFlow[_Call]):
         frame.remaining_passes, frame.is_modal = line.execution_count, is_modal or self.is_in_modal_call
         if heading is not None and heading.has_save:
             frame.saved_functions = SavedFunctions.from_state(self._state)
-        self.enter(frame)
+        self.enter_subprogram(frame)
         self._state.variables.variable_scope = scope
 
-    def execute_control_line(self, line: LexedBlock, jump: ControlStatement, state: State) -> None:
+    def execute_control_line(
+        self, line: LexedBlock, control_statement: ControlStatement, state: State
+    ) -> None:
         """Execute a line with a control statement. Raises ProgramError for an invalid statement."""
-        if jump.keyword in _REPEAT_KEYWORDS and jump.target:
-            self._begin_repeat(line, jump, state)
+        if control_statement.keyword in _REPEAT_KEYWORDS and control_statement.target:
+            self._begin_repeat(line, control_statement, state)
             return
         routine = self.active_routine
-        at = execute_control_line(line, jump, state, routine, self.next_index - 1)
-        if jump.keyword is ControlKeyword.RETURN:
+        at = execute_control_line(line, control_statement, state, routine, self.next_index - 1)
+        if control_statement.keyword is ControlKeyword.RETURN:
             self.end_subprogram()
         elif at is not None:
             back = at < self.next_index
@@ -364,7 +366,7 @@ class Flow(ControlFlow[_Call]):
                     "In the loop, change a variable that the condition uses; to make another part, use "
                     "Cycle Start instead."
                 )
-                raise line.make_error(jump.column, ENDLESS_LOOP_CODE, text, hint)
+                raise line.make_error(control_statement.column, ENDLESS_LOOP_CODE, text, hint)
 
     def _is_repeated_state(self) -> bool:
         """Return whether a backward jump occurs in the same state as an earlier jump.
@@ -444,7 +446,7 @@ def _reads_positions(source: ProgramSource) -> bool:
     return any("$AA_I" in line.upper() or "$P_EP" in line.upper() for line in source.lines)
 
 
-def ends_main_program(statement: Statement, *, is_in_subprogram: bool) -> bool:
+def is_main_program_end(statement: Statement, *, is_in_subprogram: bool) -> bool:
     """Return whether the block ends the whole program.
 
     In a subprogram, M2 and M30 act like M17.

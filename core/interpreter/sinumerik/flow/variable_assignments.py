@@ -25,7 +25,7 @@ def set_parameters(state: State, statement: Statement) -> None:
 
 def _no_place(state: State, statement: Statement, word: Word, name: str) -> ProgramError:
     if word.name in state.variables.variable_scope.array_dimensions:
-        return statement.make_error(word, *state.variables.describe_missing(word.name, name))
+        return statement.make_error(word, *state.variables.describe_missing_value(word.name, name))
     text = Message(
         "the name {name} is not defined: it is neither a word nor a variable of this program.", name=name
     )

@@ -33,7 +33,7 @@ class VariableScope:
     strings: dict[str, str] = field(default_factory=dict)
     array_dimensions: dict[str, tuple[int, ...]] = field(default_factory=dict)
 
-    def define(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
+    def define_variable(self, name: str, value: float, sizes: tuple[int, ...]) -> None:
         """Define a number, or with ``sizes`` an array in which all elements have this value."""
         if not sizes:
             self.numbers[name] = value
@@ -72,17 +72,21 @@ class Variables:
         name = format_variable_name(parameter.letters, parameter.number, compute_formula, make_error)
         found = (self.r_parameters if parameter.letters == "R" else self.variable_scope.numbers).get(name)
         if found is None:
-            raise make_error(*self.describe_missing(parameter.letters, name))
+            raise make_error(*self.describe_missing_value(parameter.letters, name))
         return found
 
     def assign_values(
-        self, letters: str, first_element: str, values: ValueList, compute_formula: Callable[[Formula], float]
+        self,
+        variable_name: str,
+        first_element: str,
+        values: ValueList,
+        compute_formula: Callable[[Formula], float],
     ) -> int:
         """Assign values to elements, starting at ``first_element``.
 
         Returns the number of surplus values.
         """
-        places = _r_places() if letters == "R" else self.variable_scope.list_elements(letters)
+        places = _r_places() if variable_name == "R" else self.variable_scope.list_elements(variable_name)
         places = places[places.index(first_element) :]
         formulas = list(values.formulas)
         if values.is_repeated:
@@ -111,7 +115,7 @@ class Variables:
             return self.r_parameters.get(f"R{int(name[1:])}", 0.0)
         return self.variable_scope.numbers.get(name, 0.0)
 
-    def describe_missing(self, letters: str, name: str) -> tuple[int | str, str, str]:
+    def describe_missing_value(self, letters: str, name: str) -> tuple[int | str, str, str]:
         """Return the code, text and hint of the error for a variable that does not contain a number."""
         if name in self.variable_scope.strings:
             return (

@@ -50,7 +50,7 @@ class AxisTravel(NamedTuple):
         return hypot(self.x - self.x0, self.z - self.z0)
 
     @property
-    def c_travel(self) -> float:
+    def c_travel_deg(self) -> float:
         """Return the signed travel of C in degrees."""
         return self.c - self.c0
 
@@ -59,19 +59,19 @@ class AxisTravel(NamedTuple):
         """Return X (as a radius) and Z of the start in the program frame, in mm."""
         return self.frame.invert_distance(self.x0 - self.offset_x, self.z0 - self.offset_z)
 
-    def to_machine(self, x: float, z: float) -> tuple[float, float]:
+    def convert_to_machine_point(self, x: float, z: float) -> tuple[float, float]:
         """Return machine X and Z of a program point."""
         x, z = self.frame.transform_distance(x, z)
         return x + self.offset_x, z + self.offset_z
 
-    def compute_rapid_rate(self, speeds: tuple[float, float, float]) -> float:
+    def compute_rapid_rate(self, max_axis_speeds: tuple[float, float, float]) -> float:
         """Return the rapid rate along the path in mm/s, or in degrees/s if only C moves.
 
-        ``speeds`` are the maximum speeds of X, Z and C. The slowest axis moves at its maximum speed.
+        ``max_axis_speeds`` are the maximum speeds of X, Z and C. The slowest axis moves at its maximum speed.
         """
-        travels = (self.x - self.x0, self.z - self.z0, self.c_travel)
-        time = max(abs(travel) / speed for travel, speed in zip(travels, speeds, strict=True))
-        return (self.length_mm or abs(self.c_travel)) / time if time else min(speeds)
+        travels = (self.x - self.x0, self.z - self.z0, self.c_travel_deg)
+        time = max(abs(travel) / speed for travel, speed in zip(travels, max_axis_speeds, strict=True))
+        return (self.length_mm or abs(self.c_travel_deg)) / time if time else min(max_axis_speeds)
 
 
 def compute_travel(state: State, statement: Statement) -> AxisTravel:
@@ -82,8 +82,8 @@ def compute_travel(state: State, statement: Statement) -> AxisTravel:
     if SUPPRESSION_GROUP in statement.g_words:
         frame, dx, dz = (
             IDENTITY_FRAME,
-            modal.drawing_zero_x - modal.settable_x,
-            modal.drawing_zero_z - modal.settable_z,
+            modal.drawing_zero_x - modal.zero_offset_x,
+            modal.drawing_zero_z - modal.zero_offset_z,
         )
         modal = modal._replace(offset_c=0.0)
     still = AxisTravel(state.x, state.z, state.c, state.x, state.z, state.c, modal, dx, dz, frame)
@@ -97,14 +97,14 @@ def _ends(state: State, statement: Statement, start_travel: AxisTravel) -> tuple
     """Return machine X and Z of the end point."""
     words = statement.words
     if "RP" in words or "AP" in words:
-        return start_travel.to_machine(*_polar_end(state, statement))
+        return start_travel.convert_to_machine_point(*_polar_end(state, statement))
     begun = start_travel.program_start
     x, z = _linear_end(state, statement, "X", begun[0]), _linear_end(state, statement, "Z", begun[1])
     if "ANG" in words:
         x, z = _inclined(state, statement, begun, x, z)
     if x is None and z is None:
         return start_travel.x, start_travel.z
-    there = start_travel.to_machine(begun[0] if x is None else x, begun[1] if z is None else z)
+    there = start_travel.convert_to_machine_point(begun[0] if x is None else x, begun[1] if z is None else z)
     if not start_travel.frame.is_shift_only:
         return there
     return (start_travel.x if x is None else there[0]), (start_travel.z if z is None else there[1])
@@ -158,7 +158,7 @@ def _polar_end(state: State, statement: Statement) -> tuple[float, float]:
     far += last[0] if radius is not None and radius.position_form is PositionForm.IC else 0.0
     turn += last[1] if angle is not None and angle.position_form is PositionForm.IC else 0.0
     text = "The resulting RP is less than 0."
-    statement.check(far >= 0.0, radius, "not-positive", text, "Correct the value.")
+    statement.check_condition(far >= 0.0, radius, "not-positive", text, "Correct the value.")
     state.last_polar_point = far, turn
     state.moved_by_tool.clear()
     return state.pole[0] + far * sin(radians(turn)), state.pole[1] + far * cos(radians(turn))
@@ -189,11 +189,15 @@ def _inclined(
     angle = radians(state.number(statement, word))
     if x is None and z is not None:
         text = "this straight line never reaches the programmed Z."
-        statement.check(abs(cos(angle)) >= _STEEP, word, "angle-none", text, "Write X together with ANG.")
+        statement.check_condition(
+            abs(cos(angle)) >= _STEEP, word, "angle-none", text, "Write X together with ANG."
+        )
         return start[0] + (z - start[1]) * tan(angle), z
     assert x is not None
     text = "this straight line never reaches the programmed X."
-    statement.check(abs(sin(angle)) >= _STEEP, word, "angle-none", text, "Write Z together with ANG.")
+    statement.check_condition(
+        abs(sin(angle)) >= _STEEP, word, "angle-none", text, "Write Z together with ANG."
+    )
     return x, start[1] + (x - start[0]) / tan(angle)
 
 
@@ -206,7 +210,7 @@ def _turn(state: State, statement: Statement, modal: ModalState) -> float:
 
 
 def compute_c_travel(
-    state: State, statement: Statement, word: Word, form: PositionForm, start_angle: float
+    state: State, statement: Statement, word: Word, position_form: PositionForm, start_angle: float
 ) -> float:
     """Return the signed travel of C from ``start_angle`` to the target of a word.
 
@@ -216,8 +220,8 @@ def compute_c_travel(
     limits = state.setup.limits
     try:
         if limits.is_c_modulo:
-            return third_axis.compute_modulo_travel(form, value, start_angle)
-        travel = third_axis.compute_linear_travel(form, value, start_angle)
+            return third_axis.compute_modulo_travel(position_form, value, start_angle)
+        travel = third_axis.compute_linear_travel(position_form, value, start_angle)
         third_axis.check_axis_range(
             state.c + travel, limits.c_travel_range if limits.is_c_linear else third_axis.NON_MODULO_RANGE
         )
@@ -269,10 +273,10 @@ def make_straight_block(state: State, statement: Statement) -> Block:
     travel = compute_travel(state, statement)
     if state.motion is MotionKind.RAPID:
         return make_rapid_block(state, statement, travel)
-    kind = BlockKind.ROTATE if travel.c_travel and not travel.length_mm else BlockKind.FEED
+    kind = BlockKind.ROTATE if travel.c_travel_deg and not travel.length_mm else BlockKind.FEED
     offset = travel.offset_x
     degrees = kind is BlockKind.ROTATE and not state.modal.is_c_linear
-    feed = check_block_feed(state, statement, travel.x0 - offset, travel.x - offset, in_degrees=degrees)
+    feed = check_block_feed(state, statement, travel.x0 - offset, travel.x - offset, is_in_degrees=degrees)
     return make_travel_block(state, statement, travel, kind, feed)
 
 

@@ -17,9 +17,9 @@ from core.geometry.lines_and_arcs import (
     Element,
     Line,
     Point,
-    min_distance,
-    tangent_point,
-    turn_angle,
+    compute_min_distance,
+    compute_turn_angle,
+    find_tangent_point,
 )
 from core.interpreter.shared.actions import ProgramEnd, ToolChange
 from core.interpreter.shared.contour_stage import (
@@ -61,11 +61,11 @@ class CompensationStage:
         """Return whether a contour is active, so that no other pass can start here."""
         return self._contour is not None
 
-    def discard(self) -> None:
+    def discard_contour(self) -> None:
         """Discard the buffered contour after an error."""
         self._contour = None
 
-    def accept(self, block: Block) -> Iterator[Block]:
+    def accept_block(self, block: Block) -> Iterator[Block]:
         """Accept a block, and yield the blocks that later blocks cannot change.
 
         Raises ProgramError if compensation is not possible.
@@ -85,7 +85,7 @@ class CompensationStage:
         else:
             self._add_move(contour, block)
 
-    def finish(self) -> Iterator[Block]:
+    def check_program_end(self) -> Iterator[Block]:
         """Process the end of the program. Raises ProgramError if a contour is unfinished."""
         contour, self._contour = self._contour, None
         if contour is not None:
@@ -178,7 +178,7 @@ class CompensationStage:
         return block.c != block.c0 and not self._in_plane
 
     def _warn(self, block: Block, code: str, text: str, hint: str) -> None:
-        self._log.warn(block.line, 0, code, f"channel 1 block in line {block.line}: {text}", hint)
+        self._log.add_warning(block.line, 0, code, f"channel 1 block in line {block.line}: {text}", hint)
 
 
 class _ContourEnd(NamedTuple):
@@ -229,13 +229,13 @@ class _Contour(ContourStage):
         """
         if not isinstance(element, Arc):
             return [element]
-        angle = turn_angle(element.start_direction, element.end_direction)
-        sharp = abs(element.sweep) > _MAX_CORNER_TURN_RAD
+        angle = compute_turn_angle(element.start_direction, element.end_direction)
+        sharp = abs(element.sweep_rad) > _MAX_CORNER_TURN_RAD
         if block.kind is BlockKind.RAPID and sharp:
-            middle = element.point_at(element.length / 2.0)
+            middle = element.get_point(element.length / 2.0)
             halves = (
-                element.section_between(element.start, middle),
-                element.section_between(middle, element.end),
+                element.cut_section(element.start, middle),
+                element.cut_section(middle, element.end),
             )
             return [each for half in halves for each in self._corner(block, half)]
         if sharp or (self.has_rounded_corners and block.kind is not BlockKind.RAPID):
@@ -255,7 +255,7 @@ class _Contour(ContourStage):
         last = self._elements[-1]
         at = self._centre((block.x, block.z))
         back = self._path_to_end(_ContourEnd("departure", block, at, start, last.end, self._elements[::-1]))
-        return [element.reversed() for element in reversed(back)]
+        return [element.make_reversed() for element in reversed(back)]
 
     def _path_to_end(self, end: _ContourEnd) -> list[Element]:
         """Return a straight path to the contour, or a path around its end if necessary.
@@ -284,7 +284,7 @@ class _Contour(ContourStage):
             )
         around = self._tangent_arc(end)
         straight = Line(end.nose_start, around.start)
-        if any(min_distance(straight, each) < radius - _CONTACT_TOLERANCE_MM for each in end.contour):
+        if any(compute_min_distance(straight, each) < radius - _CONTACT_TOLERANCE_MM for each in end.contour):
             raise _fault(end.block, "comp-gouge", text, "Choose another point for this move.")
         detour = [straight, *self._corner(end.block, around)]
         return [element for element in detour if element.length > SAME_POINT_TOLERANCE_MM]
@@ -293,7 +293,7 @@ class _Contour(ContourStage):
         """Return the arc about the end of the contour that is tangent to the straight approach."""
         # An approach with the arc center on its right is clockwise. A departure is calculated in reverse.
         clockwise = (self.left_offset_mm < 0.0) is (end.name == "departure")
-        touch = tangent_point(end.nose_start, end.corner, self.nose_radius_mm, clockwise=clockwise)
+        touch = find_tangent_point(end.nose_start, end.corner, self.nose_radius_mm, is_clockwise=clockwise)
         return Arc(touch, end.nose_end, end.corner, clockwise=clockwise)
 
     def _centre(self, tip: Point) -> Point:

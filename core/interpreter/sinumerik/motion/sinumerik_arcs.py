@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 from math import atan2, cos, dist, hypot, radians, sin, tan
 
-from core.geometry.lines_and_arcs import Point, center_from_radius
+from core.geometry.lines_and_arcs import Point, find_arc_center
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.sinumerik.motion.linear_moves import (
     MIN_PATH_MM,
@@ -100,7 +100,7 @@ def _arc_by_point(
         x = value / (2.0 if halved else 1.0) + (begun[0] if relative else 0.0)
     if "K1" in words:
         z = state.length(statement, words["K1"]) + (begun[1] if relative else 0.0)
-    a, b, c = (travel.x0, travel.z0), travel.to_machine(x, z), (travel.x, travel.z)
+    a, b, c = (travel.x0, travel.z0), travel.convert_to_machine_point(x, z), (travel.x, travel.z)
     across = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     if abs(across) < MIN_PATH_MM * max(dist(a, b), dist(a, c), MIN_PATH_MM):
         text = (
@@ -208,7 +208,7 @@ def _center_by_radius(state: State, statement: Statement, travel: AxisTravel, cl
         hint = "Correct CR or the end point."
         raise statement.make_error(word, "arc-radius", text, hint, word=word.text, chord=f"{chord:.4f}")
     side = clockwise if radius > 0 else not clockwise
-    return center_from_radius((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), clockwise=side)
+    return find_arc_center((travel.x0, travel.z0), (travel.x, travel.z), abs(radius), is_clockwise=side)
 
 
 def _center_by_angle(state: State, statement: Statement, travel: AxisTravel, clockwise: bool) -> Point:

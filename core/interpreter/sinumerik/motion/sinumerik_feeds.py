@@ -56,7 +56,7 @@ def convert_feed(state: State, statement: Statement, word: Word) -> float:
 
 
 def check_block_feed(
-    state: State, statement: Statement, x0: float, x1: float, *, in_degrees: bool = False
+    state: State, statement: Statement, x0: float, x1: float, *, is_in_degrees: bool = False
 ) -> float:
     """Return the feed of a block from radius ``x0`` to ``x1``.
 
@@ -86,7 +86,7 @@ def check_block_feed(
         hint = "Start the spindle with S and M3 or M4, or use G94."
         raise statement.make_error(_first_axis_word(statement), "g95-spindle-stopped", text, hint)
     feed *= abs(state.live_rpm) / 60.0 if by_tool else 1.0
-    return feed * state.override / (MM_PER_INCH if in_degrees and state.feed_in_inches else 1.0)
+    return feed * state.override / (MM_PER_INCH if is_in_degrees and state.feed_in_inches else 1.0)
 
 
 def _first_axis_word(statement: Statement) -> Word | None:

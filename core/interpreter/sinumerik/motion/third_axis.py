@@ -11,8 +11,8 @@ from math import inf
 from core.language.sinumerik.sinumerik_words import PositionForm
 from core.message import CodedError, Message
 
-FULL_TURN_DEG = 360.0
-NON_MODULO_RANGE = (-FULL_TURN_DEG, FULL_TURN_DEG)
+FULL_REVOLUTION_DEG = 360.0
+NON_MODULO_RANGE = (-FULL_REVOLUTION_DEG, FULL_REVOLUTION_DEG)
 """Ends of a C that does not wrap."""
 
 ROUNDING_TOLERANCE = 1e-9
@@ -40,8 +40,8 @@ def wrap_angle(angle: float) -> float:
 
     An angle that differs from 360 only by rounding becomes 0.
     """
-    rest = angle % FULL_TURN_DEG
-    return 0.0 if FULL_TURN_DEG - rest <= ROUNDING_TOLERANCE else rest
+    rest = angle % FULL_REVOLUTION_DEG
+    return 0.0 if FULL_REVOLUTION_DEG - rest <= ROUNDING_TOLERANCE else rest
 
 
 def compute_modulo_travel(form: PositionForm, value: float, position: float) -> float:
@@ -52,7 +52,7 @@ def compute_modulo_travel(form: PositionForm, value: float, position: float) -> 
     """
     if form is PositionForm.IC:
         return value
-    if not 0.0 <= value < FULL_TURN_DEG:
+    if not 0.0 <= value < FULL_REVOLUTION_DEG:
         raise TargetError(
             WRONG_MODULO_POSITION,
             Message(
@@ -70,8 +70,8 @@ def compute_modulo_travel(form: PositionForm, value: float, position: float) -> 
     if form is PositionForm.ACP:
         return travel
     if form is PositionForm.ACN:
-        return travel - FULL_TURN_DEG
-    return travel if travel <= FULL_TURN_DEG / 2 + ROUNDING_TOLERANCE else travel - FULL_TURN_DEG
+        return travel - FULL_REVOLUTION_DEG
+    return travel if travel <= FULL_REVOLUTION_DEG / 2 + ROUNDING_TOLERANCE else travel - FULL_REVOLUTION_DEG
 
 
 def compute_linear_travel(form: PositionForm, value: float, position: float) -> float:
@@ -84,13 +84,13 @@ def compute_linear_travel(form: PositionForm, value: float, position: float) -> 
     return value if form is PositionForm.IC else _unless_noise(value - position)
 
 
-def check_axis_range(end: float, ends: tuple[float, float] | None = NON_MODULO_RANGE) -> None:
+def check_axis_range(end_position: float, axis_range: tuple[float, float] | None = NON_MODULO_RANGE) -> None:
     """Raise TargetError if the end position is outside the range of the axis in machine coordinates."""
-    low, high = ends or (-inf, inf)
-    if not low - ROUNDING_TOLERANCE <= end <= high + ROUNDING_TOLERANCE:
+    low, high = axis_range or (-inf, inf)
+    if not low - ROUNDING_TOLERANCE <= end_position <= high + ROUNDING_TOLERANCE:
         text = Message(
             "the end point {end} is outside the machine range of {low} to {high}",
-            end=f"{end:g}",
+            end=f"{end_position:g}",
             low=f"{low:g}",
             high=f"{high:+g}",
         )

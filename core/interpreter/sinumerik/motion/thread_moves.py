@@ -43,9 +43,9 @@ def generate_thread_blocks(state: State, statement: Statement) -> Iterator[Block
                 word, "word-unused", text, hint, word=word.text, motion=int(state.motion)
             )
     travel = compute_travel(state, statement)
-    if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel:
+    if abs(travel.z - travel.z0) < MIN_PATH_MM or travel.c_travel_deg:
         text = "a thread is cut along Z in sync with the spindle, but this block does not move along Z."
-        if travel.c_travel:
+        if travel.c_travel_deg:
             text = "C cannot turn while a thread is cut."
         raise _refused(statement, "thread-length", text, "Enter Z of the end point and K.")
     lead = _lead(state, statement, travel)
@@ -74,7 +74,7 @@ def _growth(state: State, statement: Statement) -> float:
         value = state.length(statement, word)
         text = "{word}: the lead change must be greater than 0."
         hint = "Use G34 to increase the lead and G35 to decrease it."
-        statement.check(value > 0.0, word, "not-positive", text, hint, word=word.text)
+        statement.check_condition(value > 0.0, word, "not-positive", text, hint, word=word.text)
         state.lead_change = value
     if not state.lead_change:
         text = "G{motion} needs F, the lead change per revolution."
@@ -120,11 +120,13 @@ def _start_angle(
         return None
     text = "{word} is allowed only in the first block of a thread chain."
     hint = "Write this word in the first block of the thread chain."
-    statement.check(not state.threads, word, "word-unused", text, hint, word=word.text)
+    statement.check_condition(not state.threads, word, "word-unused", text, hint, word=word.text)
     state.start_revolutions = turns = angle / 360.0
     far = (lead - 0.5 * growth * turns) * turns
     text = "at this start point, the lead has already decreased to 0."
-    statement.check(lead - growth * turns >= _MIN_LEAD, word, "thread-lead-missing", text, "Lower F.")
+    statement.check_condition(
+        lead - growth * turns >= _MIN_LEAD, word, "thread-lead-missing", text, "Lower F."
+    )
     share = far / abs(travel.z - travel.z0)
     x, z = (a - (b - a) * share for a, b in ((travel.x0, travel.x), (travel.z0, travel.z)))
     return make_rapid_block(state, statement, travel._replace(x=x, z=z))
@@ -150,12 +152,14 @@ def _lead(state: State, statement: Statement, travel: AxisTravel) -> float:
     assert word is not None
     value = state.length(statement, word)
     text = "{word}: a lead must be greater than 0."
-    statement.check(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
+    statement.check_condition(value > 0.0, word, "not-positive", text, "Correct the value.", word=word.text)
     if along is not None:
         return value
     dx = abs(travel.x - travel.x0)
     text = "{word} is the lead along X, but X does not move."
-    statement.check(dx >= MIN_PATH_MM, word, "thread-lead-missing", text, "Write K.", word=word.text)
+    statement.check_condition(
+        dx >= MIN_PATH_MM, word, "thread-lead-missing", text, "Write K.", word=word.text
+    )
     return value * abs(travel.z - travel.z0) / dx
 
 
@@ -169,7 +173,7 @@ def check_thread_spindle(state: State, statement: Statement, lead: float) -> Non
         text = "G96 is active, but a thread needs the same spindle speed from the first pass to the last."
         word = statement.g_words.get(FEED_TYPE_GROUP) or statement.g_words.get(MOTION_GROUP)
         raise statement.make_error(word, "thread-under-css", text, "Write G97 with S before this block.")
-    speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed
+    speed, most = lead * abs(state.rpm) / 60.0, state.setup.limits.max_feed_mm_s
     if speed > most * _ROUNDING:
         shown, limit = speed * 60.0, most * 60.0
         raise _refused(

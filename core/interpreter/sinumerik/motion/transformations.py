@@ -48,7 +48,9 @@ def switch_transformation(state: State, log: DiagnosticLog, statement: Statement
     if state.modal.diameter and word.name == "TRANSMIT" and "DIAMON" not in state.told:
         state.told.add("DIAMON")
         text = "DIAMON is active: in TRANSMIT, X is a diameter, but Y is not."
-        log.add(statement.make_warning(word, "transmit-diameter", text, "Write DIAMOF before this block."))
+        log.add_finding(
+            statement.make_warning(word, "transmit-diameter", text, "Write DIAMOF before this block.")
+        )
     state.transformation = ActiveTransformation(state, log, frame)
 
 
@@ -75,7 +77,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
         raise statement.make_error(
             word, TRANSFORMATION_MISSING, text, "Program the part with the Y axis of this machine."
         )
-    if not limits.c_enabled:
+    if not limits.is_c_enabled:
         text = Message("{word} rotates the part with C, but this machine has no third axis.", word=word.text)
         raise statement.make_error(
             word, TRANSFORMATION_MISSING, text, "Select a machine file that has a C axis."
@@ -90,7 +92,7 @@ def _check_machine(state: State, statement: Statement, word: Word) -> None:
     if modal.spindle:
         text = Message("{word}: the spindle is turning, but it must be locked as the C axis.", word=word.text)
         raise statement.make_error(word, "transformation", text, "Write M5 or SPOS=0 before this block.")
-    if modal.settable_x:
+    if modal.zero_offset_x:
         text = Message(
             "{word}: G{settable} shifts X, but the part rotates about X0.",
             word=word.text,

@@ -17,12 +17,12 @@ import numpy as np
 
 from core.geometry.virtual_mill import FacePlane, MillPoint, PlaneMove, SidePlane
 from core.interpreter.shared.actions import ProgramEnd
-from core.interpreter.shared.c_turn_at_centerline import check_centerline_turn
+from core.interpreter.shared.centerline_rotation import needs_centerline_rotation
 from core.interpreter.shared.diagnostic_log import DiagnosticLog
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.interpreter.shared.job_setup import ToolOffset
 from core.interpreter.shared.modal_state import ModalState, VirtualMill
-from core.interpreter.sinumerik.motion.chamfers_and_rounds import Corner, SinumerikCornerStage, make_corner
+from core.interpreter.sinumerik.motion.chamfers_and_roundings import Corner, SinumerikCornerStage, make_corner
 from core.interpreter.sinumerik.motion.linear_moves import AxisTravel, make_straight_block, make_travel_block
 from core.interpreter.sinumerik.motion.radius_compensation import CompensationStage
 from core.interpreter.sinumerik.motion.sinumerik_arcs import make_arc_block
@@ -108,7 +108,7 @@ class ActiveTransformation:
         state, modal = self._state, self._state.modal
         self._offset = modal.drawing_zero_x, modal.drawing_zero_z
         x, z, c = state.x - modal.drawing_zero_x, state.z - modal.drawing_zero_z, state.c - modal.offset_c
-        (at,) = self._frame.to_mill(np.array([[x, z, c]])).tolist()
+        (at,) = self._frame.convert_to_mill(np.array([[x, z, c]])).tolist()
         self._at = at[0], at[1], at[2]
         self._theta = radians(self._frame.c_start_deg - c)
         self._plane.z, self._plane.x, self._depth = _to_plane(self._frame, self._at)
@@ -188,8 +188,8 @@ class ActiveTransformation:
             self._state.modal._replace(
                 tool_x=0.0,
                 tool_z=0.0,
-                settable_x=0.0,
-                settable_z=0.0,
+                zero_offset_x=0.0,
+                zero_offset_z=0.0,
                 zero_x=frame.shift_x,
                 zero_z=frame.shift_z,
                 offset_c=0.0,
@@ -270,7 +270,7 @@ class ActiveTransformation:
         self._follow_state()
         state = self._plane
         z, ordinate = (y, x) if not self.has_z_depth else (x, y)
-        there = self._still().to_machine(ordinate, z)
+        there = self._still().convert_to_machine_point(ordinate, z)
         travel = self._still()._replace(x=there[0], z=there[1])
         made = make_travel_block(state, statement, travel, BlockKind.RAPID, 0.0)
         made.text, made.c0, made.c = text, self._depth, self._depth
@@ -341,37 +341,37 @@ class ActiveTransformation:
             return None
         return make_corner(self._plane, self._statement, block)
 
-    def accept(self, block: Block, corner: Corner | None) -> Iterator[Block]:
+    def accept_block(self, block: Block, corner: Corner | None) -> Iterator[Block]:
         """Accept a block, and yield the lathe blocks that later blocks cannot change.
 
         Raises ProgramError if a corner or the compensation is not possible.
         """
-        for cut in self._corners.accept(block, corner):
-            for compensated_block in self._compensation.accept(cut):
+        for cut in self._corners.accept_item(block, corner):
+            for compensated_block in self._compensation.accept_block(cut):
                 yield from self._to_lathe_blocks(compensated_block)
 
-    def flush(self) -> Iterator[Block]:
+    def flush_corner(self) -> Iterator[Block]:
         """Yield the buffered blocks if no move follows their corner.
 
         Raises ProgramError if the corner needs a following move.
         """
-        for cut in self._corners.finish():
-            for compensated_block in self._compensation.accept(cut):
+        for cut in self._corners.flush_at_program_end():
+            for compensated_block in self._compensation.accept_block(cut):
                 yield from self._to_lathe_blocks(compensated_block)
 
-    def finish(self) -> Iterator[Block]:
+    def flush_at_program_end(self) -> Iterator[Block]:
         """Yield the remaining blocks at the end.
 
         Raises ProgramError if a corner or a contour is unfinished.
         """
-        yield from self.flush()
-        for compensated_block in self._compensation.finish():
+        yield from self.flush_corner()
+        for compensated_block in self._compensation.check_program_end():
             yield from self._to_lathe_blocks(compensated_block)
 
-    def discard(self) -> None:
+    def discard_blocks(self) -> None:
         """Discard buffered blocks after an error."""
-        self._corners.discard()
-        self._compensation.discard()
+        self._corners.discard_move()
+        self._compensation.discard_contour()
 
     def _to_lathe_blocks(self, block: Block) -> Iterator[Block]:
         """Yield the lathe blocks of one block of the plane."""
@@ -394,8 +394,8 @@ class ActiveTransformation:
 
     def _turn_at_axis(self, block: Block, part: PlaneMove) -> Iterator[Block]:
         """Yield a rotation of C if the tool is on the axis, until the path leads outward along X."""
-        state, turn = self._state, replace(part, start_angle=self._theta).find_start_rotation()
-        if not check_centerline_turn(self._log, block.line, turn):
+        state, turn = self._state, replace(part, start_angle_rad=self._theta).find_start_rotation()
+        if not needs_centerline_rotation(self._log, block.line, turn):
             return
         x, z, c = self._to_lathe(self._at)
         self._theta += turn
@@ -406,13 +406,13 @@ class ActiveTransformation:
         )  # fmt: skip
 
     def _made(self, block: Block, part: PlaneMove) -> Block:
-        part = replace(part, start_angle=self._theta)
+        part = replace(part, start_angle_rad=self._theta)
         x0, z0, c0 = self._to_lathe(self._at)
         both = np.array([0.0, 1.0])
         if isinstance(self._frame, FacePlane):
-            self._theta = float(part.polar_angles(part.mill_points(both), both)[1])
+            self._theta = float(part.compute_polar_angles(part.compute_mill_points(both), both)[1])
         else:
-            self._theta = part.end[1] * 2.0 / self._frame.diameter
+            self._theta = part.end[1] * 2.0 / self._frame.diameter_mm
         self._at = part.end
         x, z, c = self._to_lathe(part.end)
         self._state.c = c + self._state.modal.offset_c
@@ -443,10 +443,17 @@ class ActiveTransformation:
         own = self._state.modal
         ends = isinstance(block.action, ProgramEnd)
         modal = block.modal._replace(
-            tool_x=own.tool_x, tool_z=own.tool_z, settable_x=own.settable_x, settable_z=own.settable_z,
-            zero_x=0.0, zero_z=0.0, offset_c=own.offset_c, diameter=own.diameter, c_locked=True,
+            tool_x=own.tool_x,
+            tool_z=own.tool_z,
+            zero_offset_x=own.zero_offset_x,
+            zero_offset_z=own.zero_offset_z,
+            zero_x=0.0,
+            zero_z=0.0,
+            offset_c=own.offset_c,
+            diameter=own.diameter,
+            c_locked=True,
             mill=None if ends else VirtualMill(self._frame, *self._at, self._theta, False),
-        )  # fmt: skip
+        )
         return _Zero(offset_x=self._offset[0], offset_z=self._offset[1], modal=modal)
 
 

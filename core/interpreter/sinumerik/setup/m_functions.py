@@ -11,7 +11,7 @@ from core.interpreter.shared.machine_requirements import (
     MachineRequirement,
     format_binding_lines,
 )
-from core.interpreter.sinumerik.setup.modes_and_offsets import note_ineffective
+from core.interpreter.sinumerik.setup.modes_and_offsets import note_ineffective_word
 from core.interpreter.sinumerik.sinumerik_state import State
 from core.interpreter.sinumerik.sinumerik_statement import Statement
 from core.language.diagnostics import ProgramError
@@ -35,7 +35,7 @@ def check_m_functions(
     limits = state.setup.limits
     for code, word in statement.m_words.items():
         if code in limits.ignored_m_codes:
-            note_ineffective(
+            note_ineffective_word(
                 state,
                 statement,
                 word,
@@ -43,7 +43,7 @@ def check_m_functions(
                 "the machine file contains ignored = true for this M code",
             )
         elif code in M_FUNCTIONS:
-            note_ineffective(state, statement, word, f"M{code}", _idle(state, code))
+            note_ineffective_word(state, statement, word, f"M{code}", _idle(state, code))
         elif code in limits.m_outputs:
             _check_chuck(state, statement, word, *limits.m_outputs[code])
         elif code in limits.disabled_m_codes or code in _ISO_CODES:
@@ -90,7 +90,7 @@ def _warn_missing_function(state: State, statement: Statement, code: int, word: 
     what = Message("M{code} is a machine-builder code that has no function on this machine", code=code)
     text = Message("{what}, so the machine will not start.", what=what)
     hint = format_binding_lines(code)
-    state.log.add(
+    state.log.add_finding(
         statement.make_warning(
             word, "m-unanswered", text, Message("{hint}.", hint=hint.capitalize_first_letter())
         )

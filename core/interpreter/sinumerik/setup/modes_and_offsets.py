@@ -48,14 +48,14 @@ def execute_frame(state: State, statement: Statement) -> None:
         )
     frame = state.programmed_frame if key.name[0] == "A" else IDENTITY_FRAME
     if name == "TRANS":
-        frame = frame.shift(*(_shift(state, statement, axis) for axis in "XZC"))
+        frame = frame.add_shift(*(_shift(state, statement, axis) for axis in "XZC"))
     elif name == "ROT":
         angle = statement.words.get("RPL")
-        frame = frame.rotate(0.0 if angle is None else state.number(statement, angle))
+        frame = frame.add_rotation(0.0 if angle is None else state.number(statement, angle))
     elif name == "SCALE":
-        frame = frame.scale(_factor(state, statement, "X"), _factor(state, statement, "Z"))
+        frame = frame.add_scaling(_factor(state, statement, "X"), _factor(state, statement, "Z"))
     else:
-        frame = frame.scale(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
+        frame = frame.add_scaling(*(-1.0 if axis in statement.words else 1.0 for axis in "XZ"))
     if name in {"SCALE", "MIRROR"} and (word := statement.words.get("C")):
         raise statement.make_error(
             word, "offset-form", Message("{word} can be used only with X and Z.", word=key.name), "Remove C."
@@ -77,7 +77,7 @@ def reset_offsets(state: State) -> None:
 def check_c_word(state: State, statement: Statement) -> None:
     """Raise ProgramError for a C word if the machine has no third axis."""
     word = statement.words.get("C")
-    if word is not None and not state.setup.limits.c_enabled:
+    if word is not None and not state.setup.limits.is_c_enabled:
         text = "unknown axis: this machine has no third axis."
         raise statement.make_error(
             word, "unknown-axis", text, "Remove this axis, or select a machine file that has this axis."
@@ -206,19 +206,19 @@ def note_ineffective_words(state: State, statement: Statement) -> None:
     """Log a note, once, for each word that has no effect."""
     for word in statement.g_words.values():
         name = word.name if word.value is None else f"G{int(word.value)}"
-        note_ineffective(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
+        note_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
     for name, word in statement.words.items():
-        note_ineffective(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
+        note_ineffective_word(state, statement, word, name, table.INEFFECTIVE_WORDS.get(name, ""))
 
 
-def note_ineffective(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
+def note_ineffective_word(state: State, statement: Statement, word: Word, name: str, reason: str) -> None:
     """Log a note, once, that a function has no effect because of ``reason``."""
     if reason and name not in state.told:
         state.told.add(name)
         found = statement.make_warning(
             word, "no-effect", Message("{name} has no effect because {why}.", name=name, why=reason), ""
         )
-        state.log.add(replace(found, severity=Severity.NOTE))
+        state.log.add_finding(replace(found, severity=Severity.NOTE))
 
 
 def execute_frame_block(state: State, statement: Statement) -> bool:

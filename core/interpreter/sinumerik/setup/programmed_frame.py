@@ -52,19 +52,19 @@ class ProgrammedFrame(NamedTuple):
         """Return the scale factor of lengths in a uniform frame."""
         return sqrt(abs(self.xx * self.zz - self.xz * self.zx))
 
-    def shift(self, x: float, z: float, c: float) -> ProgrammedFrame:
+    def add_shift(self, x: float, z: float, c: float) -> ProgrammedFrame:
         """Return the frame with its zero shifted by a distance in the program frame."""
         dx, dz = self.transform_distance(x, z)
         return self._replace(shift_x=self.shift_x + dx, shift_z=self.shift_z + dz, shift_c=self.shift_c + c)
 
-    def rotate(self, degrees: float) -> ProgrammedFrame:
+    def add_rotation(self, angle_deg: float) -> ProgrammedFrame:
         """Return the frame with an additional rotation from Z toward X."""
-        a = radians(degrees)
+        a = radians(angle_deg)
         return self._by(cos(a), sin(a), -sin(a), cos(a))
 
-    def scale(self, x: float, z: float) -> ProgrammedFrame:
+    def add_scaling(self, x_factor: float, z_factor: float) -> ProgrammedFrame:
         """Return the frame with additional scale factors; negative factors mirror an axis."""
-        return self._by(x, 0.0, 0.0, z)
+        return self._by(x_factor, 0.0, 0.0, z_factor)
 
     def _by(self, xx: float, xz: float, zx: float, zz: float) -> ProgrammedFrame:
         return self._replace(

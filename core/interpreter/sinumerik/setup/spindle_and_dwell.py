@@ -98,11 +98,11 @@ def _position_spindle(state: State, statement: Statement, word: Word) -> Iterato
         )
 
     if word.name == "M" and word.value == _AXIS_MODE:
-        check_spindle_is_c(state, refuse)
+        check_spindle_c_axis(state, refuse)
         state.set_modal(state.modal._replace(spindle=0, c_locked=True))
         yield state.action(statement.line.number, word.text, SpindleLock(orient=False))
         return
-    check_can_position(state, refuse)
+    check_spindle_positioning(state, refuse)
     if is_oriented_by_drive(state):
         action = _orient(state, statement, word)
         state.set_modal(state.modal._replace(spindle=0, oriented=action.angle))
@@ -123,31 +123,31 @@ def _position_spindle(state: State, statement: Statement, word: Word) -> Iterato
 def is_oriented_by_drive(state: State) -> bool:
     """Return whether the spindle drive orients the spindle, because the spindle is not the C axis."""
     limits = state.setup.limits
-    return limits.can_orient_spindle and not (limits.c_enabled and limits.is_spindle_c_axis)
+    return limits.can_orient_spindle and not (limits.is_c_enabled and limits.is_spindle_c_axis)
 
 
-def check_can_position(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
+def check_spindle_positioning(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
     """Raise the error that ``make_error`` returns if the spindle cannot be positioned at an angle.
 
     ``make_error`` is called with a text and a hint.
     """
     if not is_oriented_by_drive(state):
-        check_spindle_is_c(state, make_error)
+        check_spindle_c_axis(state, make_error)
 
 
-def check_spindle_is_c(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
+def check_spindle_c_axis(state: State, make_error: Callable[[str, str], ProgramError]) -> None:
     """Raise the error that ``make_error`` returns if the spindle is not the C axis.
 
     ``make_error`` is called with a text and a hint.
     """
     limits = state.setup.limits
-    if limits.c_enabled and limits.is_spindle_c_axis:
+    if limits.is_c_enabled and limits.is_spindle_c_axis:
         return
     if limits.can_orient_spindle:
         text = (
             "the spindle of this machine is not a C axis because C has a separate drive; the spindle "
             "drive can only turn the spindle to an angle."
-            if limits.c_enabled
+            if limits.is_c_enabled
             else "the spindle of this machine is not a C axis because the machine has no C axis; the "
             "spindle drive can only turn the spindle to an angle."
         )
@@ -155,7 +155,7 @@ def check_spindle_is_c(state: State, make_error: Callable[[str, str], ProgramErr
     text = (
         "the spindle of this machine cannot be oriented because C has a separate drive and the machine "
         "file does not enable orientation by the spindle drive."
-        if limits.c_enabled
+        if limits.is_c_enabled
         else "the spindle of this machine cannot be oriented because the machine has no C axis and the "
         "machine file does not enable orientation by the spindle drive."
     )
@@ -181,11 +181,11 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindlePositionin
             raise statement.make_error(word, "spindle-position", text, hint, word=word.text)
         text = "{word}: on this drive, a spindle positioning move must be less than one revolution."
         hint = "Enter an angle of less than 360 degrees."
-        statement.check(abs(value) < _TURN, word, "spindle-position", text, hint, word=word.text)
+        statement.check_condition(abs(value) < _TURN, word, "spindle-position", text, hint, word=word.text)
         return SpindlePositioning((at + value) % _TURN, int(copysign(1, value)) if value else 0)
     text = "{word}: {value} is not a valid spindle angle."
     hint = "Enter an angle from 0 to less than 360 degrees."
-    statement.check(
+    statement.check_condition(
         0.0 <= value < _TURN, word, WRONG_MODULO_POSITION, text, hint, word=word.text, value=value
     )
     sense = {PositionForm.ACP: 1, PositionForm.ACN: -1}.get(form, 0)
@@ -194,7 +194,7 @@ def _orient(state: State, statement: Statement, word: Word) -> SpindlePositionin
     return SpindlePositioning(value, sense)
 
 
-def compute_shortest_turn(state: State, angle: float) -> float:
+def compute_shortest_c_travel(state: State, angle: float) -> float:
     """Return the shortest signed travel of C to a program angle, in degrees."""
     at = state.c - state.modal.offset_c
     if not state.setup.limits.is_c_modulo:
@@ -272,7 +272,7 @@ def _speed(state: State, statement: Statement) -> None:
     _demand_controlled(state, statement, word)
     value = state.number(statement, word)
     text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
-    statement.check(value >= 0, word, "speed-sign", text, "Remove the sign.", word=word.text)
+    statement.check_condition(value >= 0, word, "speed-sign", text, "Remove the sign.", word=word.text)
     if state.modal.css:
         speed = value * (MM_S_PER_M_MIN if state.modal.metric else _FEET)
         if speed > _MAX_SURFACE_SPEED:
@@ -283,7 +283,9 @@ def _speed(state: State, statement: Statement) -> None:
     highest = state.setup.limits.max_rpm
     state.set_modal(state.modal._replace(rpm=min(value, highest)))
     text = "{word} is above the spindle maximum of {highest} rpm."
-    statement.check(value <= highest, word, "speed-range", text, "Lower S.", word=word.text, highest=highest)
+    statement.check_condition(
+        value <= highest, word, "speed-range", text, "Lower S.", word=word.text, highest=highest
+    )
 
 
 def _demand_controlled(state: State, statement: Statement, word: Word | None) -> None:
@@ -313,7 +315,7 @@ def make_dwell_block(state: State, statement: Statement) -> Block:
     word = statement.words.get("F") or statement.words["S"]
     value = state.number(statement, word)
     text = "{word}: a dwell cannot be negative."
-    statement.check(value >= 0, word, "dwell-range", text, "Correct the value.", word=word.text)
+    statement.check_condition(value >= 0, word, "dwell-range", text, "Correct the value.", word=word.text)
     seconds = value if word.name == "F" else value / _turning(state, statement, word) * 60.0
     if seconds > _MAX_DWELL_S:
         raise statement.make_error(
@@ -337,7 +339,7 @@ def _turning(state: State, statement: Statement, word: Word) -> float:
     rpm = abs(state.rpm)
     text = "G4 {word} waits for spindle revolutions, but the spindle is stopped."
     hint = "Start the spindle with M3 or M4, or write G4 F."
-    statement.check(rpm, word, "dwell-spindle-stopped", text, hint, word=word.text)
+    statement.check_condition(rpm, word, "dwell-spindle-stopped", text, hint, word=word.text)
     return rpm
 
 
@@ -345,7 +347,7 @@ LIVE_SPINDLE_NUMBER = 2
 _TURNS = frozenset({3, 4, 5})
 
 
-def separate_live_words(state: State, statement: Statement) -> None:
+def separate_live_tool_words(state: State, statement: Statement) -> None:
     """Move the words of the live tool to ``statement.live_tool_words``.
 
     Raises ProgramError if the machine has no live tool.
@@ -371,7 +373,9 @@ def separate_live_words(state: State, statement: Statement) -> None:
 def _demand(state: State, statement: Statement, word: Word) -> None:
     text = "{word}: this machine has one spindle and no output for a live tool."
     hint = "Remove this word, or define an output named live under [io.out] in the machine file."
-    statement.check(state.setup.limits.live_tool_output, word, "one-spindle", text, hint, word=word.text)
+    statement.check_condition(
+        state.setup.limits.live_tool_output, word, "one-spindle", text, hint, word=word.text
+    )
 
 
 def switch_live_tool(state: State, statement: Statement) -> Iterator[Block]:
@@ -390,7 +394,7 @@ def switch_live_tool(state: State, statement: Statement) -> Iterator[Block]:
 def _live_speed(state: State, statement: Statement, word: Word) -> None:
     value = state.number(statement, word)
     text = "{word}: the speed cannot be negative; M3 and M4 set the direction."
-    statement.check(value >= 0.0, word, "speed-sign", text, "Remove the sign.", word=word.text)
+    statement.check_condition(value >= 0.0, word, "speed-sign", text, "Remove the sign.", word=word.text)
     state.live_speed_rpm = value
     if state.live_rpm:
         state.live_rpm = value
@@ -401,7 +405,7 @@ def _live_speed(state: State, statement: Statement, word: Word) -> None:
             "the drive of the live tool.",
             word=word.text,
         )
-        state.log.add(
+        state.log.add_finding(
             statement.make_warning(
                 word,
                 "live-speed",
@@ -415,7 +419,7 @@ def _turn(state: State, statement: Statement, word: Word) -> Iterator[Block]:
     code = int(word.value or 0)
     text = "{word}: the live tool turns in only one direction."
     hint = "Write M3, and use a tool that cuts in that direction."
-    statement.check(code != 4, word, "live-direction", text, hint, word=word.text)
+    statement.check_condition(code != 4, word, "live-direction", text, hint, word=word.text)
     on = code == 3
     if on and not state.live_speed_rpm:
         text = "{word} starts the live tool, but its speed is not programmed with S."

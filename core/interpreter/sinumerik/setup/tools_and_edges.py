@@ -20,7 +20,7 @@ from core.tool_edges import (
     format_edge_name,
     get_edge_number,
     get_tool_number,
-    make_edge_key,
+    make_row_number,
 )
 
 WRONG_TOOL_NUMBER = 17190
@@ -76,7 +76,7 @@ def _number(state: State, statement: Statement, word: Word) -> int:
 def _edge(state: State, statement: Statement, word: Word) -> int:
     value = state.number(statement, word)
     text = "{word}: cutting edges are D1 to D9; D0 deselects the cutting edge."
-    statement.check(
+    statement.check_condition(
         value == 0 or value in EDGE_NUMBERS, word, WRONG_EDGE_NUMBER, text, "Correct D.", word=word.text
     )
     return int(value)
@@ -84,7 +84,7 @@ def _edge(state: State, statement: Statement, word: Word) -> int:
 
 def _activate_edge(state: State, statement: Statement, number: int, edge: int, usage: ToolUsage) -> None:
     """Activate the cutting edge with this number, which is 0 for D0 and T0."""
-    key = make_edge_key(
+    key = make_row_number(
         number,
         edge or get_edge_number(state.modal.tool) if number == get_tool_number(state.modal.tool) else edge,
     )
@@ -123,7 +123,7 @@ def _offset(state: State, statement: Statement, key: int, usage: ToolUsage) -> T
             key=format_edge_name(key),
         )
         hint = _hint(word)
-        state.log.add(statement.make_warning(word, "tool-offset-missing", text, hint))
+        state.log.add_finding(statement.make_warning(word, "tool-offset-missing", text, hint))
     return offset or ToolOffset()
 
 

@@ -24,10 +24,10 @@ def test_the_analyses_stand_behind_f8(hands: Hands) -> None:
     hands.key(Key.Key_Z)
     assert page.analyses.magnification > before
     hands.key(Key.Key_F3)
-    hands.sees(lambda: shows(page.description.words, "scope.passes-by-angle"))
+    hands.sees(lambda: shows(page.description.description_text, "scope.passes-by-angle"))
     hands.sees(lambda: page.drawing.chart is not None and len(page.drawing.chart.plots) == 2)
     hands.key(Key.Key_F4)
-    hands.sees(lambda: text("scope.no-arc") in page.description.words)
+    hands.sees(lambda: text("scope.no-arc") in page.description.description_text)
     hands.sees(lambda: page.drawing.chart is not None and not page.drawing.chart.drawing.curves)
     hands.key(Key.Key_F8)
     assert hands.frame.current_page.NAME == page_table.SCOPE

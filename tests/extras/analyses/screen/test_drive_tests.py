@@ -78,7 +78,7 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
 ) -> None:
     asked_and_held(jog)
     assert jog.shot.state is MachineState.JOG
-    assert jog.shot.drive_test.axis == "Z"
+    assert jog.shot.drive_test.tested_axis == "Z"
     jog.run(1.5)
     assert jog.shot.state is MachineState.IDLE
     jog.up(Key.Key_Right)
@@ -95,10 +95,10 @@ def test_held_to_its_end_it_is_kept_and_told_in_figures(
     found = page.model.results
     assert found is not None
     assert [each.step_size for each in found.step_responses] == pytest.approx([SIZE, -SIZE])
-    assert page.model.saved_record.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
-    assert (page.model.scope.recording_store.folder / page.model.saved_record).exists()
+    assert page.model.saved_record_text.startswith(text("jog.drive-test-of", axis="Z", kind="step"))
+    assert (page.model.scope.recording_store.folder / page.model.saved_record_text).exists()
     kept = page.model.scope.recording_store.read_recording(
-        page.model.scope.recording_store.folder / page.model.saved_record
+        page.model.scope.recording_store.folder / page.model.saved_record_text
     )
     assert text("jog.drive-test") in kept.about
     titles = [page.model.make_table().rows[0].cells[0]]
@@ -117,7 +117,7 @@ def test_kept_down_after_its_end_it_plays_no_second_one(jog: JogBench, page: Dri
     jog.key(Key.Key_Right)  # asks again, and no more
     jog.run(0.5)
     assert jog.shot.drive_test.number == 1
-    assert "HOLD" in page.pending_question()
+    assert "HOLD" in page.find_pending_question()
 
 
 def test_the_release_ends_it(jog: JogBench, page: DriveTestPage) -> None:
@@ -228,7 +228,7 @@ def test_with_the_estop_in_it_says_so(jog: JogBench, page: DriveTestPage) -> Non
 def test_an_axis_that_is_not_homed_is_not_tested(lost: JogBench) -> None:
     page = on_page(lost)
     lost.key(Key.Key_Right)
-    assert shows(page.pending_question(), "jog.test-not-homed", axis="Z")
+    assert shows(page.find_pending_question(), "jog.test-not-homed", axis="Z")
     lost.down(Key.Key_Right)
     lost.run(0.5)
     assert lost.shot.demand[1] == 0.0

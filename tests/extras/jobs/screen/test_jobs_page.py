@@ -48,7 +48,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
 
 def model(day: Day) -> JobsModel:
-    found = day.desk.page_registry.find(JobsModel)
+    found = day.desk.page_registry.find_model(JobsModel)
     assert found is not None
     return found
 

@@ -43,7 +43,7 @@ def day(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
 
 def model(day: Day) -> QualityFunctions:
-    found = day.desk.page_registry.find(QualityFunctions)
+    found = day.desk.page_registry.find_model(QualityFunctions)
     assert found is not None
     return found
 
@@ -61,7 +61,7 @@ def section(day: Day, number: str) -> None:
 
 def settled(day: Day) -> bool:
     """What is known is what is kept."""
-    watch = day.desk.page_registry.find(PartsWatch)
+    watch = day.desk.page_registry.find_model(PartsWatch)
     assert watch is not None
     return watch.parts_book.is_settled
 
@@ -287,10 +287,10 @@ def test_parts_of_before_the_correction_ask_for_no_other(day: Day) -> None:
     measured(day, ".5012")
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)
-    watch, read = day.desk.page_registry.find(PartsWatch), Event()
+    watch, read = day.desk.page_registry.find_model(PartsWatch), Event()
     assert watch is not None
     yes(day.window)
-    watch.parts_book.worker.enqueue(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
+    watch.parts_book.worker.enqueue_work(lambda: read.wait(60.0), lambda _read: None, day.desk.say)
     day.sees(lambda: not day.desk.offset_book.is_saving)
     day.key(Key.Key_Escape)
     day.key(Key.Key_F8)

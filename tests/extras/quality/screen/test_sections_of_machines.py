@@ -35,9 +35,9 @@ def test_a_feature_is_corrected_by_what_this_machine_has(
         found[name] = (
             "CORRECTED BY" in features.field_names,
             "TOOL OR OFFSET NUMBER" in features.field_names,
-            "F8" in dict(readings.function_keys()),
+            "F8" in dict(readings.make_function_keys()),
             "TOOL LIFE" in names,
-            "WEAR" in trends.trends,
+            "WEAR" in trends.trend_names,
         )
         desk.close()
     assert found == {

@@ -72,7 +72,7 @@ def test_the_path_follows_every_key(writer: Writer) -> None:
     writer.type(".6")
 
     def deepest() -> float:
-        picture = writer.editor.editor.live_proof.current.picture
+        picture = writer.editor.editor.live_proof.current_findings.picture
         return min(picture.z, default=0.0) if picture is not None else 0.0
 
     writer.sees(lambda: abs(deepest() + 0.6 * 25.4) < 1e-6)
@@ -148,7 +148,7 @@ def test_the_key_that_stops_the_machine_stops_it_here_too(writer: Writer) -> Non
     stop = writer.window.keyboard_filter._find_stop(press)
     assert stop is not None
     stop(press=0)
-    assert writer.desk.station_controls.estop_pressed
+    assert writer.desk.station_controls.is_estop_pressed
     assert shapes_of(writer).model.form is None
 
 
@@ -233,7 +233,7 @@ def test_the_list_is_one_key_from_a_form(writer: Writer) -> None:
     writer.key(Key.Key_F3, SHIFT)
     writer.sees(lambda: shapes_of(writer).model.form is not None)
     writer.type("9")
-    assert writer.frame.key_bar.key_labels[7] == "LIST" or writer.editor.key_labels()[7] == "LIST"
+    assert writer.frame.key_bar.key_labels[7] == "LIST" or writer.editor.make_key_labels()[7] == "LIST"
     writer.key(Key.Key_F8)
     assert shapes_of(writer).model.is_list_shown
     assert writer.text() == before

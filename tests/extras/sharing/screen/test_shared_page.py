@@ -55,7 +55,7 @@ def sharing(day: Day, other: ProgramSharing, tmp_path: Path) -> ProgramSharing:
         tmp_path / "home" / "programs",
         day.journal.require_store,
     )
-    before = day.desk.page_registry.find(SharingModel)
+    before = day.desk.page_registry.find_model(SharingModel)
     assert before is not None
     before.close()
     day.desk.page_registry.attach_model(SharingModel(day.desk, made))
@@ -68,7 +68,7 @@ def sharing(day: Day, other: ProgramSharing, tmp_path: Path) -> ProgramSharing:
 
 
 def model(day: Day) -> SharingModel:
-    found = day.desk.page_registry.find(SharingModel)
+    found = day.desk.page_registry.find_model(SharingModel)
     assert found is not None
     return found
 
@@ -190,11 +190,11 @@ def test_without_a_place_the_page_says_what_names_one(day: Day) -> None:
 
 def test_a_place_that_never_answers_is_told_and_takes_nothing(day: Day, sharing: ProgramSharing) -> None:
     """A dead network drive: the look waits for ever. The page says so behind 30 s, and queues nothing."""
-    model(day).get_waiting_time = lambda: 29.0
+    model(day).get_waiting_time_s = lambda: 29.0
     assert not any(shows(note, "screen.share-silent") for note in model(day).make_table().notes)
     opened(day)
     day.sees(lambda: model(day).selected_version is not None and not model(day).worker.is_busy)
-    model(day).get_waiting_time = lambda: 95.0
+    model(day).get_waiting_time_s = lambda: 95.0
     said = wording("screen.share-silent", name=sharing.location.name, seconds=95)
     assert shows(" ".join(model(day).make_table().notes), "screen.share-silent", seconds=95)
     for key in (Key.Key_F5, Key.Key_F2):

@@ -9,19 +9,19 @@ import tarfile
 from pathlib import Path
 
 
-def epoch() -> int:
+def get_release_time() -> int:
     """Return the time for all files of a release, in seconds since 1970 (``SOURCE_DATE_EPOCH``)."""
     return int(os.environ.get("SOURCE_DATE_EPOCH", "0"))
 
 
-def owned_by_root(member: tarfile.TarInfo) -> tarfile.TarInfo:
+def normalize_member(member: tarfile.TarInfo) -> tarfile.TarInfo:
     """Set the owner and the time of an archive member, and return the member.
 
     The owner becomes root, and the time becomes the time of the release.
     """
     member.uid = member.gid = 0
     member.uname = member.gname = "root"
-    member.mtime = epoch()
+    member.mtime = get_release_time()
     return member
 
 
@@ -29,10 +29,10 @@ def write_tar_gz(folder: Path, target: Path, name: str) -> None:
     """Write the files of a folder to a compressed archive, in which they are in the folder ``name``."""
     with (
         target.open("wb") as file,
-        gzip.GzipFile("", "wb", 6, file, mtime=epoch()) as packed,
+        gzip.GzipFile("", "wb", 6, file, mtime=get_release_time()) as packed,
         tarfile.open(fileobj=packed, mode="w", format=tarfile.GNU_FORMAT) as archive,
     ):
-        archive.add(folder, name, filter=owned_by_root)
+        archive.add(folder, name, filter=normalize_member)
 
 
 def repack_tar_gz(path: Path) -> None:
@@ -40,14 +40,14 @@ def repack_tar_gz(path: Path) -> None:
     made = io.BytesIO()
     with (
         tarfile.open(path) as old,
-        gzip.GzipFile("", "wb", 9, made, mtime=epoch()) as packed,
+        gzip.GzipFile("", "wb", 9, made, mtime=get_release_time()) as packed,
         tarfile.open(fileobj=packed, mode="w", format=tarfile.PAX_FORMAT) as new,
     ):
         for member in sorted(old.getmembers(), key=lambda each: each.name):
             content = old.extractfile(member) if member.isfile() else None
             member.mode = 0o755 if member.isdir() or member.mode & 0o100 else 0o644
             member.pax_headers = {}
-            new.addfile(owned_by_root(member), content)
+            new.addfile(normalize_member(member), content)
     path.write_bytes(made.getvalue())
 
 
@@ -66,4 +66,4 @@ def set_times(folder: Path) -> None:
     for path in (folder, *folder.rglob("*")):
         if not path.is_symlink():
             path.chmod(0o755 if path.is_dir() or _is_command(path) else 0o644)
-        os.utime(path, (epoch(), epoch()), follow_symlinks=False)
+        os.utime(path, (get_release_time(), get_release_time()), follow_symlinks=False)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from core.executor.raised_alarm import Attempt
+from core.executor.raised_alarm import CaughtAttempt
 from core.executor.snapshot import LogEvent, MachineState, Snapshot, TickData
 from core.machine.machine_model import Machine
 from core.message import Message
@@ -27,7 +27,7 @@ from core.records.record import RecordError
 from core.records.record_file import RECORD_SUFFIX, save_record
 from core.records.record_ring import TICK_RATE_HZ, RingLayout, RowBuffer, ScopeRing, pack_bits
 from core.records.recordings import MAX_ALARM_RECORDS, ScopeRecordings
-from core.records.ring_file import NOW, RingFile, create_ring_file
+from core.records.ring_file import CURRENT_RING_NAME, RingFile, create_ring_file
 
 _log = logging.getLogger(__name__)
 _NAN = float("nan")
@@ -55,7 +55,7 @@ class _OpenRecord(NamedTuple):
 def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
     """Return the layout of the signals that are recorded for this machine."""
     return RingLayout(
-        {axis.name: axis.rotary for axis in machine.axes},
+        {axis.name: axis.is_rotary for axis in machine.axes},
         tuple(machine.inputs),
         tuple(machine.outputs),
         ports.samples.sample_rate_hz if ports.samples is not None else TICK_RATE_HZ,
@@ -65,7 +65,7 @@ def list_recorded_signals(machine: Machine, ports: MachinePorts) -> RingLayout:
     )
 
 
-class Recorder(ScopeRecordings):
+class ScopeRecorder(ScopeRecordings):
     """Recorder of ticks in a ring buffer, which saves a file for each alarm.
 
     The executor calls ``queue_tick`` and ``assign_record_name``; ``get_record_since`` and
@@ -79,7 +79,7 @@ class Recorder(ScopeRecordings):
         self,
         recorded: RingLayout,
         folder: Path | None = None,
-        name: str = NOW,
+        name: str = CURRENT_RING_NAME,
         memory: memoryview | None = None,
     ) -> None:
         super().__init__(ScopeRing.from_layout(recorded, memory), folder)
@@ -156,7 +156,7 @@ class Recorder(ScopeRecordings):
         while not self._closing.wait(_POLL_INTERVAL_S):
             self._happens.wait(_REST_PAUSE_S)
             self._happens.clear()
-            with Attempt() as trial:
+            with CaughtAttempt() as trial:
                 self.store_queued_ticks()
             if trial.error is not None:
                 _log.error("the recorder has failed", exc_info=trial.error)
@@ -176,7 +176,7 @@ class Recorder(ScopeRecordings):
     def _keep(self, rows: RowBuffer, new: FloatArray) -> None:
         if not len(new):
             return
-        parts = rows.write(new)
+        parts = rows.append_rows(new)
         if self._file is not None:
             try:
                 self._file.write_rows(rows, parts)
@@ -301,7 +301,7 @@ class Recorder(ScopeRecordings):
                 alarm=event.alarm.text,
                 cause=event.alarm.cause,
             ),
-            "alarm line": str(event.line),
+            "alarm line": str(event.line_number),
             "alarm time": repr(event.time_s),  # on the clock of the samples
         }
         try:

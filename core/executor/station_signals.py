@@ -26,20 +26,20 @@ _SETTLING_TIME_S = 0.5  # s for which a driver may still report the state before
 class StationSignals(NamedTuple):
     """The requests of the operator station in one tick."""
 
-    estop_pressed: bool
-    start_requested: bool  # both palm buttons, in this tick only
-    hold_requested: bool  # while the hold button is pressed
+    is_estop_pressed: bool
+    is_start_requested: bool  # both palm buttons, in this tick only
+    is_hold_requested: bool  # while the hold button is pressed
     feed_override: float
     spindle: float
-    spindle_auto: bool
+    is_spindle_in_auto: bool
     station_fault: str  # why the cycle must stop in feed hold; empty without a fault
-    handwheel_counts: int = 0  # counts of the handwheel
-    spindle_turned_on: bool = False  # the spindle switch was turned from OFF to AUTO in this tick
+    handwheel_count: int = 0  # counts of the handwheel
+    was_spindle_switch_turned_on: bool = False  # the spindle switch was turned from OFF to AUTO in this tick
     connection_lost_reason: str = ""  # sentence about a missing part of the station, which causes a feed hold
     handwheel_fault: str = ""  # why handwheel and jog buttons are ignored
     spindle_load: float | None = None  # per cent
     # both palm buttons were pressed between two late readings, so the start is ignored
-    late_start_detected: bool = False
+    was_late_start_detected: bool = False
 
 
 class OverridePot:
@@ -113,19 +113,19 @@ class StationWatch:
             "NO RESPONSE FROM OPERATOR STATION" if silent else "OVERRIDE SIGNAL UNSTABLE" if noisy else ""
         )
         return StationSignals(
-            estop_pressed=state.estop,
-            start_requested=edge and self.accept_start_press(now),
-            hold_requested=state.hold,
+            is_estop_pressed=state.estop,
+            is_start_requested=edge and self.accept_start_press(now),
+            is_hold_requested=state.hold,
             feed_override=self._feed.value,
             spindle=self._spindle.value,
-            spindle_auto=self._auto,
+            is_spindle_in_auto=self._auto,
             station_fault=fault_text,
-            handwheel_counts=state.handwheel,
-            spindle_turned_on=turned,
+            handwheel_count=state.handwheel,
+            was_spindle_switch_turned_on=turned,
             connection_lost_reason=state.trouble,
             handwheel_fault=state.wheel_trouble,
             spindle_load=state.spindle_load,
-            late_start_detected=pressed and not live,
+            was_late_start_detected=pressed and not live,
         )
 
     def accept_start_press(self, now: float) -> bool:
@@ -139,15 +139,17 @@ class StationWatch:
 class OutputMismatch(NamedTuple):
     """An output whose actual state differs from its commanded state."""
 
-    name: str
-    wanted: bool
+    output_name: str
+    is_commanded_on: bool
 
     @property
     def description(self) -> str:
         """Return the change of the output as a text for the operator."""
-        name = self.name.upper()
+        name = self.output_name.upper()
         return (
-            Message("{name} TURNED OFF", name=name) if self.wanted else Message("{name} TURNED ON", name=name)
+            Message("{name} TURNED OFF", name=name)
+            if self.is_commanded_on
+            else Message("{name} TURNED ON", name=name)
         )
 
 
@@ -163,7 +165,7 @@ class CommandedOutputs:
         self._lamps = (
             frozenset(LAMP_NAMES) & models.keys()
         )  # lamps are switched by the control, not by programs
-        self._wanted = dict(self.outputs())
+        self._wanted = dict(self.get_outputs())
         # time of the last write of each output; some drivers report it late
         self._written: dict[str, float] = {}
 
@@ -171,24 +173,24 @@ class CommandedOutputs:
         """Return the states of all inputs by name."""
         return self._io.inputs()
 
-    def outputs(self) -> Mapping[str, bool]:
+    def get_outputs(self) -> Mapping[str, bool]:
         """Return the actual states of the outputs by name, without the lamps of the signal tower."""
-        outputs = self._io.outputs()
+        outputs = self._io.get_outputs()
         return (
             {name: on for name, on in outputs.items() if name not in self._lamps} if self._lamps else outputs
         )
 
-    def all_outputs(self) -> Mapping[str, bool]:
+    def get_all_outputs(self) -> Mapping[str, bool]:
         """Return the actual states of all outputs by name, including the lamps."""
-        return self._io.outputs()
+        return self._io.get_outputs()
 
-    def write(self, name: str, on: bool) -> None:
+    def write(self, name: str, is_on: bool) -> None:
         """Switch one output.
 
         If DriverError is raised, the commanded state of the output remains unchanged.
         """
-        self._io.write(name, on)
-        self._wanted[name] = on
+        self._io.write(name, is_on)
+        self._wanted[name] = is_on
         self._written[name] = self._now
 
     def switch_to_safe_state(self) -> None:
@@ -215,7 +217,7 @@ class CommandedOutputs:
 
         An output is returned only after the permitted delay has passed.
         """
-        actual = self._io.outputs()
+        actual = self._io.get_outputs()
         return [
             OutputMismatch(name, wanted)
             for name, wanted in self._wanted.items()
@@ -230,7 +232,7 @@ class CommandedOutputs:
         """
         changed = self.find_mismatches()
         for each in changed:
-            self._wanted[each.name] = not each.wanted
+            self._wanted[each.output_name] = not each.is_commanded_on
         return changed
 
     _now = 0.0

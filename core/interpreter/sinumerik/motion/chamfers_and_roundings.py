@@ -88,7 +88,7 @@ class SinumerikCornerStage(CornerStage[Corner, Never]):
         super().__init__(PlainMoveFactory(state))
         self._log = log
 
-    def finish(self) -> Iterator[Block]:
+    def flush_at_program_end(self) -> Iterator[Block]:
         """Yield the buffered blocks at the end of the program.
 
         Raises ProgramError if a corner has no following move.
@@ -132,7 +132,7 @@ class SinumerikCornerStage(CornerStage[Corner, Never]):
             line2=after.line,
         )
         statement, hint = buffered.corner.statement, "Remove this text from the program."
-        self._log.add(statement.make_warning(buffered.corner.word, "corner-straight", text, hint))
+        self._log.add_finding(statement.make_warning(buffered.corner.word, "corner-straight", text, hint))
 
     def _make_size_error(self, buffered: _BufferedMove, block: Block, needed_mm: float) -> ProgramError:
         why = Message(

@@ -166,7 +166,7 @@ WARNINGS: Mapping[str, tuple[str, str]] = {
         "Check that the thread has a relief groove.",
     ),
 }
-PROOF: Mapping[str, tuple[str, str]] = {
+PROOF_ERRORS: Mapping[str, tuple[str, str]] = {
     "proof-differs": (
         "The converted program moves differently: {what} is {made} instead of {wanted}.",
         "Report this program; the converted program is not written.",
@@ -179,13 +179,13 @@ PROOF: Mapping[str, tuple[str, str]] = {
 }
 
 
-def refuse(line: int, column: int, code: str, /, **values: object) -> ProgramError:
+def make_error(line: int, column: int, code: str, /, **values: object) -> ProgramError:
     """Return the error that ends the conversion at this position in the source."""
-    text, hint = ERRORS.get(code) or PROOF[code]
+    text, hint = ERRORS.get(code) or PROOF_ERRORS[code]
     return ProgramError(_finding(line, column, Severity.ERROR, code, text, hint, values))
 
 
-def warn(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
+def make_warning(line: int, column: int, code: str, /, **values: object) -> Diagnostic:
     """Return the warning that a source line is converted differently."""
     text, hint = WARNINGS[code]
     return _finding(line, column, Severity.WARNING, code, text, hint, values)

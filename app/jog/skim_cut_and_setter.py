@@ -53,10 +53,10 @@ class SkimCut:
     tool_setting: ToolSetting
     cut_step: SkimCutStep = SkimCutStep.OFF
     quantity: str = ""  # =
-    cut_position: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
+    cut_position_mm: float = 0.0  # Machine position of the axis during the cut in mm, by its encoder.
     # Commanded position during the cut in mm. The cutting force deflects the axis, which then springs back.
-    commanded_position: float = 0.0
-    cut_length: float = (
+    commanded_position_mm: float = 0.0
+    cut_length_mm: float = (
         0.0  # Distance in mm along the other axis with the spindle turning, since this axis moved.
     )
     failure_reason: str = ""  # Why the last cut is no longer valid.
@@ -109,8 +109,8 @@ class SkimCut:
             self.desk.say(why)
             return
         self.desk.clear_prompt_line()
-        self.cut_position = snapshot.tip["XZ".index(self.measured_axis)]
-        self.commanded_position, self.cut_step, self.failure_reason = (
+        self.cut_position_mm = snapshot.tip["XZ".index(self.measured_axis)]
+        self.commanded_position_mm, self.cut_step, self.failure_reason = (
             self._place(snapshot),
             SkimCutStep.RETRACT,
             "",
@@ -120,7 +120,7 @@ class SkimCut:
         """Return the reason why there is no cut to measure yet, or an empty string."""
         if snapshot.state is not MachineState.IDLE:
             return tr("AXES ARE STILL MOVING. WAIT UNTIL THEY STOP")
-        if self.cut_length >= MIN_CUT_MM:
+        if self.cut_length_mm >= MIN_CUT_MM:
             return ""
         if abs(snapshot.rpm_actual) <= TURNING_RPM:
             return tr("NO CUT YET, SPINDLE STOPPED. PRESS B TO START IT")
@@ -157,7 +157,7 @@ class SkimCut:
         if self.cut_step is SkimCutStep.MEASURING:
             self.tool_setting.close_question()
         self.cut_step, self.quantity, self.failure_reason = SkimCutStep.OFF, "", ""
-        self.cut_length, self._stands = 0.0, None
+        self.cut_length_mm, self._stands = 0.0, None
 
     # --- every frame ---------------------------------------------------------------------------------
 
@@ -174,7 +174,7 @@ class SkimCut:
             self.desk.say(why)
         elif self.cut_step is SkimCutStep.CUTTING:
             self._follow_cut(snapshot)
-        elif abs(self._place(snapshot) - self.commanded_position) > MOVE_TOLERANCE_MM:
+        elif abs(self._place(snapshot) - self.commanded_position_mm) > MOVE_TOLERANCE_MM:
             self._handle_moved(snapshot)
         elif self.cut_step is SkimCutStep.RETRACT:
             self._measure_cut(snapshot)
@@ -190,7 +190,7 @@ class SkimCut:
             MachineState.ESTOP,
             MachineState.FAULT,
             MachineState.DISABLED,
-            MachineState.HOME,
+            MachineState.HOMING,
         }:
             return tr("MACHINE STOPPED. SKIM CUT CANCELED. NOTHING CHANGED")
         if not snapshot.homed[snapshot.axes.index(self.measured_axis)]:
@@ -208,17 +208,17 @@ class SkimCut:
         if self._stands is None or abs(self._place(snapshot) - self._stands[0]) > MOVE_TOLERANCE_MM:
             self._anew(snapshot)
         elif self._turns(snapshot):
-            self.cut_length = max(self.cut_length, abs(self._beside(snapshot) - self._stands[1]))
-        elif not self.cut_length:
+            self.cut_length_mm = max(self.cut_length_mm, abs(self._beside(snapshot) - self._stands[1]))
+        elif not self.cut_length_mm:
             self._stands = (self._stands[0], self._beside(snapshot))
 
     def _anew(self, snapshot: Snapshot) -> None:
-        self.cut_length, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
+        self.cut_length_mm, self._stands = 0.0, (self._place(snapshot), self._beside(snapshot))
 
     def _handle_moved(self, snapshot: Snapshot) -> None:
         """Discard the stored position because the measured axis moved after the cut."""
-        mode = self.tool_setting.history.value_mode
-        away = self._place(snapshot) - self.commanded_position
+        mode = self.tool_setting.offset_history.value_mode
+        away = self._place(snapshot) - self.commanded_position_mm
         shown = format_length(
             2 * away if self.measured_axis == "X" and mode.is_diameter else away, mode.is_metric
         )
@@ -233,7 +233,7 @@ class SkimCut:
         """Ask for the measured size when the spindle and the axes are stopped."""
         if snapshot.state is MachineState.IDLE and not self._turns(snapshot):
             self.cut_step = SkimCutStep.MEASURING
-            self.tool_setting.ask_cut_size(self.quantity, self.cut_position)
+            self.tool_setting.ask_cut_size(self.quantity, self.cut_position_mm)
 
     @staticmethod
     def _turns(snapshot: Snapshot) -> bool:
@@ -257,9 +257,9 @@ class SkimCut:
         return self._words_of_cut(snapshot) if self.cut_step is SkimCutStep.CUTTING else ""
 
     def _words_of_cut(self, snapshot: Snapshot) -> str:
-        if self.failure_reason and self.cut_length < MIN_CUT_MM:
+        if self.failure_reason and self.cut_length_mm < MIN_CUT_MM:
             return self.failure_reason
-        if self.cut_length >= MIN_CUT_MM and snapshot.state not in CYCLE_STATES:
+        if self.cut_length_mm >= MIN_CUT_MM and snapshot.state not in CYCLE_STATES:
             words = tr("CUT FAR ENOUGH IN {other} TO MEASURE, THEN PRESS ENTER")
             return tr(Message(words, other=self.travel_axis))
         if not self._turns(snapshot):
@@ -294,15 +294,15 @@ def find_touch_directions(row: ToolRow | None) -> tuple[TouchDirection, ...]:
 
 
 def find_zero_position(
-    touch_position: float, direction: TouchDirection, setter: SetterModel, row: ToolRow | None
+    touch_position_mm: float, direction: TouchDirection, tool_setter: SetterModel, tool_row: ToolRow | None
 ) -> float:
     """Return the machine position in mm at which the tool tip is at part zero.
 
     ``touch_position`` is the machine position in mm at which the tip touched the tool setter.
     """
     axis, sign = direction
-    before = sign * row.nose_radius if row is not None and row.quadrant == CENTER_TIP else 0.0
-    return touch_position - (setter.touch_position(axis, sign) - before)
+    before = sign * tool_row.nose_radius if tool_row is not None and tool_row.quadrant == CENTER_TIP else 0.0
+    return touch_position_mm - (tool_setter.compute_touch_position(axis, sign) - before)
 
 
 def format_direction(direction: TouchDirection) -> str:
@@ -328,7 +328,7 @@ class SetterTouchOff:
     _seen: int | None = None  # Number of the last touch-off that was processed.
 
     @property
-    def setter(self) -> SetterModel | None:
+    def tool_setter(self) -> SetterModel | None:
         """Return the tool setter of the machine, or None if the machine has no tool setter with an input."""
         return (
             self.machine.hardware.find_driver_table(SetterModel)
@@ -352,7 +352,7 @@ class SetterTouchOff:
 
     def _barred(self) -> str:
         tool, snapshot = self.tool_setting, self.desk.read_snapshot()
-        if self.setter is None:
+        if self.tool_setter is None:
             return tr("THIS MACHINE HAS NO TOOL SETTER")
         if why := tool.offset_book.lock_reason or find_change_refusal(snapshot, is_correction=False):
             return why
@@ -364,15 +364,15 @@ class SetterTouchOff:
             )
         return ""
 
-    def make_command(self, axis: str, sign: int, button: str) -> Command | str:
+    def make_command(self, axis: str, direction_sign: int, button_name: str) -> Command | str:
         """Return the touch-off command for a direction, or the reason as text if it is not possible."""
         ways = find_touch_directions(self.tool_setting.tool_row)
-        if (axis, sign) not in ways:
+        if (axis, direction_sign) not in ways:
             text = tr("TOUCH OFF T{number} ONLY IN DIRECTION {ways}")
             words = tr(" OR ").join(format_direction(direction) for direction in ways)
             return tr(Message(text, number=self.tool_setting.tool_number, ways=words))
         self._presses += 1
-        return TouchOffTool(axis, sign, self.lease_s, self._presses, button)
+        return TouchOffTool(axis, direction_sign, self.lease_s, self._presses, button_name)
 
     def update(self, snapshot: Snapshot) -> None:
         """Ask whether to save the result of a touch-off when the axis has stopped.
@@ -387,18 +387,18 @@ class SetterTouchOff:
             self._seen = number
             return
         self._seen = number
-        if not self.is_armed or self.setter is None:
+        if not self.is_armed or self.tool_setter is None:
             return
-        if touched.touch_position is None:
+        if touched.touch_position_mm is None:
             self.desk.say(tr(Message("TOUCH-OFF FAILED: {why}", why=touched.why.upper())))
         else:
             self.is_armed = False
-            self._found(touched, touched.touch_position, self.setter)
+            self._found(touched, touched.touch_position_mm, self.tool_setter)
 
     def _found(self, touched: TouchResult, place: float, model: SetterModel) -> None:
         touch_direction = (touched.axis, touched.sign)
         value = find_zero_position(place, touch_direction, model, self.tool_setting.tool_row)
-        metric = self.tool_setting.history.value_mode.is_metric
+        metric = self.tool_setting.offset_history.value_mode.is_metric
         about = format_signed(touched.uncertainty_mm, metric).removeprefix("+")
         cause = tr(
             Message(
@@ -416,7 +416,7 @@ class SetterTouchOff:
         words = {
             TouchPhase.SEARCH: tr("SEARCHING FOR THE TOOL SETTER. RELEASE THE KEY TO STOP"),
             TouchPhase.BACK_OFF: tr("CONTACT MADE. BACKING OFF"),
-            TouchPhase.SLOW: tr("MEASURING WITH A SLOW TOUCH"),
+            TouchPhase.SLOW_TOUCH: tr("MEASURING WITH A SLOW TOUCH"),
             TouchPhase.RETREAT: tr("CONTACT MADE. BACKING OFF"),
             TouchPhase.RETURN: tr("NO CONTACT. RETURNING"),
         }
@@ -444,7 +444,7 @@ class HeldTouchOff(HeldJog):
         if self.setter_touch is None or not self.setter_touch.is_armed:
             HeldJog._start_jog(self, source, axis, sign, rapid)
             return
-        asked = self.setter_touch.make_command(axis, sign, self.last_button)
+        asked = self.setter_touch.make_command(axis, sign, self.last_button_name)
         if isinstance(asked, str):
             self.show_message(asked)
         elif rapid:

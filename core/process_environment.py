@@ -9,7 +9,7 @@ from pathlib import Path
 _FOLDER = str(Path(__file__).parents[1])
 
 
-def module_environment(**more: str) -> Mapping[str, str]:
+def make_module_environment(**more: str) -> Mapping[str, str]:
     """Return an environment in which ``python -m`` finds the modules of this TurnDesk first.
 
     An installed TurnDesk has its packages in a folder that is not in the module path of other programs.

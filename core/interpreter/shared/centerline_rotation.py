@@ -13,7 +13,7 @@ _SAME = 1e-9  # degrees; a smaller angle is not a turn
 _WARNING_ANGLE_DEG = 1.0  # degrees; C may turn by this angle without a warning
 
 
-def check_centerline_turn(log: DiagnosticLog, line: int, turn_rad: float) -> bool:
+def needs_centerline_rotation(log: DiagnosticLog, line: int, turn_rad: float) -> bool:
     """Return whether C must rotate by ``turn_rad`` radians on the centerline.
 
     A large rotation is logged as a warning, because the tool does not move during the rotation.
@@ -25,5 +25,5 @@ def check_centerline_turn(log: DiagnosticLog, line: int, turn_rad: float) -> boo
             "At the spindle centerline, the tool does not move while C turns; route the path around the "
             "centerline."
         )
-        log.warn(line, 1, "plane-centre", text, hint, angle=f"{angle:.0f}")
+        log.add_warning(line, 1, "plane-centre", text, hint, angle=f"{angle:.0f}")
     return angle > _SAME

@@ -15,7 +15,7 @@ _MISTAKES = frozenset(
 )
 
 
-def marked(tree: ast.Module) -> Iterator[str]:
+def find_marked_texts(tree: ast.Module) -> Iterator[str]:
     """Yield the texts in ``tr("…")`` and the templates of messages, regardless of their contents."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and node.args and _is_marked(node):
@@ -29,7 +29,7 @@ def _is_marked(call: ast.Call) -> bool:
     return name in _MARKS or (name in _WITH_VALUES and any(each.arg != "reason" for each in call.keywords))
 
 
-def texts_of(tree: ast.Module) -> Iterator[str]:
+def find_texts(tree: ast.Module) -> Iterator[str]:
     """Yield every whole string except docstrings, errors for programmers, patterns and log messages."""
     skipped = _skipped(tree)
     for node in ast.walk(tree):
@@ -39,7 +39,7 @@ def texts_of(tree: ast.Module) -> Iterator[str]:
             yield node.value
 
 
-def composed_of(tree: ast.Module) -> Iterator[tuple[int, str]]:
+def find_composed_texts(tree: ast.Module) -> Iterator[tuple[int, str]]:
     """Yield the line and text of every string that is composed of parts.
 
     In the text, ``{}`` is in place of each value.

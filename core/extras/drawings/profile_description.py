@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from core.extras.drawings.drawing_placement import ContourProfile, ContourSide
-from core.extras.drawings.part_comparison import Deviation, DrawingComparison
+from core.extras.drawings.part_comparison import DrawingComparison, PartDeviation
 from core.extras.drawings.profile_program import ProfileProgram, find_max_diameter, find_nose_radius
 from core.extras.shapes.lines.code_lines import format_short_number
 from core.extras.shapes.shape_fields import FieldValue, FieldValues
@@ -19,17 +19,17 @@ _CLOSED = 1e-4  # mm; narrower gaps are not reported
 
 
 def describe_program(
-    program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile, *, metric: bool
+    program: ProfileProgram, comparison: DrawingComparison | None, profile: ContourProfile, *, is_metric: bool
 ) -> Iterator[str]:
     """Yield sentences that describe the program and its differences from the drawing.
 
     Lengths are in the unit of the program.
     """
-    mm, unit = (1.0, "mm") if metric else (25.4, "in")
-    places = 3 if metric else 4
+    mm, unit = (1.0, "mm") if is_metric else (25.4, "in")
+    places = 3 if is_metric else 4
     if program.nose_offset is not None:
         n = program.nose_offset
-        x, z, r = (format_short_number(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.r))
+        x, z, r = (format_short_number(v / mm, places + 1) for v in (2.0 * n.x, n.z, n.nose_radius))
         if n.quadrant:
             edge = f"T{program.tool_number:.0f} D{n.number}"
             yield Message(
@@ -48,7 +48,7 @@ def describe_program(
                 radius=r,
                 unit=unit,
             )
-    elif not program.nose_radius:
+    elif not program.nose_radius_mm:
         yield (
             Message(
                 "the tool data of T{tool} has no nose radius, so the contour is not compensated",
@@ -72,7 +72,7 @@ def describe_program(
         yield ("proving did not produce a simulated part, so a comparison with the drawing was not possible")
         return
     for found in comparison.deviations:
-        yield _deviation(found, program.nose_radius, mm, unit, places)
+        yield _deviation(found, program.nose_radius_mm, mm, unit, places)
     within = format_short_number(max(comparison.worst_deviation_mm, 0.001) / mm, places)
     template = (
         ("except at the listed deviations, the simulated part matches the drawing to within {within} {unit}")
@@ -82,7 +82,7 @@ def describe_program(
     yield Message(template, within=within, unit=unit)
 
 
-def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int) -> str:
+def _deviation(found: PartDeviation, nose: float, mm: float, unit: str, places: int) -> str:
     deep = format_short_number(abs(found.max_deviation_mm) / mm, places)
     if is_nose_fillet(found, nose):
         at = format_short_number(found.back_z_mm / mm, places)
@@ -101,7 +101,7 @@ def _deviation(found: Deviation, nose: float, mm: float, unit: str, places: int)
     return Message(template, depth=deep, unit=unit, front=front, back=back)
 
 
-def is_nose_fillet(deviation: Deviation, nose_radius: float) -> bool:
+def is_nose_fillet(deviation: PartDeviation, nose_radius: float) -> bool:
     """Return whether a deviation is only the material that the tool nose leaves in a square corner."""
     return (
         0.0 < deviation.max_deviation_mm <= nose_radius
@@ -142,11 +142,18 @@ def _convert_nose_to_json(program: ProfileProgram) -> dict[str, Any]:
     """
     nose = program.nose_offset
     if nose is not None and nose.quadrant:
-        edge = {"tool": int(program.tool_number), "edge": nose.number, "r": nose.r, "quadrant": nose.quadrant}
+        edge = {
+            "tool": int(program.tool_number),
+            "edge": nose.number,
+            "r": nose.nose_radius,
+            "quadrant": nose.quadrant,
+        }
         return {"secondary_offset": None, "cutting_edge": edge}
     if nose is None:
         return {"secondary_offset": None}
-    return {"secondary_offset": {"number": nose.number, "x": round(nose.x, 6), "z": nose.z, "r": nose.r}}
+    return {
+        "secondary_offset": {"number": nose.number, "x": round(nose.x, 6), "z": nose.z, "r": nose.nose_radius}
+    }
 
 
 _BAR = {True: 1.0, False: 0.0625}  # bar diameters come in these steps, by metric
@@ -160,7 +167,7 @@ def propose_fields(
     given_values: FieldValues,
     shapes: Mapping[int, ToolShape],
     *,
-    metric: bool,
+    is_metric: bool,
     dialect: Dialect = Dialect.OMNITURN,
 ) -> dict[str, FieldValue]:
     """Return the fields for ``make_profile_program``.
@@ -168,11 +175,11 @@ def propose_fields(
     The fields are the given values, and proposals for the other fields.
     """
     inside = profile.side is ContourSide.INSIDE
-    fields: dict[str, FieldValue] = {"UNIT": "METRIC" if metric else "INCH", **given_values}
-    bar = fields.setdefault("BAR", propose_bar_diameter(profile, metric=metric))
+    fields: dict[str, FieldValue] = {"UNIT": "METRIC" if is_metric else "INCH", **given_values}
+    bar = fields.setdefault("BAR", propose_bar_diameter(profile, is_metric=is_metric))
     if not inside:
         fields["FROM"] = bar
-        fields.setdefault("STOCK", _FACE[metric])
+        fields.setdefault("STOCK", _FACE[is_metric])
     kind = ToolKind.BORING if inside else ToolKind.TURNING
     free = next(n for n in range(1, len(shapes) + 2) if n not in shapes)
     fields.setdefault("T", float(find_first_tool(shapes, kind, is_inside=inside) or free))
@@ -185,11 +192,11 @@ def propose_fields(
     return {word: float(value) if not isinstance(value, str) else value for word, value in fields.items()}
 
 
-def propose_bar_diameter(profile: ContourProfile, *, metric: bool) -> float:
+def propose_bar_diameter(profile: ContourProfile, *, is_metric: bool) -> float:
     """Return the smallest standard bar diameter that contains the contour, in the program's unit."""
     across = find_max_diameter(profile) * (1.5 if profile.side is ContourSide.INSIDE else 1.0) + _SKIN
-    step = _BAR[metric]
-    return round(step * math.ceil(across / (1.0 if metric else 25.4) / step - 1e-6), 4)
+    step = _BAR[is_metric]
+    return round(step * math.ceil(across / (1.0 if is_metric else 25.4) / step - 1e-6), 4)
 
 
 def find_first_tool(shapes: Mapping[int, ToolShape], kind: ToolKind, *, is_inside: bool) -> int:

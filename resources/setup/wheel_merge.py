@@ -16,28 +16,33 @@ from collections.abc import Mapping
 from pathlib import Path
 
 PACKAGES = ("app", "core", "drivers", "resources")
-NAME = "turndesk"
+PACKAGE_NAME = "turndesk"
 _LAUNCHER = Path(__file__).with_name("launcher.py")
-_ENTRY_POINTS = f"[console_scripts]\n{NAME} = {NAME}:console\n"
-_MAIN = f'import sys\n\nfrom {NAME} import console\n\nif __name__ == "__main__":\n    sys.exit(console())\n'
+_ENTRY_POINTS = f"[console_scripts]\n{PACKAGE_NAME} = {PACKAGE_NAME}:console\n"
+_MAIN = (
+    f'import sys\n\nfrom {PACKAGE_NAME} import console\n\nif __name__ == "__main__":\n    '
+    f"sys.exit(console())\n"
+)
 _EARLIEST = 315532800  # s since 1970, the first time that an archive can state
 _MODE = 0o100644
 
 
-def in_one_package(wheel: bytes) -> bytes:
+def merge_packages(wheel: bytes) -> bytes:
     """Return a wheel whose packages are parts of ``turndesk``.
 
     The files are sorted and all have the same time.
     """
     with zipfile.ZipFile(io.BytesIO(wheel)) as archive:
-        files = {moved(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+        files = {
+            get_new_path(name): archive.read(name) for name in archive.namelist() if not name.endswith("/")
+        }
     record = next(name for name in files if name.endswith(".dist-info/RECORD"))
     info = record.removesuffix("RECORD")
     del files[record]
     files[f"{info}entry_points.txt"] = _ENTRY_POINTS.encode()
-    files[f"{info}top_level.txt"] = f"{NAME}\n".encode()
-    files[f"{NAME}/__init__.py"] = _LAUNCHER.read_bytes()
-    files[f"{NAME}/__main__.py"] = _MAIN.encode()
+    files[f"{info}top_level.txt"] = f"{PACKAGE_NAME}\n".encode()
+    files[f"{PACKAGE_NAME}/__init__.py"] = _LAUNCHER.read_bytes()
+    files[f"{PACKAGE_NAME}/__main__.py"] = _MAIN.encode()
     files[record] = _record(files, record)
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -49,14 +54,14 @@ def in_one_package(wheel: bytes) -> bytes:
     return made.getvalue()
 
 
-def moved(name: str) -> str:
+def get_new_path(name: str) -> str:
     """Return the new path of a file in the wheel.
 
     Raises ValueError if the file belongs to an unknown package.
     """
     top = name.partition("/")[0]
     if top in PACKAGES:
-        return f"{NAME}/{name}"
+        return f"{PACKAGE_NAME}/{name}"
     if top.endswith(".dist-info"):
         return name
     raise ValueError(f"{name}: this file belongs to no package of TurnDesk")

@@ -31,25 +31,25 @@ _KIND_WORDS: tuple[tuple[str, str], ...] = (
 _KINDS = tuple((re.compile(rf"\b(?:{words})\b", re.IGNORECASE), kind) for words, kind in _KIND_WORDS)
 
 
-def shape_words(text: str) -> dict[str, str]:
+def recognize_shape_fields(text: str) -> dict[str, str]:
     """Return the fields of a tool shape, by name, that the codes and words of a text specify."""
     words = text.upper().replace(",", " ").replace(";", " ").split()
     candidates = [*(f"{one}{two}" for one, two in pairwise(words)), *words]
     insert = next(_inserts(candidates), "")
     holder, hand = next(_holders(candidates), ("", ""))
-    kind = kind_word(text) or _kind_of(insert, holder)
+    kind = recognize_tool_kind(text) or _kind_of(insert, holder)
     if kind in ROUND_KINDS:
         return {"kind": kind}
     found = {"kind": kind, "hand": hand, "insert": insert, "holder": holder}
     return {name: value for name, value in found.items() if value}
 
 
-def kind_word(text: str) -> str:
+def recognize_tool_kind(text: str) -> str:
     """Return the kind of tool that the words of a text specify, or an empty text."""
     return next((kind for words, kind in _KINDS if words.search(text)), "")
 
 
-def is_insert(code: str) -> bool:
+def is_insert_code(code: str) -> bool:
     """Return whether a text is a valid code of an insert."""
     try:
         decode_insert_code(code)
@@ -59,7 +59,7 @@ def is_insert(code: str) -> bool:
 
 
 def _inserts(words: list[str]) -> Iterator[str]:
-    return (word for word in words if _INSERT.fullmatch(word) and is_insert(word))
+    return (word for word in words if _INSERT.fullmatch(word) and is_insert_code(word))
 
 
 def _holders(words: list[str]) -> Iterator[tuple[str, str]]:
@@ -76,7 +76,7 @@ def _kind_of(insert: str, holder: str) -> str:
     return "turning" if insert or holder else ""
 
 
-def hand_of(letter: str) -> str:
+def get_hand(letter: str) -> str:
     """Return the hand of the tool for the letter R, L or N, or an empty text."""
     hands: Mapping[str, str] = _HANDS
     return hands.get(letter.strip().upper(), "")

@@ -15,49 +15,51 @@ from contextlib import suppress
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from app.compose.control.control_start import PLACES, socket_paths
+from app.compose.control.control_start import SLOT_NAMES, list_socket_paths
 from core.ports import DriverError
 
-DRIVERS_END = 15.0  # s for the driver host of a killed control to stop the machine and end
+DRIVERS_TIMEOUT_S = 15.0  # s for the driver host of a killed control to stop the machine and end
 _LOOK = 0.05  # s between two attempts to lock
 
 
-class ControlPlace:
+class ControlSlot:
     """First slot of a data folder without a running owner, reserved for this process.
 
-    ``drivers`` is the file descriptor of a lock that a driver host inherits. It prevents another control
+    ``drivers_lock`` is the file descriptor of a lock that a driver host inherits. It prevents another control
     from using the drivers of this slot before that driver host has ended. Both locks are None if the folder
     is not writable, or if all slots have owners.
     """
 
-    def __init__(self, folder: Path, drivers_end: float = DRIVERS_END) -> None:
+    def __init__(self, folder: Path, drivers_timeout_s: float = DRIVERS_TIMEOUT_S) -> None:
         """Reserve a slot. Raises DriverError if the drivers of its last owner do not end in time."""
         self._path: Path | None = None
         self._owner: int | None = None
-        self.drivers: int | None = None
+        self.drivers_lock: int | None = None
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
-            for path in (folder / name for name in PLACES):
+            for path in (folder / name for name in SLOT_NAMES):
                 self._owner = _locked(path.with_suffix(".lock"))
                 if self._owner is not None:
                     self._path = path
                     break
         if self._path is not None:
             try:
-                self.drivers = _locked_later(folder / f"{self._path.name}-drivers.lock", drivers_end)
+                self.drivers_lock = _locked_later(
+                    folder / f"{self._path.name}-drivers.lock", drivers_timeout_s
+                )
             except OSError:
-                self.drivers = None
+                self.drivers_lock = None
             except DriverError:
                 self.close()
                 raise
 
-    def listen(self) -> ScreenListener | None:
+    def create_listener(self) -> ScreenListener | None:
         """Return a listener at the socket of the slot, which replaces an old socket.
 
         The result is None if the socket cannot be created. Other screens cannot find a control without a
         listener.
         """
-        if self._path is None or not socket_paths(self._path.parent):
+        if self._path is None or not list_socket_paths(self._path.parent):
             return None
         try:
             return ScreenListener(self._path.with_suffix(".sock"))
@@ -66,10 +68,10 @@ class ControlPlace:
 
     def close(self) -> None:
         """Release the slot, so that another control can reserve it."""
-        for file in (self._owner, self.drivers):
+        for file in (self._owner, self.drivers_lock):
             if file is not None:
                 os.close(file)
-        self._owner = self.drivers = None
+        self._owner = self.drivers_lock = None
 
 
 def _locked_later(path: Path, limit: float) -> int:
@@ -118,7 +120,7 @@ class ScreenListener:
         self._socket.listen()
         self._inode = path.stat().st_ino
 
-    def accept(self) -> Connection:
+    def accept_screen(self) -> Connection:
         """Wait for a screen and return the connection to it. Raises OSError if the socket is closed."""
         return Connection(self._socket.accept()[0].detach())
 

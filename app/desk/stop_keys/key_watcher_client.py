@@ -13,7 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from app.desk.stop_keys.stop_records import MAX_RECORD_BYTES, NO_FOCUS, FocusRecord, StopPress
-from core.own_process import module_environment
+from core.process_environment import make_module_environment
 
 OpenStopChannel = Callable[[], socket.socket | None]
 """Open a line to the control for stops; None where the control has none."""
@@ -31,7 +31,7 @@ class KeyWatcherClient:
             files = (stop_channel.fileno(), theirs.fileno())
             self._process = subprocess.Popen(
                 [sys.executable, "-m", "app.desk.stop_keys.key_watcher", *map(str, files)],
-                env=module_environment(),
+                env=make_module_environment(),
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 pass_fds=files,
