@@ -41,10 +41,15 @@ _NONE = (-math.inf, math.inf)
 _ONE_TURN = (-360.0, 360.0)  # degrees, travel of a C axis that is not modulo
 # Keys of the file whose names differ from those of the model's fields.
 _AXIS_KEYS = {
+    "max_speed": "vmax",
+    "max_acceleration": "amax",
+    "count_size": "count",
     "following_window": "fe_window",
-    "following_time": "fe_time_ms",
-    "in_position": "in_pos",
-    "still_time": "still_ms",
+    "following_time_s": "fe_time_ms",
+    "in_position_tolerance": "in_pos",
+    "is_position_absolute": "absolute",
+    "standstill_tolerance": "still_window",
+    "standstill_time_s": "still_ms",
 }
 MISSING_VALUE = "—"
 

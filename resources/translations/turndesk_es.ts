@@ -18514,26 +18514,6 @@
       <translation>retención de avance pedida por {name}</translation>
     </message>
     <message>
-      <location filename="core/executor/scope_recorder.py" />
-      <source>alarm line</source>
-      <translation>línea de la alarma</translation>
-    </message>
-    <message>
-      <location filename="core/executor/scope_recorder.py" />
-      <source>the record of an alarm was lost: {error}</source>
-      <translation>se perdió el registro de una alarma: {error}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/scope_recorder.py" />
-      <source>the scope record is stored in memory only: {error}</source>
-      <translation>el registro del osciloscopio se guarda sólo en memoria: {error}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/scope_recorder.py" />
-      <source>{folder}: old alarm records cannot be deleted: {cause}</source>
-      <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
-    </message>
-    <message>
       <location filename="core/executor/safety/safe_stop.py" />
       <source>fault while stopping {name}: {error}</source>
       <translation>falla al parar {name}: {error}</translation>
@@ -18634,29 +18614,29 @@
       <translation>el hilo de software del control está atorado</translation>
     </message>
     <message>
+      <location filename="core/executor/scope_recorder.py" />
+      <source>alarm line</source>
+      <translation>línea de la alarma</translation>
+    </message>
+    <message>
+      <location filename="core/executor/scope_recorder.py" />
+      <source>the record of an alarm was lost: {error}</source>
+      <translation>se perdió el registro de una alarma: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/scope_recorder.py" />
+      <source>the scope record is stored in memory only: {error}</source>
+      <translation>el registro del osciloscopio se guarda sólo en memoria: {error}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/scope_recorder.py" />
+      <source>{folder}: old alarm records cannot be deleted: {cause}</source>
+      <translation>{folder}: los registros de alarma antiguos no se pueden borrar: {cause}</translation>
+    </message>
+    <message>
       <location filename="core/executor/signal_lamps.py" />
       <source>{name} CANNOT BE SWITCHED: {error}</source>
       <translation>{name} NO SE PUEDE CONMUTAR: {error}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>NO RESPONSE FROM OPERATOR STATION</source>
-      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>OVERRIDE SIGNAL UNSTABLE</source>
-      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>{name} TURNED OFF</source>
-      <translation>SE APAGÓ {name}</translation>
-    </message>
-    <message>
-      <location filename="core/executor/station_signals.py" />
-      <source>{name} TURNED ON</source>
-      <translation>SE ENCENDIÓ {name}</translation>
     </message>
     <message>
       <location filename="core/executor/snapshot.py" />
@@ -18907,6 +18887,26 @@
       <location filename="core/executor/start_warnings.py" />
       <source>WARNING: {warned}</source>
       <translation>AVISO: {warned}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>NO RESPONSE FROM OPERATOR STATION</source>
+      <translation>LA ESTACIÓN DEL OPERADOR NO RESPONDE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>OVERRIDE SIGNAL UNSTABLE</source>
+      <translation>SEÑAL DE OVERRIDE INESTABLE</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>{name} TURNED OFF</source>
+      <translation>SE APAGÓ {name}</translation>
+    </message>
+    <message>
+      <location filename="core/executor/station_signals.py" />
+      <source>{name} TURNED ON</source>
+      <translation>SE ENCENDIÓ {name}</translation>
     </message>
     <message>
       <location filename="core/extras/access/pins.py" />

@@ -130,10 +130,10 @@ def test_an_output_that_cannot_be_switched_off_is_tried_on_and_an_alarm_of_its_o
     odd = rig.break_into("io", "switch_to_safe_state", ValueError)
     write = rig.sim.ports.io.write
 
-    def stuck(name: str, on: bool) -> None:
+    def stuck(name: str, is_on: bool) -> None:
         if name == "coolant" and odd.broken:
             raise ValueError("welded")
-        write(name, on)
+        write(name, is_on)
 
     rig.sim.ports.io.write = stuck  # type: ignore[method-assign]
     rig.start(BUSY)

@@ -75,7 +75,7 @@ class TouchRig(Rig):
     @property
     def deepest(self) -> float:
         setter = self.sim.ports.axes._plant.terminals.setter  # type: ignore[attr-defined]
-        return float(setter.deepest_mm)
+        return float(setter.max_penetration_mm)
 
 
 def ready(machine: Machine | None = None, *, x: float = 20.0, z: float = 20.0) -> TouchRig:

@@ -123,11 +123,11 @@ def test_a_wait_for_drives_is_no_stuck_thread() -> None:
     enable = rig.sim.ports.axes.enable
     waited: list[bool] = []
 
-    def slow(on: bool) -> None:
+    def slow(is_on: bool) -> None:
         for _ in range(BUSY_STUCK_CHECK_COUNT - 5):
             dog.check_threads()
         waited.append(True)
-        enable(on)
+        enable(is_on)
 
     rig.sim.ports.axes.enable = slow  # type: ignore[method-assign]
     rig.post(EnableDrives())

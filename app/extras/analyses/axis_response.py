@@ -180,7 +180,8 @@ class UnitFormat:
 
     def format_speed(self, speed_mm_s: float) -> str:
         """Return a speed in mm/s as text in the selected unit per second."""
-        return f"{formats.format_fixed(speed_mm_s if self.metric else speed_mm_s / formats.MM_PER_INCH, 3)} {self.length_unit}/s"
+        speed = speed_mm_s if self.metric else speed_mm_s / formats.MM_PER_INCH
+        return f"{formats.format_fixed(speed, 3)} {self.length_unit}/s"
 
     def format_percentage(self, ratio: float) -> str:
         """Return a ratio as text in percent."""

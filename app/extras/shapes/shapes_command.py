@@ -198,7 +198,7 @@ def _list(dialect: Dialect, *, as_json: bool) -> int:
         sys.stdout.write(json.dumps(found) + "\n")
         return EXIT_OK
     for kind, shape in get_shapes_by_kind(dialect).items():
-        sys.stdout.write(f"{kind}: {shape.purpose}\n")
+        sys.stdout.write(f"{kind}: {shape.summary}\n")
         for key, word in get_words_by_key(shape).items():
             known = shape.find_field(word)
             choices = f": {', '.join(known.choices).lower()}" if known is not None and known.choices else ""

@@ -332,7 +332,7 @@ class ShapesView(EditorPanel):
         self.lines_panel.error_text, self.lines_panel.displayed_lines, self.lines_panel.remarks = (
             "",
             (),
-            (shape.purpose,),
+            (shape.summary,),
         )
 
     def _show_form(self, form: ShapeForm) -> None:

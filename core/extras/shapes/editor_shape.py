@@ -51,7 +51,7 @@ class Shape:
     """
 
     name: str
-    purpose: str
+    summary: str
     fields: tuple[ShapeField, ...]
     write_lines: Callable[[FilledShape, ProgramSettings, CodeWriter], None]
     make_sketch: Callable[[FilledShape], Sketch]

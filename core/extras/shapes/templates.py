@@ -361,7 +361,7 @@ SINUMERIK_ROUGHING_TEMPLATE = replace(
 SINUMERIK_THREADING_TEMPLATE = replace(
     THREADING_TEMPLATE,
     name="THREAD CYCLE97",
-    purpose="calls the tool, leads in, and cuts passes with a constant chip cross-section",
+    summary="calls the tool, leads in, and cuts passes with a constant chip cross-section",
     write_lines=_sinumerik_thread,
 )
 SINUMERIK_BAR_FEED_TEMPLATE = replace(

@@ -102,10 +102,10 @@ def test_a_stop_in_the_pause_before_a_run_command_holds_it_back(stand: Bench, en
     """The line keeps its pace: between the answer to the frequency and the run command it is silent."""
     sleep, come = stand.clock.sleep_until, False
 
-    def overslept(t: float) -> None:
+    def overslept(time_s: float) -> None:
         nonlocal come
-        sleep(t)
-        if not come and stand.inverter.hz and t == stand.clock.now() and not stand.wire.waits:
+        sleep(time_s)
+        if not come and stand.inverter.hz and time_s == stand.clock.now() and not stand.wire.waits:
             come = True
             end(stand)
 
