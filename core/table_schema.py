@@ -21,6 +21,7 @@ from core.key_declaration import (
     get_declared_keys,
 )
 from core.message import CodedError, Message, find_similar_word
+from core.secret_keys import _REMOVED, format_toml_value, format_without_secrets
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -164,41 +165,6 @@ class FileValues:
         names = [field.name for field in fields_of(kind) if field.name not in given]
         said = {name: self.values_by_path[f"{path}.{keys.get(name, name)}"] for name in names}
         return kind(**said, **given)
-
-
-# Keys whose values contain passwords or tokens. Addresses may contain them before @, in the path or after the
-# question mark. A removed key may still occur in older files, which are compared with newer ones.
-_SECRETS = frozenset(
-    {
-        "announce.hook",
-        "announce.password",
-        "sharing.git",
-        "sharing.postgresql",
-        "status_page.agents",
-        "status_page.desks",
-        "status_page.token",
-    }
-)
-SECRET_MASK = "***"
-# Keys of earlier versions, with their replacements.
-_REMOVED = {
-    "sharing.git": (
-        "sharing by git was removed; use a folder (key folder) or a PostgreSQL database (key postgresql)"
-    )
-}
-
-
-def format_toml_value(value: object) -> str:
-    """Return a value in TOML syntax, shortened for a message."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    text = f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= 40 else text[:37] + "..."
-
-
-def format_without_secrets(path: str, value: object) -> str:
-    """Return a value in TOML syntax, masked if it contains a password or token."""
-    return SECRET_MASK if path in _SECRETS else format_toml_value(value)
 
 
 def join_path(path: str, key: str) -> str:

@@ -296,10 +296,10 @@ def _is_defect(error: BaseException) -> bool:
 
 
 class RepeatingThread:
-    """Thread that calls ``read_status`` after ``first_delay_s`` seconds and then every ``interval_s``
-    seconds.
+    """Thread that calls ``read_status`` at regular intervals.
 
-    The watchdog identifies the thread by its name.
+    The first call occurs after ``first_delay_s`` seconds, and each further call after ``interval_s``
+    seconds. The watchdog identifies the thread by its name.
     """
 
     def __init__(

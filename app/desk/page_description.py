@@ -33,8 +33,9 @@ class PageDescription:
 
 @dataclass(frozen=True, slots=True)
 class ProgramKey:
-    """Function key of the program list that opens ``page_name``. ``use`` is called with the program's
-    name.
+    """Function key of the program list that opens ``page_name``.
+
+    ``use`` is called with the program's name.
     """
 
     label: str

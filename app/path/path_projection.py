@@ -25,8 +25,9 @@ IndexArray = npt.NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class Projection:
-    """Visible area, given by its middle (z, x), its size in pixels, and ``pixels_per_mm`` in pixels per
-    mm.
+    """Visible area of a drawing.
+
+    It is given by its middle (z, x), its size in pixels, and ``pixels_per_mm``, the scale in pixels per mm.
     """
 
     z: float

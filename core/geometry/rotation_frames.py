@@ -123,8 +123,9 @@ def make_frame_from_points(first: Vector, second: Vector, third: Vector) -> Matr
 
 
 def make_frame_from_spatial_angles(x_angle: float, y_angle: float, z_angle: float) -> Matrix:
-    """Return the rotation by ``a`` about X, then by ``b`` about Y, then by ``z_angle`` about Z, with fixed
-    axes.
+    """Return the rotation about the fixed axes X, then Y, then Z.
+
+    The angles are ``x_angle``, ``y_angle`` and ``z_angle``.
     """
     return multiply_matrices(
         make_rotation(Z_AXIS, z_angle), make_rotation(Y_AXIS, y_angle), make_rotation(X_AXIS, x_angle)

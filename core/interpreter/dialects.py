@@ -69,7 +69,7 @@ def _sinumerik_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
 
 def _klartext_line(source: ProgramSource, setup: Setup) -> InterpreterPass:
     from core.interpreter.klartext.klartext_interpreter import Interpreter
-    from core.interpreter.klartext.klartext_program import read_mdi_block
+    from core.interpreter.klartext.klartext_mdi import read_mdi_block
 
     assert setup.kinematics is not None  # otherwise, the pass was rejected
     return Interpreter(read_mdi_block(source, is_inch=not setup.metric), setup, setup.kinematics)
@@ -179,10 +179,9 @@ class SharedProgram:
         return self._begin(setup)
 
     def start_branching_pass(self, setup: Setup, branch_record: BranchRecord) -> BranchingPass | None:
-        """Return a pass that can execute both branches of conditional calls, as directed by
-        ``branch_record``.
+        """Return a pass that can execute both branches of conditional calls, or None.
 
-        Returns None if the program does not read any inputs.
+        ``branch_record`` selects the branches. The result is None if the program does not read any inputs.
         """
         if _refusal(self.source.dialect, setup) or (setup.begin is not None and setup.begin.is_mdi_line):
             return None

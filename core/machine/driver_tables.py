@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from core.machine.hardware_model import AnalogInputModel, Hardware, HomingModel
 from core.message import Message
+from core.secret_keys import format_toml_value
 from core.table_schema import (
     DriverDeclaration,
     DriverTable,
@@ -17,7 +18,6 @@ from core.table_schema import (
     MachineFileReading,
     find_raw_value,
     find_unknown_keys,
-    format_toml_value,
     read_named_tables,
     read_table,
 )

@@ -8,13 +8,8 @@ from core.machine.hardware_model import LAMP_NAMES, LAMP_PREFIX, RED
 from core.machine.machine_reading import MachineReading
 from core.machine.machine_tables import FIXED_M_CODES, LANGUAGES
 from core.message import Message
-from core.table_schema import (
-    DriverDeclaration,
-    FileFinding,
-    FileValues,
-    MachineFileReading,
-    format_toml_value,
-)
+from core.secret_keys import format_toml_value
+from core.table_schema import DriverDeclaration, FileFinding, FileValues, MachineFileReading
 
 DEVICE_PREFIXES = ("pendant.",)
 """What begins the addresses at devices that an optional feature reads."""

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator
 
 from core.message import Message
-from core.table_schema import FileFinding, MachineFileReading, format_toml_value
+from core.secret_keys import format_toml_value
+from core.table_schema import FileFinding, MachineFileReading
 
 HANDWHEEL_INPUT = "handwheel"
 HANDWHEEL_ENABLE_INPUT = "wheel_enable"  # pressed while the handwheel may move an axis

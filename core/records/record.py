@@ -99,8 +99,9 @@ class ScopeRecord:
     about: Mapping[str, str] = field(default_factory=dict)  # machine, program and alarm as text
 
     def select_between(self, start_time_s: float, end_time_s: float) -> ScopeRecord:
-        """Return the samples from ``start_time_s`` to ``end_time_s``, inclusive, in seconds of the monotonic
-        clock.
+        """Return the samples between two times, inclusive.
+
+        ``start_time_s`` and ``end_time_s`` are in seconds of the monotonic clock.
         """
         first, last = np.searchsorted(self.times_s, (start_time_s, np.nextafter(end_time_s, np.inf)))
         cut = slice(int(first), int(last))

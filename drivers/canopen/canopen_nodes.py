@@ -9,12 +9,12 @@ from dataclasses import dataclass, replace
 from typing import TypeGuard
 
 from core.key_declaration import KeyRange, declare_key, make_key_table
+from core.secret_keys import format_toml_value
 from core.table_schema import (
     FileFinding,
     MachineFileReading,
     TableReference,
     find_unknown_keys,
-    format_toml_value,
     make_table_finding,
     read_named_tables,
 )

@@ -11,7 +11,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from core.message import Message
-from core.table_schema import FileFinding, FileValues, MachineFileReading, format_toml_value
+from core.secret_keys import format_toml_value
+from core.table_schema import FileFinding, FileValues, MachineFileReading
 from drivers.canopen.canopen_nodes import (
     BITS,
     CYCLIC_MODES,

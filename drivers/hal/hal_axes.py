@@ -21,6 +21,7 @@ from drivers.hal.bridge.packets import parse_pieces as pieces_told
 from drivers.hal.hal_config import HalConfig
 from drivers.hal.hal_homing import HalHoming, HalTouch
 from drivers.hal.hal_link import HalLink, parse_bridge_fault
+from drivers.hal.hal_queue import HalQueue
 from drivers.port_checks import (
     require_axis,
     require_no_fault,
@@ -30,34 +31,13 @@ from drivers.port_checks import (
 )
 from drivers.setpoint_pieces import MotionPiece
 from drivers.setpoint_queue import check_limits, convert_segments
-from drivers.spindle_gear import AxisMotion, GearAxes, GearedQueue, SpindlePhaseFilter
+from drivers.spindle_gear import GearAxes, SpindlePhaseFilter
 
 _HISTORY_S = 0.5  # Age in s of setpoints that are still available.
 _POWER_ON_S = 1.5  # Seconds for the drives to switch on.
 _STANDSTILL_TIME_S = 0.1  # Seconds without a count after which an axis is at standstill.
 _SPEED_WINDOW_S = 0.05  # s
 _NAN = float("nan")
-
-
-class HalQueue(GearedQueue):
-    """A geared setpoint queue for which the bridge decides when a cam has ended."""
-
-    def play_spindle_sample(self, time_s: float, revolutions: float) -> AxisMotion | None:
-        """Return the setpoint for one sample of the spindle, or None without an active cam."""
-        return (
-            None if self._gearing is None else self._gearing.calculate_setpoint(time_s, time_s, revolutions)
-        )
-
-    def end_cam(self, time_s: float) -> None:
-        """End the cam at time ``t``, when the tail that continues by time has started."""
-        if self._gearing is not None:
-            self._leave_gearing(time_s, self._gearing)
-
-    def replace_by_braking(self, time_s: float, pieces: list[MotionPiece]) -> None:
-        """Replace the queue by a deceleration that the bridge has performed."""
-        if self._gearing is not None:
-            self.reset_to(pieces[0].positions)
-        self.replace_pieces_from(time_s, pieces)
 
 
 class HalAxes:

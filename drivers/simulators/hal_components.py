@@ -193,10 +193,9 @@ _COMPONENT_STEPS = {
 
 
 def create_streamer(cells: SignalCells, fifo: RowFifo, enable_pin: str, pins: list[str]) -> PeriodFunction:
-    """Return a function that writes one row of ``fifo`` to the pins in each period while ``enable_pin`` is
-    on.
+    """Return a function that writes one row of ``fifo`` to the pins in each period.
 
-    If there is no new row, the pins retain their values.
+    The function writes while ``enable_pin`` is on. If there is no new row, the pins retain their values.
     """
 
     def step(_period: float) -> None:

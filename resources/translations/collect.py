@@ -294,8 +294,9 @@ def collect_screen_texts() -> dict[str, str]:
 
 
 def collect_console_texts(screen_texts: Container[str]) -> dict[str, str]:
-    """Return the texts of the command line and the drivers that are not in ``screen_texts``, with their
-    files.
+    """Return the texts of the command line and of the drivers, with their files.
+
+    Texts in ``screen_texts`` are left out.
     """
     found: dict[str, str] = {}
     for top in ("app", "core", "drivers"):

@@ -14065,11 +14065,6 @@
     </message>
     <message>
       <location filename="app/screen/window/readout_panels.py" />
-      <source>AND {alarms_count} MORE</source>
-      <translation>Y {alarms_count} MÁS</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/readout_panels.py" />
       <source>FEED {override}</source>
       <translation>AVANCE {override}</translation>
     </message>
@@ -14095,13 +14090,18 @@
     </message>
     <message>
       <location filename="app/screen/window/readout_panels.py" />
-      <source>STOP {number}: {first}</source>
-      <translation>PARO {number}: {first}</translation>
-    </message>
-    <message>
-      <location filename="app/screen/window/readout_panels.py" />
       <source>SWITCH: OFF</source>
       <translation>INTERR. OFF</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/run_row.py" />
+      <source>AND {alarms_count} MORE</source>
+      <translation>Y {alarms_count} MÁS</translation>
+    </message>
+    <message>
+      <location filename="app/screen/window/run_row.py" />
+      <source>STOP {number}: {first}</source>
+      <translation>PARO {number}: {first}</translation>
     </message>
     <message>
       <location filename="app/screen/window/station_dock.py" />
@@ -21874,14 +21874,64 @@
       <translation>{name} del contorno no está en el programa o no tiene LBL 0.</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
       <source>/ skips a program block and has no meaning in MDI</source>
       <translation>/ salta un bloque del programa y no significa nada en MDI</translation>
     </message>
     <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
       <source>A jump goes to another block and cannot be used in MDI</source>
       <translation>Un salto va a otro bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>BLK FORM defines the blank of a program and cannot be used in MDI</source>
+      <translation>BLK FORM define la pieza en bruto de un programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>CALL LBL jumps to another block and cannot be used in MDI</source>
+      <translation>CALL LBL salta a otro bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>CALL PGM calls another program and cannot be used in MDI</source>
+      <translation>CALL PGM llama a otro programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>Cycle 12 selects another program and cannot be used in MDI</source>
+      <translation>El ciclo 12 selecciona otro programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>END PGM ends a program and cannot be used in MDI</source>
+      <translation>END PGM termina un programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>LBL marks a position in a program and cannot be used in MDI</source>
+      <translation>LBL marca una posición en un programa y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>RND and CHF are allowed only between two blocks of a contour</source>
+      <translation>RND y CHF sólo se permiten entre dos bloques de un contorno</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>R{compensation} needs a contour of more than one block and cannot be used in MDI</source>
+      <translation>R{compensation} necesita un contorno de más de un bloque y no se puede usar en MDI</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>Use this command in a program.</source>
+      <translation>Use esta orden en un programa.</translation>
+    </message>
+    <message>
+      <location filename="core/interpreter/klartext/klartext_mdi.py" />
+      <source>{form} approaches or departs from a contour and cannot be used in MDI</source>
+      <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -21900,21 +21950,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>BLK FORM defines the blank of a program and cannot be used in MDI</source>
-      <translation>BLK FORM define la pieza en bruto de un programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>CALL LBL jumps to another block and cannot be used in MDI</source>
-      <translation>CALL LBL salta a otro bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>CALL PGM calls another program and cannot be used in MDI</source>
-      <translation>CALL PGM llama a otro programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Calls are nested more than {deepest_call} levels deep at LBL {node}.</source>
       <translation>Las llamadas están anidadas a más de {deepest_call} niveles en LBL {node}.</translation>
     </message>
@@ -21930,16 +21965,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Cycle 12 selects another program and cannot be used in MDI</source>
-      <translation>El ciclo 12 selecciona otro programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>END PGM ends a program and cannot be used in MDI</source>
-      <translation>END PGM termina un programa y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>END PGM is missing.</source>
       <translation>Falta END PGM.</translation>
     </message>
@@ -21947,11 +21972,6 @@
       <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>End the subprogram with LBL 0.</source>
       <translation>Termine el subprograma con LBL 0.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>LBL marks a position in a program and cannot be used in MDI</source>
-      <translation>LBL marca una posición en un programa y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
@@ -21980,16 +22000,6 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>RND and CHF are allowed only between two blocks of a contour</source>
-      <translation>RND y CHF sólo se permiten entre dos bloques de un contorno</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>R{compensation} needs a contour of more than one block and cannot be used in MDI</source>
-      <translation>R{compensation} necesita un contorno de más de un bloque y no se puede usar en MDI</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Start the program with BEGIN PGM, the program name and the unit.</source>
       <translation>Empiece el programa con BEGIN PGM, el nombre del programa y la unidad.</translation>
     </message>
@@ -22015,18 +22025,8 @@
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>Use this command in a program.</source>
-      <translation>Use esta orden en un programa.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
       <source>Write the same unit in BEGIN PGM and END PGM.</source>
       <translation>Escriba la misma unidad en BEGIN PGM y END PGM.</translation>
-    </message>
-    <message>
-      <location filename="core/interpreter/klartext/klartext_program.py" />
-      <source>{form} approaches or departs from a contour and cannot be used in MDI</source>
-      <translation>{form} es la entrada o la salida de un contorno y no se puede usar en MDI</translation>
     </message>
     <message>
       <location filename="core/interpreter/klartext/klartext_state.py" />

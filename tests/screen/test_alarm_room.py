@@ -11,7 +11,7 @@ from app.desk.status.prompt_line import describe_cause, make_alarm_prompt, reaso
 from app.desk.status.readouts import ReadoutKind
 from app.screen.color_palettes import DARK_PALETTE
 from app.screen.screen_theme import ScreenTheme, load_fonts
-from app.screen.window.readout_panels import describe_stop
+from app.screen.window.run_row import describe_stop
 from core.alarms import CATALOG, AlarmCode, Reaction
 from core.executor.raised_alarm import make_alarm
 from core.executor.snapshot import MachineState, Snapshot

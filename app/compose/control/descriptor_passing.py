@@ -45,8 +45,9 @@ class SharedMemory:
 
     @classmethod
     def create(cls, size_bytes: int) -> SharedMemory:
-        """Return new memory of ``size_bytes`` bytes that are all zero. Raises OSError if it cannot be
-        allocated.
+        """Return new memory of ``size_bytes`` bytes that are all zero.
+
+        Raises OSError if the memory cannot be allocated.
         """
         file = os.memfd_create("turndesk-scope")
         os.ftruncate(file, size_bytes)

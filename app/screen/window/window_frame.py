@@ -35,11 +35,11 @@ from app.screen.window.readout_panels import (
     FeedPanel,
     PositionPanel,
     ReadoutRow,
-    RunRow,
     SpindlePanel,
     TimesPanel,
     ToolPanel,
 )
+from app.screen.window.run_row import RunRow
 from app.screen.window.station_dock import StationDock
 from app.screen.window.window_bars import FunctionKeyBar, LampStrip, NoticeRows, PromptLine, TitleLine
 from app.screen.window_layout import (

@@ -64,8 +64,9 @@ class ThreadCurve(NamedTuple):
         )
 
     def compute_max_acceleration(self, x_max_acceleration: float, z_max_acceleration: float) -> float:
-        """Return the highest acceleration along s in mm/s² at which X and Z stay within
-        ``x_max_acceleration`` and ``z_max_acceleration``.
+        """Return the highest acceleration along s that X and Z permit, in mm/s².
+
+        ``x_max_acceleration`` and ``z_max_acceleration`` are the limits of the axes.
         """
         dx, dz = (
             np.abs(np.diff(self.x_mm) / np.diff(self.s_mm)),

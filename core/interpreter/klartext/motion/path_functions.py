@@ -32,6 +32,7 @@ from core.interpreter.klartext.motion.radius_compensation import (
     plan_approach_path,
     plan_departure_path,
 )
+from core.interpreter.klartext.motion.rotary_targets import find_rotary_targets
 from core.interpreter.shared.elementary_blocks import Block, BlockKind
 from core.language.diagnostics import ProgramError
 from core.language.klartext.klartext_faults import (
@@ -41,7 +42,6 @@ from core.language.klartext.klartext_faults import (
     make_unsupported_error,
 )
 from core.language.klartext.klartext_nodes import CornerBlock, PathFunction, Pole
-from core.language.klartext.klartext_words import AxisWord
 from core.message import Message
 
 BlockGenerator = Callable[[], Iterator[Block]]
@@ -199,7 +199,7 @@ class PathRunner:
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
             warn_before_cut(state, node)
-        rotary = _rotary(state, node, state.kinematics.zero_angles)
+        rotary = find_rotary_targets(state, node, state.kinematics.zero_angles)
         if rotary and self._side:
             text = "A rotary axis cannot move while radius compensation is active."
             raise state.make_error(
@@ -435,7 +435,7 @@ class PathRunner:
         state, feed = self._state, self._set_block_feed(node)
         if feed is not None:
             warn_before_cut(state, node)
-        goals = _rotary(state, node, dict.fromkeys(state.rotary_axis_names, 0.0))
+        goals = find_rotary_targets(state, node, dict.fromkeys(state.rotary_axis_names, 0.0))
         for axis, now in zip(LINEAR_AXES, state.linear_position, strict=True):
             if (word := node.find_word(axis)) is not None:
                 value = word_values.evaluate_coordinate(state, word)
@@ -487,25 +487,3 @@ def _replace_points(element: PathElement, flat: Element, z0: float, z1: float) -
     """
     arc = flat if isinstance(flat, Arc) else None
     return replace(element, start=(*flat.start, z0), end=(*flat.end, z1), arc=arc)
-
-
-def _rotary(state: State, node: PathFunction, zero: Mapping[str, float]) -> dict[str, float]:
-    """Return the target angles of the rotary axes; modulo axes move the shorter distance.
-
-    Words are relative to ``zero``. With M127, the travel is the difference of the displayed angles. An
-    incremental word specifies the travel directly.
-    """
-    found = {}
-    for axis in state.kinematics.rotary_axes:
-        word: AxisWord | None = node.find_word(axis.name)
-        if word is not None:
-            value, now = word_values.evaluate_coordinate(state, word), state.position_by_axis[axis.name]
-            state.is_table_positioned = state.is_table_positioned or not word.is_incremental
-            begin = now - zero[axis.name]
-            travel_deg = (
-                axis.find_travel(begin, value)
-                if state.uses_shorter_rotation
-                else value - axis.get_displayed_angle(begin)
-            )
-            found[axis.name] = now + (value if word.is_incremental else travel_deg)
-    return found

@@ -1,0 +1,27 @@
+"""Queue of the setpoints that HAL has not received yet."""
+
+from __future__ import annotations
+
+from drivers.setpoint_pieces import MotionPiece
+from drivers.spindle_gear import AxisMotion, GearedQueue
+
+
+class HalQueue(GearedQueue):
+    """A geared setpoint queue for which the bridge decides when a cam has ended."""
+
+    def play_spindle_sample(self, time_s: float, revolutions: float) -> AxisMotion | None:
+        """Return the setpoint for one sample of the spindle, or None without an active cam."""
+        return (
+            None if self._gearing is None else self._gearing.calculate_setpoint(time_s, time_s, revolutions)
+        )
+
+    def end_cam(self, time_s: float) -> None:
+        """End the cam at time ``t``, when the tail that continues by time has started."""
+        if self._gearing is not None:
+            self._leave_gearing(time_s, self._gearing)
+
+    def replace_by_braking(self, time_s: float, pieces: list[MotionPiece]) -> None:
+        """Replace the queue by a deceleration that the bridge has performed."""
+        if self._gearing is not None:
+            self.reset_to(pieces[0].positions)
+        self.replace_pieces_from(time_s, pieces)
